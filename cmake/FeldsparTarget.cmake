@@ -1,0 +1,35 @@
+# How our own targets are compiled: warnings are errors, and the same source gives the same bits on every code path.
+add_library(feldspar_options INTERFACE)
+target_include_directories(feldspar_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
+target_compile_options(feldspar_options INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+    -ffp-contract=off     # no fused multiply-add that one path has and another has not
+    -fno-math-errno)
+if(FELDSPAR_SANITIZE)
+    target_compile_options(feldspar_options INTERFACE -fsanitize=${FELDSPAR_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(feldspar_options INTERFACE -fsanitize=${FELDSPAR_SANITIZE})
+endif()
+
+# feldspar_room(NAME SOURCES ... DEPENDS ...): one room of the house as a static library `feldspar_NAME`. DEPENDS names
+# rooms of floors above it and libraries, so a forbidden dependency does not link.
+function(feldspar_room name)
+    cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS" ${ARGN})
+    add_library(feldspar_${name} STATIC ${ROOM_SOURCES})
+    target_link_libraries(feldspar_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE feldspar_options)
+    target_include_directories(feldspar_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+endfunction()
+
+# feldspar_test(NAME SOURCES ... DEPENDS ... LABELS ... [TIMEOUT s]): one GoogleTest program; each of its tests is a CTest.
+function(feldspar_test name)
+    cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
+    if(NOT TEST_LABELS)
+        set(TEST_LABELS fast)
+    endif()
+    if(NOT TEST_TIMEOUT)
+        set(TEST_TIMEOUT 300)
+    endif()
+    add_executable(${name} ${TEST_SOURCES})
+    target_link_libraries(${name} PRIVATE ${TEST_DEPENDS} GTest::gtest_main feldspar_options)
+    target_compile_definitions(${name} PRIVATE FELDSPAR_SOURCE_DIR="${CMAKE_SOURCE_DIR}" FELDSPAR_PROGRAM="${CMAKE_BINARY_DIR}/feldspar")
+    gtest_discover_tests(${name} PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT} DISCOVERY_TIMEOUT 60)
+endfunction()

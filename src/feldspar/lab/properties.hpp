@@ -1,0 +1,52 @@
+// From records to laboratory numbers: the properties of one test, and those of a set of tests on several packings.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "feldspar/lab/result.hpp"
+
+namespace feldspar {
+
+/// Reads E, nu, strengths, sigma_ci and sigma_cd from the history and the cracks of one test (definitions: docs/theory).
+/// Values that the test does not define, or that the record does not reach, are not-a-number.
+TestProperties measure(const TestResult& result);
+
+/// Evidence from half the peak to the peak, the grade and the sentence that a user reads.
+QuasiStaticEvidence judge(const TestResult& result);
+
+/// Median and range over packings.
+struct PropertyStatistics {
+    double median = 0.0;   ///< SI (angles in degrees)
+    double minimum = 0.0;
+    double maximum = 0.0;
+    std::vector<std::uint64_t> seeds;
+};
+
+/// One straight-line or Hoek-Brown fit on one packing.
+struct EnvelopeFit {
+    std::uint64_t seed = 0;
+    double cohesion_Pa = 0.0;           ///< Mohr-Coulomb
+    double friction_angle_deg = 0.0;
+    double UCS_fitted_Pa = 0.0;         ///< intercept of the Mohr-Coulomb line
+    double hoek_brown_mi = 0.0;         ///< not-a-number with fewer than three points
+    double hoek_brown_UCS_Pa = 0.0;     ///< its sigma_ci
+    double UCS_measured_Pa = 0.0;       ///< not-a-number if the packing has no uniaxial test
+    std::vector<double> sigma3_Pa;      ///< the tests that are in
+    std::vector<double> sigma1_Pa;
+};
+
+/// Properties of the rock: a name (as in summary.json: "E_Pa", "nu", "UCS_Pa", "DTS_Pa", "BTS_Pa", "cohesion_Pa",
+/// "friction_angle_deg", "hoek_brown_mi", ...) to its statistics.
+struct PropertySummary {
+    std::map<std::string, PropertyStatistics> values;
+    std::vector<EnvelopeFit> fits;
+    std::string envelope_method;   ///< one sentence: which tests, which sigma_3 range, how fitted; empty without a fit
+};
+
+PropertySummary summarise(std::span<const TestResult> results);
+
+}  // namespace feldspar

@@ -1,0 +1,148 @@
+// What a laboratory test leaves behind, as plain data: the history, the cracks, fields at chosen moments, the evidence.
+// Sign convention of everything here: compression positive, as in rock mechanics; strengths are positive magnitudes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "feldspar/base/vec2.hpp"
+#include "feldspar/model/spec.hpp"
+#include "feldspar/specimen/specimen.hpp"
+
+namespace feldspar {
+
+/// Where the energy is, and where it came from (J). Balance: external + elastic_start + rate_control =
+/// elastic_grains + elastic_contacts + fracture + friction + damping + kinetic, up to the residual.
+struct EnergyLedger {
+    double external = 0.0;          ///< work of platens and lateral pressure since the start
+    double elastic_start = 0.0;     ///< energy that the computed elastic start put into the body
+    double rate_control = 0.0;      ///< work done by the body-wide velocity correction when the rate changes
+    double elastic_grains = 0.0;
+    double elastic_contacts = 0.0;
+    double fracture = 0.0;
+    double friction = 0.0;
+    double damping = 0.0;
+    double kinetic = 0.0;
+
+    double supplied() const { return external + elastic_start + rate_control; }
+    double residual() const { return supplied() - (elastic_grains + elastic_contacts + fracture + friction + damping + kinetic); }
+};
+
+enum class Phase : int { consolidation = 0, elastic = 1, loading = 2 };
+
+/// One row of the history.
+struct HistoryRow {
+    Phase phase = Phase::loading;   ///< elastic: passed over in closed form, linear between zero and the computed elastic start
+    long long step = 0;
+    double platen_displacement_m = 0.0;   ///< > 0 when the specimen is shortened (or the Brazilian plates approach)
+    double axial_strain = 0.0;            ///< from the platens
+    double axial_strain_gauge = 0.0;      ///< from the gauge: least squares over the central half of the specimen
+    double lateral_strain_gauge = 0.0;    ///< the same, < 0 when the specimen widens
+    double axial_stress_Pa = 0.0;         ///< mean of both platens over the initial section; Brazilian: 2P / (pi D t)
+    double stress_top_Pa = 0.0;
+    double stress_bottom_Pa = 0.0;
+    double sigma3_Pa = 0.0;
+    int cracks_tensile = 0;
+    int cracks_shear = 0;
+    double residual = 0.0;                ///< R*: sum of |F| over free degrees of freedom / platen force
+    double platen_speed = 0.0;            ///< m a step (dynamic: m/s)
+    double kinetic_deviation = 0.0;       ///< J, of the motion that departs from the loading motion
+    EnergyLedger energy;
+};
+
+enum class CrackMode : int { tensile = 0, shear = 1 };
+
+/// A contact point whose bond broke.
+struct Crack {
+    long long step = 0;
+    double axial_strain = 0.0;
+    double axial_stress_Pa = 0.0;
+    CrackMode mode = CrackMode::tensile;
+    int grain_a = 0;
+    int grain_b = 0;
+    int contact = 0;       ///< number of the contact in the initial assembly
+    int point = 0;         ///< contact point within the contact
+    Vec2 place;            ///< m, undeformed
+    Vec2 from, to;         ///< m, undeformed: the share of the grain edge that this point stands for
+    double area_m2 = 0.0;
+    double energy_J = 0.0; ///< dissipated at this point until it broke
+};
+
+/// Fields at one moment.
+struct Snapshot {
+    std::string label;                 ///< "start", "first-crack", "peak", "end" or "load-<n>"
+    long long step = 0;
+    double axial_strain = 0.0;
+    double axial_stress_Pa = 0.0;
+    std::vector<Vec2> displacement_m;        ///< a node of the grain mesh
+    std::vector<double> stress_xx_Pa;        ///< a triangle, Cauchy, compression positive
+    std::vector<double> stress_yy_Pa;
+    std::vector<double> stress_xy_Pa;
+    std::vector<float> damage;               ///< a triangle: largest damage of the contact points on its grain edge, 0 ... 1
+    int cracks = 0;                          ///< the first so many of TestResult::cracks exist at this moment
+    std::vector<double> crack_opening_m;     ///< one for each of these cracks; > 0 open
+};
+
+/// Evidence that the run was quasi-static, each taken from half the peak to the peak, and the verdict in words.
+struct QuasiStaticEvidence {
+    double residual_mean = 0.0;
+    double residual_at_peak = 0.0;
+    double imbalance_max = 0.0;           ///< largest |top - bottom| / mean
+    double kinetic_over_strain = 0.0;     ///< largest kinetic energy of the deviation / strain energy
+    double damping_over_fracture = 0.0;   ///< damping work / fracture work at the peak
+    char grade = 'C';                     ///< A: to about 0.5 %, B: to about 2 %, C: not shown
+    std::string verdict;                  ///< one sentence for the user
+    double peak_change_at_third = 0.0;    ///< relative change of the peak at a third of the target, if confirmed
+    bool confirmed = false;               ///< the repeat at a third of the target was run
+};
+
+/// Properties read from one test. Not-a-number where the test does not define one.
+struct TestProperties {
+    double peak_stress_Pa;        ///< strength, a positive magnitude; Brazilian: the first peak
+    bool peak_reached = false;
+    double first_crack_Pa;
+    double E_secant_Pa;           ///< at 50 % of the peak, from the platens
+    double E_tangent_Pa;          ///< at 50 % of the peak (40 ... 60 %), from the platens
+    double E_average_Pa;          ///< 30 ... 70 % of the peak, from the platens
+    double E_gauge_Pa;            ///< tangent at 50 % of the peak, from the gauge
+    double nu;                    ///< 40 ... 60 % of the peak, from the gauges
+    double sigma_ci_crack_count_Pa;       ///< 1 % of the cracks at the peak
+    double sigma_ci_crack_volume_Pa;      ///< reversal of the crack volumetric strain
+    double sigma_ci_lateral_strain_Pa;    ///< lateral strain response
+    double sigma_cd_Pa;                   ///< reversal of the volumetric strain
+};
+
+struct TestResult {
+    TestSpec test;
+    ModelSpec model;
+    ContactMaterial contact;
+    GrainMaterial grain;
+    NumericsSpec numerics;
+    std::uint64_t seed = 0;
+    std::shared_ptr<const Specimen> specimen;
+    std::vector<HistoryRow> history;
+    std::vector<Crack> cracks;
+    std::vector<Snapshot> snapshots;
+    EnergyLedger energy_at_end;
+    double energy_residual = 0.0;         ///< largest |residual| of the ledger / supplied work
+    QuasiStaticEvidence evidence;
+    TestProperties properties{};
+    std::string stop_reason;              ///< in words
+    bool interrupted = false;
+    long long steps = 0;                  ///< all steps of the loading
+    long long steps_to_peak = 0;          ///< loading steps up to the peak
+    long long preparation_steps = 0;      ///< steps of the elastic start and the consolidation
+    double wall_s = 0.0;
+    double ms_per_step = 0.0;
+    int threads = 1;
+    long long shape_fallbacks = 0;        ///< contact sides that used the initial shape functions, summed over steps
+    double angular_momentum_loss = 0.0;   ///< moment lost by them, relative to the contact moments
+    long long vanished_compressions = 0;  ///< points whose compression vanished at damage 1 (model, section 5)
+    int new_contacts = 0;                 ///< frictional contacts made after detachment
+    double stable_omega2 = 0.0;           ///< largest omega^2 dt^2 of the initial state
+    double stable_limit = 0.0;            ///< its bound for this damping
+};
+
+}  // namespace feldspar

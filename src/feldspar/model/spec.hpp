@@ -1,0 +1,101 @@
+// What the user asks of the physics: the particle model, the materials, the numerics and the test, as plain data in SI.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace feldspar {
+
+enum class GrainKind { flexible };                     // rigid and inner particles will join here
+enum class ContactKind { lobatto3, point };            ///< three Lobatto points, or one (PCM)
+enum class PlaneState { stress, strain };
+enum class ContactLaw { bilinear, bilinear_literal, linear, brittle };
+enum class ShearMeasure { total, beyond_friction };    ///< |us|, or |us| - mu max(Fn, 0) / ks
+enum class TensionUnloading { elastic, secant };       ///< slope kn from the current point, or to the origin
+
+struct ModelSpec {
+    GrainKind kind = GrainKind::flexible;
+    ContactKind contact = ContactKind::lobatto3;
+    PlaneState plane = PlaneState::stress;
+};
+
+/// Linear elastic grain.
+struct GrainMaterial {
+    double E_Pa = 0.0;
+    double nu = 0.0;
+    double density_kg_m3 = 2650.0;
+};
+
+/// Cohesive contact between grains.
+struct ContactMaterial {
+    ContactLaw law = ContactLaw::bilinear;
+    double Kn_Pa_m = 0.0;        ///< normal stiffness per area
+    double eta = 0.0;            ///< ks / kn
+    double sigma_nt_Pa = 0.0;    ///< tensile strength
+    double tau_Pa = 0.0;         ///< cohesion
+    double mu = 0.0;             ///< friction coefficient
+    double Gfn_J_m2 = 0.0;       ///< fracture energy in tension (not used by the brittle law)
+    double Gfs_J_m2 = 0.0;       ///< fracture energy in shear
+    ShearMeasure shear_measure = ShearMeasure::total;
+    TensionUnloading tension_unloading = TensionUnloading::elastic;
+};
+
+enum class NumericsKind { adaptive, paper, dynamic };
+
+struct NumericsSpec {
+    NumericsKind kind = NumericsKind::adaptive;
+    double accuracy = 0.005;                        ///< adaptive: relative accuracy wanted of a strength (0.0005 ... 0.1)
+    std::optional<double> residual_target;          ///< adaptive, for experts: R* itself; overrides accuracy
+    double damping = 0.7;                           ///< paper and dynamic: local non-viscous damping alpha, 0 <= alpha < 1
+    std::optional<double> speed_m;                  ///< paper: platen speed in metres a step (default 6.25e-9); dynamic: m/s (must be given)
+    std::optional<double> mass_factor;              ///< adaptive and paper: m = factor x 0.25 K; default 1 (adaptive), 1 + alpha (paper)
+    std::optional<double> time_step_s;              ///< dynamic; default: 0.8 of the stability limit
+    std::optional<long long> maximum_steps;         ///< stop with what there is
+    bool confirm = false;                           ///< repeat each test at a third of the target (or speed) and report the change
+};
+
+enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian };
+
+struct TestSpec {
+    TestKind kind = TestKind::uniaxial_compression;
+    double sigma3_Pa = 0.0;              ///< biaxial only
+    double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
+    double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
+    double plate_stiffness_factor = 1.0; ///< Brazilian: plate Kn as a multiple of the contacts' Kn
+    double plate_mu = 0.4;               ///< Brazilian: friction of the plates
+    int snapshots = 8;                   ///< fields kept between the first crack and the end, besides start, peak and end
+    std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
+};
+
+inline const char* name(TestKind kind) {
+    switch (kind) {
+        case TestKind::uniaxial_compression: return "uniaxial-compression";
+        case TestKind::direct_tension: return "direct-tension";
+        case TestKind::biaxial: return "biaxial";
+        case TestKind::brazilian: return "brazilian";
+    }
+    return "?";
+}
+inline const char* name(NumericsKind kind) {
+    switch (kind) {
+        case NumericsKind::adaptive: return "adaptive";
+        case NumericsKind::paper: return "paper";
+        case NumericsKind::dynamic: return "dynamic";
+    }
+    return "?";
+}
+inline const char* name(ContactLaw law) {
+    switch (law) {
+        case ContactLaw::bilinear: return "bilinear";
+        case ContactLaw::bilinear_literal: return "bilinear-literal";
+        case ContactLaw::linear: return "linear";
+        case ContactLaw::brittle: return "brittle";
+    }
+    return "?";
+}
+inline const char* name(ContactKind kind) { return kind == ContactKind::lobatto3 ? "lobatto3" : "point"; }
+inline const char* name(PlaneState plane) { return plane == PlaneState::stress ? "stress" : "strain"; }
+inline const char* name(GrainKind) { return "flexible"; }
+
+}  // namespace feldspar

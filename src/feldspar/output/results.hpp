@@ -1,0 +1,74 @@
+// Everything that a run leaves on disk. Every file is written aside and renamed when it is whole, so that a full disk or a
+// crash never leaves half a file, and files that were finished stay.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "feldspar/lab/properties.hpp"
+#include "feldspar/lab/result.hpp"
+#include "feldspar/study/job.hpp"
+
+namespace feldspar {
+
+/// Where the results came from; the same block is in every file.
+struct Provenance {
+    std::string version;
+    std::string commit;
+    std::string machine;      ///< processor and operating system
+    std::string compiler;
+    std::string started;      ///< ISO 8601, UTC
+    std::string command_line;
+    int threads = 1;
+};
+
+Provenance collect_provenance(std::string command_line, int threads);
+
+/// A run's directory.
+class RunDirectory {
+public:
+    /// With `wanted`: that directory, which must not exist yet (@throws InputError otherwise, or if it cannot be made).
+    /// Without: `results/<job name>-<n>` in the current directory, with the first free number n = 1, 2, ...
+    static RunDirectory create(const std::optional<std::filesystem::path>& wanted, const std::string& job_name);
+
+    /// Only checks what create() would do; makes nothing. @throws InputError as create().
+    static void check(const std::optional<std::filesystem::path>& wanted, const std::string& job_name);
+
+    const std::filesystem::path& path() const { return path_; }
+
+    /// Writes `name` through `fill(temporary path)`, then renames it into place. @throws OutputError; on failure the
+    /// temporary file is gone and an earlier version of `name` is untouched.
+    void write(const std::string& name, const std::function<void(const std::filesystem::path&)>& fill) const;
+
+    /// The same for text that is already in memory.
+    void write_text(const std::string& name, const std::string& text) const;
+
+private:
+    explicit RunDirectory(std::filesystem::path path) : path_(std::move(path)) {}
+    std::filesystem::path path_;
+};
+
+/// "uniaxial-compression-s3", "biaxial-s1-p4": the stem of a test's files (seed; sigma_3 in MPa for biaxial tests).
+std::string test_stem(const TestResult& result);
+
+/// history-<stem>.csv: units and sign convention in the header.
+void write_history_csv(const RunDirectory& directory, const TestResult& result, const Provenance& provenance);
+
+/// <stem>.h5: history, cracks, mesh and fields at the snapshots, with provenance.
+void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance);
+
+/// <stem>.pvd with <stem>-vtu/*.vtu: triangles with stress and damage, cracks as lines with mode, time and opening.
+void write_vtu(const RunDirectory& directory, const TestResult& result);
+
+/// summary.json: rewritten after each test, so that an interrupted run leaves what it had.
+void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                   const PropertySummary& properties, const Provenance& provenance, bool complete);
+
+/// report.html: self-contained, opens from disk with no network.
+void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                  const PropertySummary& properties, const Provenance& provenance, bool complete);
+
+}  // namespace feldspar

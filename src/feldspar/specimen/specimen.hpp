@@ -1,0 +1,149 @@
+// What a specimen is: the products of outline -> packing -> tessellation -> grain mesh, as plain data.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "feldspar/base/vec2.hpp"
+
+namespace feldspar {
+
+enum class Shape { rectangle, disc, polygon };
+
+/// The outline as the user describes it. A rectangle spans [0, width] x [0, height]; a disc is centred at (0, 0).
+struct OutlineSpec {
+    Shape shape = Shape::rectangle;
+    double width_m = 0.0;                  ///< rectangle
+    double height_m = 0.0;                 ///< rectangle
+    double diameter_m = 0.0;               ///< disc
+    std::vector<Vec2> vertices_m;          ///< polygon: simple, either orientation
+    std::vector<std::string> edge_labels;  ///< polygon: label of the edge from vertex i to i + 1; empty = "edge-0", "edge-1", ...
+};
+
+enum class GrainSizeKind { uniform, log_normal, sieve };
+
+/// One row of a sieve curve: the mass (in the plane: area) fraction of grains finer than `diameter_m`.
+struct SievePoint {
+    double diameter_m = 0.0;
+    double passing = 0.0;  ///< 0 ... 1, increasing
+};
+
+/// Distribution of grain diameters.
+struct GrainSizeSpec {
+    GrainSizeKind kind = GrainSizeKind::uniform;
+    double minimum_m = 0.0;               ///< uniform: lower bound; log-normal: truncation
+    double maximum_m = 0.0;               ///< uniform: upper bound; log-normal: truncation
+    double median_m = 0.0;                ///< log-normal
+    double log_standard_deviation = 0.0;  ///< log-normal: standard deviation of ln(diameter)
+    std::vector<SievePoint> sieve;        ///< sieve: at least two points, from passing 0 to passing 1
+};
+
+/// Everything that determines a specimen besides the seed.
+struct SpecimenSpec {
+    OutlineSpec outline;
+    double thickness_m = 0.08;
+    GrainSizeSpec grain_sizes;
+    double porosity = 0.10;                       ///< sets the number of grains only; the cells fill the plane
+    std::optional<double> merge_length_m;         ///< shorter cell edges are merged; absent = mean diameter / 12; 0 = never
+    int triangles_per_grain = 0;                  ///< 0 = the fixed topology; otherwise a finer mesh of about so many
+    std::filesystem::path packing_file;           ///< if not empty: load this packing instead of making one
+};
+
+/// The outline made ready: a counter-clockwise polygon with a label on each edge. A disc keeps its circle: cells on it get
+/// one chord each, all of them labelled "circle".
+struct Outline {
+    bool is_disc = false;
+    Vec2 centre;             ///< disc only
+    double radius_m = 0.0;   ///< disc only
+    std::vector<Vec2> vertices;            ///< polygon only, counter-clockwise
+    std::vector<std::string> edge_labels;  ///< polygon: one an edge; rectangle: "bottom", "right", "top", "left"; disc: {"circle"}
+    double area_m2 = 0.0;
+};
+
+/// The relaxed discs.
+struct Packing {
+    std::vector<Vec2> centres;        ///< m
+    std::vector<double> radii_m;
+    double overlap_mean = 0.0;        ///< mean overlap of touching pairs / mean diameter, after relaxation
+    double overlap_max = 0.0;
+    double residual = 0.0;            ///< unbalanced force of the relaxation / mean contact force at the stop
+    int relaxation_steps = 0;
+};
+
+/// One Laguerre cell: `vertices[k]` to `vertices[k + 1]` is its edge k, counter-clockwise.
+struct Cell {
+    std::vector<int> vertices;       ///< into Tessellation::vertices
+    std::vector<int> neighbours;     ///< an edge: the cell on the other side, or -1 on the outline
+    std::vector<int> outline_edges;  ///< an edge: the outline's edge (label index), or -1 inside
+};
+
+/// The cells on one shared vertex graph: two neighbours name the same two vertices, so no gap and no overlap is possible.
+struct Tessellation {
+    std::vector<Vec2> vertices;  ///< m
+    std::vector<Cell> cells;     ///< one a grain, in the order of the packing
+    int merged_edges = 0;        ///< short edges that were merged
+};
+
+/// Nodes and triangles inside the cells. Nodes belong to one grain each and are contiguous by grain: first the cell's
+/// vertices in the cell's order, then the centroid, then the inner ring.
+struct GrainMesh {
+    std::vector<Vec2> nodes;                      ///< m
+    std::vector<int> node_begin;                  ///< grains + 1 offsets into nodes
+    std::vector<std::array<int, 3>> triangles;    ///< global node numbers, counter-clockwise, contiguous by grain
+    std::vector<int> triangle_begin;              ///< grains + 1 offsets into triangles
+    std::vector<int> vertex_count;                ///< a grain: number of polygon vertices, the same as its number of edges
+    std::vector<int> centre_node;                 ///< a grain: the global number of the node at the centroid
+    std::vector<int> edge_begin;                  ///< grains + 1 offsets into edge_triangle
+    std::vector<int> edge_triangle;               ///< the triangle that owns edge k of grain g: [edge_begin[g] + k]
+};
+
+/// What a user should know of the specimen before trusting it.
+struct SpecimenQuality {
+    int grains = 0;
+    int contacts = 0;             ///< interior cell edges
+    int nodes = 0;
+    int triangles = 0;
+    int merged_edges = 0;
+    double vertices_per_grain = 0.0;
+    double overlap_mean = 0.0;    ///< / mean diameter
+    double overlap_max = 0.0;
+    double relaxation_residual = 0.0;
+    double smallest_edge_m = 0.0;
+    double smallest_triangle_m2 = 0.0;
+    double smallest_triangle_height_m = 0.0;
+    double mean_diameter_m = 0.0;
+    double width_over_largest_grain = 0.0;
+    double area_error = 0.0;      ///< |sum of the cells - outline| / outline
+    std::vector<std::string> warnings;
+};
+
+/// A specimen, ready to be bonded and loaded. Never changed once it is built.
+struct Specimen {
+    SpecimenSpec spec;
+    std::uint64_t seed = 0;
+    Outline outline;
+    Packing packing;
+    Tessellation cells;
+    GrainMesh mesh;
+    SpecimenQuality quality;
+};
+
+/// Packs, tessellates and meshes. Deterministic: the same spec and seed give the same bits.
+/// @throws InputError     for impossible specs (grains larger than the specimen, a self-crossing outline, ...)
+/// @throws NumericalError when the relaxation cannot reach its criterion
+Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed);
+
+/// Number of grains that the porosity asks for: round((1 - porosity) A / (pi dmean^2 / 4)).
+int grain_count(const SpecimenSpec& spec);
+
+/// Saves the packing (outline, seed, discs) as a text file with 17 digits, so that loading gives the same bits.
+void save_packing(const Specimen& specimen, const std::filesystem::path& file);
+
+/// Loads a packing saved by save_packing. @throws InputError if the file is missing, damaged or does not fit the outline.
+Packing load_packing(const std::filesystem::path& file, const Outline& outline);
+
+}  // namespace feldspar

@@ -1,0 +1,41 @@
+// A job file, read and checked: every key known, every unit converted once, every impossible value refused.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "feldspar/model/spec.hpp"
+#include "feldspar/specimen/specimen.hpp"
+
+namespace feldspar {
+
+/// A whole job, in SI.
+struct Job {
+    std::filesystem::path file;            ///< as given
+    std::string name;                      ///< from the key `name`, else the file's stem
+    std::string text;                      ///< the file as it was read, for provenance
+    SpecimenSpec specimen;                 ///< for compression and tension
+    SpecimenSpec brazilian_specimen;       ///< the disc of the Brazilian test: same grains, its own outline
+    ModelSpec model;
+    GrainMaterial grain;
+    ContactMaterial contact;
+    NumericsSpec numerics;
+    std::vector<TestSpec> tests;
+    std::vector<std::uint64_t> seeds;
+    int threads = 0;                       ///< 0 = as many as the machine has cores
+    std::map<std::string, double> laboratory;  ///< SI (radians for angles), by the names of `summary.json`: E, nu, UCS, DTS, BTS, cohesion, friction_angle, hoek_brown_mi
+};
+
+/// Reads and checks a job file. @throws InputError naming file, line, column, key, value and what is allowed.
+Job read_job(const std::filesystem::path& file);
+
+/// The same from text (tests and the `new` command); `name` stands in for the file in messages.
+Job parse_job(const std::string& text, const std::string& name);
+
+/// The job with every default written out, as TOML: provenance that can be run again.
+std::string resolved_toml(const Job& job);
+
+}  // namespace feldspar
