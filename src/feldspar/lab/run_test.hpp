@@ -1,0 +1,60 @@
+// One laboratory test on one specimen, from bonding to the last step.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "feldspar/lab/result.hpp"
+
+namespace feldspar {
+
+/// What a running test tells about itself, at most a few times a second.
+struct TestProgress {
+    std::string stage;              ///< "elastic start", "consolidation", "loading"
+    long long step = 0;
+    double axial_strain = 0.0;
+    double axial_stress_Pa = 0.0;   ///< compression positive
+    double peak_stress_Pa = 0.0;    ///< magnitude so far
+    int cracks = 0;
+    double steps_per_second = 0.0;
+    double seconds_left = 0.0;      ///< an estimate; < 0 when there is none
+};
+
+/// What the caller decides about the running itself; none of it changes a result.
+struct RunControl {
+    int threads = 1;
+    std::function<void(const TestProgress&)> progress;   ///< may be empty
+    const std::atomic<bool>* stop = nullptr;             ///< becomes true when the user interrupts: the test ends at the next record
+};
+
+/// Everything that defines a test.
+struct TestSetup {
+    std::shared_ptr<const Specimen> specimen;
+    ModelSpec model;
+    GrainMaterial grain;
+    ContactMaterial contact;
+    NumericsSpec numerics;
+    TestSpec test;
+};
+
+/// Runs the test; the result has its properties and evidence filled in. With NumericsSpec::confirm the test is run again at a
+/// third of the target. @throws InputError for an unstable setting, NumericalError when a force is not a number.
+TestResult run_test(const TestSetup& setup, const RunControl& control);
+
+/// What `feldspar check` prints: built, judged and timed for a moment, but not run.
+struct TestPreview {
+    int grains = 0, contacts = 0, contact_points = 0, nodes = 0, triangles = 0;
+    double memory_bytes = 0.0;       ///< of the assembly while it runs
+    double omega2 = 0.0;             ///< largest omega^2 dt^2 of the initial state
+    double omega2_limit = 0.0;       ///< 4, or 4 / (1 + alpha) with local damping
+    double stable_time_step_s = 0.0; ///< largest stable time step with real masses
+    double expected_steps = 0.0;
+    double expected_seconds = 0.0;
+};
+
+/// @throws InputError for an unstable setting.
+TestPreview preview_test(const TestSetup& setup, const RunControl& control);
+
+}  // namespace feldspar
