@@ -1,0 +1,111 @@
+#include "feldspar/lab/loading_curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace feldspar {
+
+namespace {
+
+constexpr double drop_fraction = 0.95;       // (P2): a fall to this fraction of the largest stress so far ends a peak
+constexpr double first_peak_floor = 0.10;    // drops below this fraction of the largest stress are settling of the plates
+
+bool is_loading(const HistoryRow& row) { return row.phase != Phase::consolidation; }
+
+bool is_finite(const HistoryRow& row) { return std::isfinite(row.axial_stress_Pa) && std::isfinite(row.axial_strain); }
+
+CurvePoint interpolate(const CurvePoint& a, const CurvePoint& b, double stress_Pa) {
+    const double rise = b.stress_Pa - a.stress_Pa;
+    const double w = rise > 0.0 ? (stress_Pa - a.stress_Pa) / rise : 1.0;
+    return {stress_Pa, a.strain + w * (b.strain - a.strain), a.strain_gauge + w * (b.strain_gauge - a.strain_gauge),
+            a.lateral_gauge + w * (b.lateral_gauge - a.lateral_gauge), b.row};
+}
+
+/// Index of the first point at or above `stress_Pa`, 0 if there is none behind the origin.
+std::size_t first_at_or_above(const LoadingCurve& curve, double stress_Pa) {
+    for (std::size_t i = 1; i < curve.points.size(); ++i) {
+        if (curve.points[i].stress_Pa >= stress_Pa) return i;
+    }
+    return 0;
+}
+
+}  // namespace
+
+double loading_sign(TestKind kind) { return kind == TestKind::direct_tension ? -1.0 : 1.0; }
+
+std::optional<Peak> find_peak(const TestResult& result) {
+    const double sign = loading_sign(result.test.kind);
+    const auto& history = result.history;
+    double overall = 0.0;
+    for (const HistoryRow& row : history) {
+        if (is_loading(row) && is_finite(row)) overall = std::max(overall, sign * row.axial_stress_Pa);
+    }
+    if (!(overall > 0.0)) return std::nullopt;
+
+    Peak peak;
+    const bool first_only = result.test.kind == TestKind::brazilian;
+    for (std::size_t i = 0; i < history.size(); ++i) {
+        if (!is_loading(history[i]) || !is_finite(history[i])) continue;
+        const double stress = sign * history[i].axial_stress_Pa;
+        if (stress > peak.stress_Pa) {
+            peak = {i, stress, false};
+        } else if (stress <= drop_fraction * peak.stress_Pa) {
+            peak.reached = true;
+            if (first_only && peak.stress_Pa >= first_peak_floor * overall) return peak;
+        }
+    }
+    return peak;
+}
+
+LoadingCurve loading_curve(const TestResult& result, const Peak& peak) {
+    const double sign = loading_sign(result.test.kind);
+    const auto& history = result.history;
+    LoadingCurve curve;
+    const bool biaxial = result.test.kind == TestKind::biaxial;
+    if (biaxial) curve.stress_offset_Pa = result.test.sigma3_Pa;
+
+    HistoryRow origin;   // unloaded
+    if (biaxial) {
+        std::size_t first = history.size();
+        for (std::size_t i = 0; i < history.size(); ++i) {
+            if (!is_finite(history[i])) continue;
+            if (!is_loading(history[i])) first = i;           // the last row of the consolidation ...
+            else if (first == history.size()) { first = i; break; }   // ... or, without one, the first row there is
+            else break;
+        }
+        if (first == history.size()) return {};
+        origin = history[first];
+    }
+    const auto point = [&](const HistoryRow& row, std::size_t i) {
+        return CurvePoint{sign * row.axial_stress_Pa - curve.stress_offset_Pa, sign * (row.axial_strain - origin.axial_strain),
+                          sign * (row.axial_strain_gauge - origin.axial_strain_gauge),
+                          sign * (row.lateral_strain_gauge - origin.lateral_strain_gauge), i};
+    };
+    curve.points.push_back(point(origin, 0));
+    for (std::size_t i = 0; i <= peak.row && i < history.size(); ++i) {
+        if (is_loading(history[i]) && is_finite(history[i])) curve.points.push_back(point(history[i], i));
+    }
+    if (curve.points.size() < 2 || !(curve.peak_Pa() > curve.points.front().stress_Pa)) return {};
+    return curve;
+}
+
+std::optional<CurvePoint> at_stress(const LoadingCurve& curve, double stress_Pa) {
+    const std::size_t i = first_at_or_above(curve, stress_Pa);
+    if (i == 0 || curve.points.front().stress_Pa > stress_Pa) return std::nullopt;
+    return interpolate(curve.points[i - 1], curve.points[i], stress_Pa);
+}
+
+std::vector<CurvePoint> window(const LoadingCurve& curve, double low_Pa, double high_Pa) {
+    const auto low = at_stress(curve, low_Pa);
+    const auto high = at_stress(curve, high_Pa);
+    if (!low || !high) return {};
+    std::vector<CurvePoint> points{*low};
+    const std::size_t end = first_at_or_above(curve, high_Pa);
+    for (std::size_t i = first_at_or_above(curve, low_Pa); i < end; ++i) {
+        points.push_back(curve.points[i]);
+    }
+    points.push_back(*high);
+    return points;
+}
+
+}  // namespace feldspar

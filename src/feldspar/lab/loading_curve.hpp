@@ -1,0 +1,52 @@
+// A history made ready for reading properties: one sign, one origin, the rows up to the peak (docs/theory/properties.md).
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "feldspar/lab/result.hpp"
+
+namespace feldspar {
+
+/// Where a history has its strength (P1), (P2).
+struct Peak {
+    std::size_t row = 0;       ///< into TestResult::history
+    double stress_Pa = 0.0;    ///< magnitude, total axial stress
+    bool reached = false;      ///< the stress fell to 0.95 of it or below afterwards
+};
+
+/// +1 for tests that press, -1 for direct tension: histories are compression positive, strengths are magnitudes.
+double loading_sign(TestKind kind);
+
+/// The strength of a history; the first peak for a Brazilian test. Empty without a single loaded row.
+std::optional<Peak> find_peak(const TestResult& result);
+
+/// One moment of loading, measured from the unloaded (biaxial: consolidated) state; all values positive in the sense of
+/// the loading, so that tension and compression read alike.
+struct CurvePoint {
+    double stress_Pa = 0.0;       ///< axial stress; biaxial: the deviator sigma_1 - sigma_3
+    double strain = 0.0;          ///< axial, from the platens
+    double strain_gauge = 0.0;    ///< axial, from the gauge
+    double lateral_gauge = 0.0;   ///< lateral, from the gauge: < 0 while a compressed specimen widens
+    std::size_t row = 0;          ///< into TestResult::history
+};
+
+/// The pre-peak curve.
+struct LoadingCurve {
+    std::vector<CurvePoint> points;   ///< from the origin to the peak, both included; empty when there is nothing to read
+    double stress_offset_Pa = 0.0;    ///< what to add for the total axial stress (biaxial: sigma_3)
+
+    double peak_Pa() const { return points.back().stress_Pa; }
+};
+
+/// @param peak  from find_peak() of the same result
+LoadingCurve loading_curve(const TestResult& result, const Peak& peak);
+
+/// The point where the curve first reaches `stress_Pa`, interpolated; empty if it never does.
+std::optional<CurvePoint> at_stress(const LoadingCurve& curve, double stress_Pa);
+
+/// The part of the curve between two stresses: the rows inside and both ends interpolated. Empty if it does not reach them.
+std::vector<CurvePoint> window(const LoadingCurve& curve, double low_Pa, double high_Pa);
+
+}  // namespace feldspar

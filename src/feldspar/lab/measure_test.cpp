@@ -1,0 +1,77 @@
+// measure(): the laboratory numbers of one test, as defined in docs/theory/properties.md (P1)-(P10).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "feldspar/lab/damage_thresholds.hpp"
+#include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/lab/properties.hpp"
+#include "feldspar/lab/regression.hpp"
+
+namespace feldspar {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TestProperties nothing() {
+    TestProperties p{};
+    p.peak_stress_Pa = p.first_crack_Pa = nan;
+    p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = p.E_gauge_Pa = p.nu = nan;
+    p.sigma_ci_crack_count_Pa = p.sigma_ci_crack_volume_Pa = p.sigma_ci_lateral_strain_Pa = p.sigma_cd_Pa = nan;
+    return p;
+}
+
+double first_crack(const TestResult& result) {
+    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(),
+                                        [](const Crack& a, const Crack& b) { return a.step < b.step; });
+    return first == result.cracks.end() ? nan : loading_sign(result.test.kind) * first->axial_stress_Pa;
+}
+
+/// Slope of y over x between two fractions of the peak; x and y are members of a curve point.
+double slope_between(const LoadingCurve& curve, double from, double to, double CurvePoint::* x, double CurvePoint::* y) {
+    std::vector<double> xs, ys;
+    for (const CurvePoint& p : window(curve, from * curve.peak_Pa(), to * curve.peak_Pa())) {
+        xs.push_back(p.*x);
+        ys.push_back(p.*y);
+    }
+    return regression_line(xs, ys).slope;
+}
+
+/// (P3): from the origin to half the peak.
+double secant(const LoadingCurve& curve) {
+    const auto half = at_stress(curve, 0.5 * curve.peak_Pa());
+    if (!half || !(half->strain > 0.0)) return nan;
+    return (half->stress_Pa - curve.points.front().stress_Pa) / half->strain;
+}
+
+}  // namespace
+
+TestProperties measure(const TestResult& result) {
+    TestProperties p = nothing();
+    p.first_crack_Pa = first_crack(result);
+    const auto peak = find_peak(result);
+    if (!peak) return p;
+    p.peak_stress_Pa = peak->stress_Pa;
+    p.peak_reached = peak->reached;
+    if (result.test.kind == TestKind::brazilian) return p;
+
+    const LoadingCurve curve = loading_curve(result, *peak);
+    if (curve.points.empty()) return p;
+    p.E_secant_Pa = secant(curve);
+    p.E_tangent_Pa = slope_between(curve, 0.4, 0.6, &CurvePoint::strain, &CurvePoint::stress_Pa);
+    p.E_average_Pa = slope_between(curve, 0.3, 0.7, &CurvePoint::strain, &CurvePoint::stress_Pa);
+    p.E_gauge_Pa = slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::stress_Pa);
+    p.nu = -slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::lateral_gauge);
+    if (!peak->reached) return p;   // the thresholds mean nothing before the peak is known
+
+    p.sigma_ci_crack_count_Pa = crack_count_threshold(result, *peak);
+    if (result.test.kind == TestKind::direct_tension) return p;   // a pulled specimen has no volumetric reversal
+    const DamageThresholds thresholds = damage_thresholds(curve, p.first_crack_Pa);
+    p.sigma_ci_crack_volume_Pa = thresholds.crack_volume_Pa;
+    p.sigma_ci_lateral_strain_Pa = thresholds.lateral_strain_Pa;
+    p.sigma_cd_Pa = thresholds.reversal_Pa;
+    return p;
+}
+
+}  // namespace feldspar

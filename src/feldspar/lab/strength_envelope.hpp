@@ -1,0 +1,16 @@
+// Mohr-Coulomb and Hoek-Brown through the strengths of one packing (docs/theory/properties.md).
+#pragma once
+
+#include <vector>
+
+#include "feldspar/lab/properties.hpp"
+
+namespace feldspar {
+
+/// Fits both envelopes (P12), (P13); a value that the points do not determine is not-a-number. The caller fills in the
+/// seed; the measured UCS is the strength at sigma_3 = 0, if there is one.
+/// @param sigma3_Pa  confining stress of each test, compression positive
+/// @param sigma1_Pa  total axial strength of each test, in the same order
+EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa);
+
+}  // namespace feldspar

@@ -1,0 +1,126 @@
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/lab/regression.hpp"
+#include "feldspar/lab/strength_envelope.hpp"
+#include "synthetic_records.hpp"
+
+using namespace feldspar;
+using namespace feldspar::synthetic;
+
+namespace {
+
+TestResult tested(TestKind kind, std::uint64_t seed, double strength_Pa, double sigma3_Pa = 0.0) {
+    TestResult r = linear(kind, strength_Pa, 100, kind == TestKind::direct_tension ? -1.0 : 1.0);
+    r.seed = seed;
+    r.test.sigma3_Pa = sigma3_Pa;
+    r.properties = measure(r);
+    return r;
+}
+
+}  // namespace
+
+TEST(Regression, ExactLineAndDegenerateData) {
+    const double x[] = {1.0, 2.0, 4.0}, y[] = {5.0, 7.0, 11.0};
+    EXPECT_NEAR(regression_line(x, y).slope, 2.0, 1e-14);
+    EXPECT_NEAR(regression_line(x, y).intercept, 3.0, 1e-14);
+    const double same[] = {0.1, 0.1, 0.1};
+    EXPECT_TRUE(std::isnan(regression_line(same, y).slope));
+    EXPECT_TRUE(std::isnan(regression_line({x, 1}, {y, 1}).slope));
+    EXPECT_TRUE(std::isnan(regression_line({}, {}).slope));
+}
+
+TEST(StrengthEnvelope, MohrCoulombGivesBackCohesionAndFrictionAngle) {
+    const double phi = 53.0 * std::numbers::pi / 180.0, c = 21e6;
+    const double N = (1.0 + std::sin(phi)) / (1.0 - std::sin(phi)), ucs = 2.0 * c * std::sqrt(N);
+    const EnvelopeFit fit = fit_envelopes({0.0, 4e6, 10e6}, {ucs, ucs + N * 4e6, ucs + N * 10e6});
+    EXPECT_NEAR(fit.friction_angle_deg, 53.0, 1e-9);
+    EXPECT_NEAR(fit.cohesion_Pa, c, 1e-3);
+    EXPECT_NEAR(fit.UCS_fitted_Pa, ucs, 1e-3);
+    EXPECT_DOUBLE_EQ(fit.UCS_measured_Pa, ucs);
+}
+
+TEST(StrengthEnvelope, HoekBrownGivesBackMiAndSigmaCi) {
+    const double mi = 28.0, sci = 120e6;
+    std::vector<double> s3{0.0, 4e6, 10e6, 20e6}, s1;
+    for (const double s : s3) s1.push_back(s + sci * std::sqrt(mi * s / sci + 1.0));
+    const EnvelopeFit fit = fit_envelopes(s3, s1);
+    EXPECT_NEAR(fit.hoek_brown_mi, mi, 1e-9);
+    EXPECT_NEAR(fit.hoek_brown_UCS_Pa, sci, 1e-2);
+}
+
+TEST(StrengthEnvelope, NotANumberWhereThePointsDecideNothing) {
+    EXPECT_TRUE(std::isnan(fit_envelopes({4e6}, {150e6}).cohesion_Pa));
+    EXPECT_TRUE(std::isnan(fit_envelopes({4e6, 4e6}, {150e6, 160e6}).friction_angle_deg)) << "one sigma_3 only";
+    const EnvelopeFit falling = fit_envelopes({0.0, 10e6}, {120e6, 100e6});
+    EXPECT_TRUE(std::isnan(falling.cohesion_Pa) && std::isnan(falling.friction_angle_deg));
+    EXPECT_DOUBLE_EQ(falling.UCS_fitted_Pa, 120e6);
+    EXPECT_TRUE(std::isnan(fit_envelopes({4e6, 10e6}, {150e6, 400e6}).hoek_brown_mi)) << "sigma_ci^2 would be negative";
+    EXPECT_TRUE(std::isnan(fit_envelopes({4e6, 10e6}, {150e6, 190e6}).UCS_measured_Pa));
+}
+
+TEST(Summarise, MedianAndRangeOverPackings) {
+    std::vector<TestResult> results;
+    const double ucs[] = {120e6, 110e6, 130e6, 100e6}, dts[] = {8e6, 10e6, 8e6, 8e6}, bts[] = {6e6, 11e6, 9e6};
+    for (int i = 0; i < 4; ++i) results.push_back(tested(TestKind::uniaxial_compression, 1 + i, ucs[i]));
+    for (int i = 0; i < 4; ++i) results.push_back(tested(TestKind::direct_tension, 1 + i, dts[i]));
+    for (int i = 0; i < 3; ++i) results.push_back(tested(TestKind::brazilian, 1 + i, bts[i]));
+    const PropertySummary s = summarise(results);
+    EXPECT_NEAR(s.values.at("UCS_Pa").median, 115e6, 1.0) << "even count: the mean of the middle two";
+    EXPECT_NEAR(s.values.at("UCS_Pa").minimum, 100e6, 1.0);
+    EXPECT_NEAR(s.values.at("UCS_Pa").maximum, 130e6, 1.0);
+    EXPECT_EQ(s.values.at("UCS_Pa").seeds, (std::vector<std::uint64_t>{1, 2, 3, 4}));
+    EXPECT_NEAR(s.values.at("BTS_Pa").median, 9e6, 1.0);
+    EXPECT_NEAR(s.values.at("E_Pa").median / E, 1.0, 1e-12);
+    EXPECT_NEAR(s.values.at("nu").median, nu, 1e-12);
+    EXPECT_NEAR(s.values.at("UCS_over_DTS").median, 13.75, 1e-9) << "paired on each packing: 15, 11, 16.25, 12.5";
+    EXPECT_NEAR(s.values.at("BTS_over_DTS").median, 1.1, 1e-9) << "0.75, 1.1, 1.125";
+    EXPECT_EQ(s.values.at("UCS_over_BTS").seeds, (std::vector<std::uint64_t>{1, 2, 3}));
+    EXPECT_EQ(s.values.count("cohesion_Pa"), 0u);
+    EXPECT_EQ(s.values.count("sigma_cd_Pa"), 0u) << "no value, no entry";
+    EXPECT_TRUE(s.envelope_method.empty());
+}
+
+TEST(Summarise, EnvelopesAreFittedOnEachPacking) {
+    std::vector<TestResult> results;
+    for (std::uint64_t seed : {1, 2, 3}) {
+        const double N = 8.0 + static_cast<double>(seed), base = 110e6 + 5e6 * static_cast<double>(seed);
+        results.push_back(tested(TestKind::uniaxial_compression, seed, base));
+        results.push_back(tested(TestKind::biaxial, seed, base + N * 4e6, 4e6));
+        results.push_back(tested(TestKind::biaxial, seed, base + N * 10e6, 10e6));
+    }
+    results.push_back(tested(TestKind::uniaxial_compression, 4, 90e6));   // no biaxial test: not in the fit
+    const PropertySummary s = summarise(results);
+    ASSERT_EQ(s.fits.size(), 3u);
+    EXPECT_EQ(s.fits[1].seed, 2u);
+    EXPECT_NEAR(s.fits[1].UCS_fitted_Pa, 120e6, 1.0);
+    EXPECT_NEAR(s.values.at("UCS_fitted_Pa").median, 120e6, 1.0);
+    EXPECT_NEAR(s.values.at("friction_angle_deg").median, std::asin(9.0 / 11.0) * 180.0 / std::numbers::pi, 1e-6);
+    EXPECT_NEAR(s.values.at("cohesion_Pa").median, 120e6 / (2.0 * std::sqrt(10.0)), 1.0);
+    EXPECT_NEAR(s.values.at("sigma1_at_sigma3_4MPa_Pa").median, 160e6, 1.0);
+    EXPECT_NEAR(s.values.at("sigma1_at_sigma3_10MPa_Pa").maximum, 235e6, 1.0);
+    EXPECT_EQ(s.values.count("hoek_brown_mi"), 1u);
+    EXPECT_NE(s.envelope_method.find("uniaxial and biaxial tests (sigma_3 = 4, 10 MPa)"), std::string::npos) << s.envelope_method;
+    EXPECT_NE(s.envelope_method.find("from 0 to 10 MPa"), std::string::npos);
+    EXPECT_NE(s.envelope_method.find("3 packings (seeds 1, 2, 3)"), std::string::npos);
+}
+
+TEST(Summarise, StrengthsOfUnfinishedTestsAreLeftOut) {
+    std::vector<TestResult> results{tested(TestKind::uniaxial_compression, 1, 120e6), tested(TestKind::uniaxial_compression, 2, 120e6)};
+    results[0].history.resize(90);                    // stopped on purpose: the modulus stands, the strength does not
+    results[0].properties = measure(results[0]);
+    results[1].history.resize(3);                     // interrupted early
+    results[1].properties = measure(results[1]);
+    results[1].interrupted = true;
+    const PropertySummary s = summarise(results);
+    EXPECT_EQ(s.values.count("UCS_Pa"), 0u);
+    ASSERT_EQ(s.values.count("E_Pa"), 1u);
+    EXPECT_EQ(s.values.at("E_Pa").seeds, (std::vector<std::uint64_t>{1}));
+}
+
+TEST(Summarise, NothingGivesNothing) {
+    EXPECT_TRUE(summarise({}).values.empty());
+    EXPECT_TRUE(summarise({}).fits.empty());
+}
