@@ -100,6 +100,20 @@ TEST(Measure, BiaxialReadsTheDeviatorSinceTheStartOfShearing) {
     EXPECT_NEAR(measure(r).E_secant_Pa / E, 1.0, 1e-12);
 }
 
+// Stiffness E up to q = 82 MPa, then E / 2: half of the deviator at the peak (85 MPa) lies above the kink, half of the total
+// stress (90 MPa, q = 80 MPa) below it.
+TEST(Measure, BiaxialHalfOfThePeakIsHalfOfTheDeviator) {
+    TestResult r = record(TestKind::biaxial);
+    r.test.sigma3_Pa = 10e6;
+    r.history.push_back(row(Phase::consolidation, 0, 3e-4, 10e6));
+    for (int i = 1; i <= 170; ++i) {
+        const double q = 1e6 * i;
+        r.history.push_back(row(Phase::loading, i, 3e-4 + (q <= 82e6 ? q : 2.0 * q - 82e6) / E, 10e6 + q));
+    }
+    r.history.push_back(row(Phase::loading, 171, 2e-2, 20e6));
+    EXPECT_NEAR(measure(r).E_secant_Pa / E, 85.0 / 88.0, 1e-12);
+}
+
 TEST(Measure, BrazilianStrengthIsTheFirstPeak) {
     TestResult r = record(TestKind::brazilian);
     long long step = 0;
