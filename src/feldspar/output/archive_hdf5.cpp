@@ -1,0 +1,276 @@
+// A test as an HDF5 archive: history, cracks, mesh, fields at the snapshots, provenance.
+//
+// The file is built in memory (the library's core driver) and handed to the run directory as bytes. Writing straight to disk
+// was rejected: after a failed flush HDF5 1.10 keeps the file open and complains again when the program ends.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <hdf5.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/results.hpp"
+#include "feldspar/output/user_units.hpp"
+
+namespace feldspar {
+
+namespace {
+
+/// The first description on HDF5's error stack: the cause.
+std::string hdf5_reason() {
+    std::string text = "HDF5 failed";
+    H5Ewalk2(
+        H5E_DEFAULT, H5E_WALK_UPWARD,
+        [](unsigned number, const H5E_error2_t* error, void* into) -> herr_t {
+            if (number == 0 && error->desc != nullptr) *static_cast<std::string*>(into) = error->desc;
+            return 0;
+        },
+        &text);
+    return text;
+}
+
+/// @throws OutputError if an HDF5 call failed (they all answer with a negative number).
+template <class Result>
+Result require(Result result) {
+    if (result < 0) throw OutputError(hdf5_reason());
+    return result;
+}
+
+/// An HDF5 identifier that closes itself.
+class Handle {
+public:
+    Handle(hid_t id, herr_t (*close)(hid_t)) : id_(require(id)), close_(close) {}
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    ~Handle() { close_(id_); }
+    operator hid_t() const { return id_; }   // NOLINT(google-explicit-constructor): it stands for the identifier
+
+private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
+
+/// Keeps HDF5 from printing while it lives.
+class Silence {
+public:
+    Silence() {
+        H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    }
+    Silence(const Silence&) = delete;
+    Silence& operator=(const Silence&) = delete;
+    ~Silence() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+
+private:
+    H5E_auto2_t print_ = nullptr;
+    void* data_ = nullptr;
+};
+
+template <class Number>
+hid_t type_of();
+template <>
+hid_t type_of<double>() { return H5T_NATIVE_DOUBLE; }
+template <>
+hid_t type_of<float>() { return H5T_NATIVE_FLOAT; }
+template <>
+hid_t type_of<int>() { return H5T_NATIVE_INT; }
+template <>
+hid_t type_of<std::int64_t>() { return H5T_NATIVE_INT64; }
+
+Handle make_group(hid_t parent, const std::string& name) {
+    return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose};
+}
+
+void set_text(hid_t object, const char* key, const std::string& value) {
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    require(H5Tset_size(type, value.size() + 1));
+    require(H5Tset_cset(type, H5T_CSET_UTF8));
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Handle attribute(H5Acreate2(object, key, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    require(H5Awrite(attribute, type, value.c_str()));
+}
+
+template <class Number>
+void set_number(hid_t object, const char* key, Number value) {
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Handle attribute(H5Acreate2(object, key, type_of<Number>(), space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    require(H5Awrite(attribute, type_of<Number>(), &value));
+}
+
+/// Writes `values` as rows of `width` numbers, shuffled and compressed, with its unit and meaning as attributes.
+template <class Number>
+void put(hid_t parent, const std::string& name, const std::vector<Number>& values, hsize_t width, const char* unit, const char* meaning) {
+    const hsize_t rows = values.size() / width;
+    const hsize_t extent[2] = {rows, width};
+    const int rank = width == 1 ? 1 : 2;
+    const Handle space(H5Screate_simple(rank, extent, nullptr), H5Sclose);
+    const Handle settings(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    require(H5Pset_obj_track_times(settings, false));   // the same results give the same bytes
+    if (rows > 0) {
+        const hsize_t chunk[2] = {std::min<hsize_t>(rows, 65536), width};
+        require(H5Pset_chunk(settings, rank, chunk));
+        require(H5Pset_shuffle(settings));
+        require(H5Pset_deflate(settings, 5));
+    }
+    const Handle set(H5Dcreate2(parent, name.c_str(), type_of<Number>(), space, H5P_DEFAULT, settings, H5P_DEFAULT), H5Dclose);
+    if (rows > 0) require(H5Dwrite(set, type_of<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+    set_text(set, "unit", unit);
+    set_text(set, "meaning", meaning);
+}
+
+std::vector<double> flat(const std::vector<Vec2>& points) {
+    std::vector<double> numbers;
+    numbers.reserve(2 * points.size());
+    for (const Vec2 point : points) numbers.insert(numbers.end(), {point.x, point.y});
+    return numbers;
+}
+
+/// One number of each crack.
+template <class Number, class Pick>
+std::vector<Number> each(const std::vector<Crack>& cracks, Pick pick) {
+    std::vector<Number> numbers;
+    numbers.reserve(cracks.size());
+    for (const Crack& crack : cracks) numbers.push_back(static_cast<Number>(pick(crack)));
+    return numbers;
+}
+
+void put_provenance(hid_t root, const TestResult& result, const Job& job, const Provenance& provenance) {
+    set_text(root, "program", "feldspar");
+    set_text(root, "version", provenance.version);
+    set_text(root, "commit", provenance.commit);
+    set_text(root, "machine", provenance.machine);
+    set_text(root, "compiler", provenance.compiler);
+    set_text(root, "started", provenance.started);
+    set_text(root, "command_line", provenance.command_line);
+    set_number(root, "threads", provenance.threads);
+    set_text(root, "job_name", job.name);
+    set_text(root, "signs", sign_convention);
+    set_text(root, "kind", name(result.test.kind));
+    set_number(root, "seed", static_cast<std::int64_t>(result.seed));
+    set_number(root, "sigma3_MPa", result.test.sigma3_Pa * MPa);
+    set_text(root, "model", name(result.model.kind));
+    set_text(root, "contact", name(result.model.contact));
+    set_text(root, "law", name(result.contact.law));
+    set_text(root, "numerics", name(result.numerics.kind));
+    set_text(root, "plane", name(result.model.plane));
+    set_text(root, "stop_reason", result.stop_reason);
+    set_text(root, "quasi_static", std::string(1, result.evidence.grade));
+    set_text(root, "verdict", result.evidence.verdict);
+    // an attribute holds at most 64 kB: the job is a data set of characters
+    const std::string resolved = resolved_toml(job);
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+    require(H5Tset_size(type, resolved.size() + 1));
+    require(H5Tset_cset(type, H5T_CSET_UTF8));
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+    const Handle set(H5Dcreate2(root, "job", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, resolved.c_str()));
+    set_text(set, "meaning", "the job with every default written out, as TOML");
+}
+
+void put_history(hid_t root, const TestResult& result) {
+    const Handle group = make_group(root, "history");
+    for (const HistoryColumn& column : history_columns()) {
+        std::vector<double> values;
+        values.reserve(result.history.size());
+        for (const HistoryRow& row : result.history) values.push_back(column.value(row));
+        if (column.whole) {
+            put(group, column.name, std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit, column.meaning);
+        } else {
+            put(group, column.name, values, 1, column.unit, column.meaning);
+        }
+    }
+}
+
+void put_cracks(hid_t root, const std::vector<Crack>& cracks) {
+    const Handle group = make_group(root, "cracks");
+    const auto points = [&](auto pick) {
+        std::vector<Vec2> list;
+        list.reserve(cracks.size());
+        for (const Crack& crack : cracks) list.push_back(pick(crack));
+        return flat(list);
+    };
+    put(group, "step", each<std::int64_t>(cracks, [](const Crack& c) { return c.step; }), 1, "1", "loading step of the break");
+    put(group, "axial_strain", each<double>(cracks, [](const Crack& c) { return c.axial_strain; }), 1, "1", "from the platens, at the break");
+    put(group, "axial_stress", each<double>(cracks, [](const Crack& c) { return c.axial_stress_Pa; }), 1, "Pa", "at the break");
+    put(group, "mode", each<int>(cracks, [](const Crack& c) { return static_cast<int>(c.mode); }), 1, "1", "0 tensile, 1 shear");
+    put(group, "grain_a", each<int>(cracks, [](const Crack& c) { return c.grain_a; }), 1, "1", "grain on one side");
+    put(group, "grain_b", each<int>(cracks, [](const Crack& c) { return c.grain_b; }), 1, "1", "grain on the other side");
+    put(group, "contact", each<int>(cracks, [](const Crack& c) { return c.contact; }), 1, "1", "contact of the initial assembly");
+    put(group, "point", each<int>(cracks, [](const Crack& c) { return c.point; }), 1, "1", "contact point within the contact");
+    put(group, "place", points([](const Crack& c) { return c.place; }), 2, "m", "the contact point, undeformed");
+    put(group, "from", points([](const Crack& c) { return c.from; }), 2, "m", "start of the point's share of the edge, undeformed");
+    put(group, "to", points([](const Crack& c) { return c.to; }), 2, "m", "its end");
+    put(group, "area", each<double>(cracks, [](const Crack& c) { return c.area_m2; }), 1, "m2", "area of the contact point");
+    put(group, "energy", each<double>(cracks, [](const Crack& c) { return c.energy_J; }), 1, "J", "dissipated until the break");
+}
+
+void put_mesh(hid_t root, const GrainMesh& mesh) {
+    const Handle group = make_group(root, "mesh");
+    std::vector<int> triangles;
+    std::vector<int> grain(mesh.triangles.size(), 0);
+    for (const auto& triangle : mesh.triangles) triangles.insert(triangles.end(), triangle.begin(), triangle.end());
+    for (std::size_t g = 0; g + 1 < mesh.triangle_begin.size(); ++g) {
+        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) grain[static_cast<std::size_t>(t)] = static_cast<int>(g);
+    }
+    put(group, "nodes", flat(mesh.nodes), 2, "m", "undeformed position of each node");
+    put(group, "triangles", triangles, 3, "1", "three nodes each, counter-clockwise");
+    put(group, "grain", grain, 1, "1", "grain of each triangle");
+}
+
+void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
+    const Handle all = make_group(root, "snapshots");
+    for (std::size_t n = 0; n < snapshots.size(); ++n) {
+        const Snapshot& snapshot = snapshots[n];
+        const Handle group = make_group(all, fmt::format("{:03}-{}", n, snapshot.label));
+        set_text(group, "label", snapshot.label);
+        set_number(group, "step", static_cast<std::int64_t>(snapshot.step));
+        set_number(group, "axial_strain", snapshot.axial_strain);
+        set_number(group, "axial_stress_MPa", snapshot.axial_stress_Pa * MPa);
+        set_number(group, "cracks", snapshot.cracks);
+        put(group, "displacement", flat(snapshot.displacement_m), 2, "m", "of each node");
+        put(group, "stress_xx", snapshot.stress_xx_Pa, 1, "Pa", "Cauchy, each triangle, compression positive");
+        put(group, "stress_yy", snapshot.stress_yy_Pa, 1, "Pa", "Cauchy, each triangle, compression positive");
+        put(group, "stress_xy", snapshot.stress_xy_Pa, 1, "Pa", "Cauchy, each triangle, compression positive");
+        put(group, "damage", snapshot.damage, 1, "1", "largest damage on the grain edge of each triangle, 0 intact, 1 broken");
+        put(group, "crack_opening", snapshot.crack_opening_m, 1, "m", "of the first cracks of /cracks, in their order; positive is open");
+    }
+}
+
+std::string archive_bytes(const TestResult& result, const Job& job, const Provenance& provenance) {
+    const Silence silence;
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    require(H5Pset_fapl_core(access, 4 << 20, false));   // grows by 4 MiB; nothing reaches the disk
+    const Handle file(H5Fcreate("archive-in-memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+    {
+        const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);
+        put_provenance(root, result, job, provenance);
+        put_history(root, result);
+        put_cracks(root, result.cracks);
+        if (result.specimen) put_mesh(root, result.specimen->mesh);
+        put_snapshots(root, result.snapshots);
+    }
+    require(H5Fflush(file, H5F_SCOPE_LOCAL));
+    const ssize_t size = require(H5Fget_file_image(file, nullptr, 0));
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    require(H5Fget_file_image(file, bytes.data(), bytes.size()));
+    return bytes;
+}
+
+}  // namespace
+
+void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance) {
+    const std::string file = test_stem(result) + ".h5";
+    std::string bytes;
+    try {
+        bytes = archive_bytes(result, job, provenance);
+    } catch (const OutputError& problem) {
+        throw OutputError(fmt::format("cannot write '{}': {}", (directory.path() / file).string(), problem.what()));
+    }
+    directory.write_text(file, bytes);
+}
+
+}  // namespace feldspar

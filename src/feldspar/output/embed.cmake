@@ -1,0 +1,15 @@
+# Writes OUTPUT, a C++ source in which each of FILES (separated by |) is a constant named after the file: report.css is
+# asset_report_css.
+string(REPLACE "|" ";" files "${FILES}")
+set(source "// Written by embed.cmake at build time.\n#include \"feldspar/output/report_assets.hpp\"\n\nnamespace feldspar {\n\n")
+foreach(file IN LISTS files)
+    get_filename_component(name ${file} NAME)
+    string(MAKE_C_IDENTIFIER ${name} identifier)
+    file(READ ${file} text)
+    if(text MATCHES "\\)asset\"")
+        message(FATAL_ERROR "${file} holds the end mark of a raw string")
+    endif()
+    string(APPEND source "const char* const asset_${identifier} = R\"asset(${text})asset\";\n\n")
+endforeach()
+string(APPEND source "}  // namespace feldspar\n")
+file(WRITE ${OUTPUT} "${source}")

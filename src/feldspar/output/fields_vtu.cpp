@@ -1,0 +1,152 @@
+// Fields for ParaView: a .pvd that lists, for each snapshot, one grid of triangles (part 0) and one of crack lines (part 1).
+// Positions are undeformed; "Warp By Vector" with displacement_m shows the deformed body and the open cracks.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "feldspar/output/crack_geometry.hpp"
+#include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/results.hpp"
+#include "feldspar/output/user_units.hpp"
+#include "feldspar/output/vtu_grid.hpp"
+
+namespace feldspar {
+
+namespace {
+
+/// The largest and smallest principal stress of each triangle, compression positive: sigma_1 >= sigma_3.
+struct PrincipalStresses {
+    std::vector<float> sigma_1_MPa, sigma_3_MPa, mean_MPa;
+};
+
+PrincipalStresses principal_stresses(const Snapshot& snapshot) {
+    PrincipalStresses principal;
+    for (std::size_t t = 0; t < snapshot.stress_xx_Pa.size(); ++t) {
+        const double mean = 0.5 * (snapshot.stress_xx_Pa[t] + snapshot.stress_yy_Pa[t]);
+        const double radius = std::hypot(0.5 * (snapshot.stress_xx_Pa[t] - snapshot.stress_yy_Pa[t]), snapshot.stress_xy_Pa[t]);
+        principal.sigma_1_MPa.push_back(static_cast<float>((mean + radius) * MPa));
+        principal.sigma_3_MPa.push_back(static_cast<float>((mean - radius) * MPa));
+        principal.mean_MPa.push_back(static_cast<float>(mean * MPa));
+    }
+    return principal;
+}
+
+std::vector<float> floats_in_MPa(const std::vector<double>& values_Pa) {
+    std::vector<float> values;
+    values.reserve(values_Pa.size());
+    for (const double value : values_Pa) values.push_back(static_cast<float>(value * MPa));
+    return values;
+}
+
+std::string grains_vtu(const Specimen& specimen, const Snapshot& snapshot, const std::string& comment) {
+    const GrainMesh& mesh = specimen.mesh;
+    std::vector<double> points;
+    for (const Vec2 node : mesh.nodes) points.insert(points.end(), {node.x, node.y, 0.0});
+    std::vector<std::int32_t> corners;
+    for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+    std::vector<std::int32_t> grain(mesh.triangles.size());
+    for (std::size_t g = 0; g + 1 < mesh.triangle_begin.size(); ++g) {
+        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) grain[static_cast<std::size_t>(t)] = static_cast<int>(g);
+    }
+    std::vector<float> displacement;
+    for (const Vec2 u : snapshot.displacement_m) displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
+    const PrincipalStresses principal = principal_stresses(snapshot);
+    VtuGrid grid(points, corners, VtkCell::triangle);
+    grid.point_data("displacement_m", displacement, 3);
+    grid.cell_data("damage", std::span<const float>(snapshot.damage));
+    grid.cell_data("stress_xx_MPa", floats_in_MPa(snapshot.stress_xx_Pa));
+    grid.cell_data("stress_yy_MPa", floats_in_MPa(snapshot.stress_yy_Pa));
+    grid.cell_data("stress_xy_MPa", floats_in_MPa(snapshot.stress_xy_Pa));
+    grid.cell_data("sigma_1_MPa", principal.sigma_1_MPa);
+    grid.cell_data("sigma_3_MPa", principal.sigma_3_MPa);
+    grid.cell_data("mean_stress_MPa", principal.mean_MPa);
+    grid.cell_data("grain", std::span<const std::int32_t>(grain));
+    return grid.file(comment);
+}
+
+std::string cracks_vtu(const TestResult& result, const std::vector<CrackFaces>& faces, const Snapshot& snapshot, const std::string& comment) {
+    std::vector<double> points;
+    std::vector<std::int32_t> ends;
+    std::vector<float> displacement, time, stress, opening, energy;
+    std::vector<std::int32_t> mode;
+    std::vector<std::int64_t> step;
+    const auto count = std::min(result.cracks.size(), static_cast<std::size_t>(std::max(snapshot.cracks, 0)));
+    for (std::size_t c = 0; c < count; ++c) {
+        const Crack& crack = result.cracks[c];
+        points.insert(points.end(), {crack.from.x, crack.from.y, 0.0, crack.to.x, crack.to.y, 0.0});
+        ends.insert(ends.end(), {static_cast<std::int32_t>(2 * c), static_cast<std::int32_t>(2 * c + 1)});
+        // the line lies midway between the two faces
+        const auto a = face_displacement(faces[c].a, snapshot.displacement_m);
+        const auto b = face_displacement(faces[c].b, snapshot.displacement_m);
+        for (std::size_t end = 0; end < 2; ++end) {
+            const Vec2 u = 0.5 * (a[end] + b[end]);
+            displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
+        }
+        mode.push_back(static_cast<std::int32_t>(crack.mode));
+        time.push_back(static_cast<float>(std::abs(crack.axial_strain)));
+        step.push_back(crack.step);
+        stress.push_back(static_cast<float>(crack.axial_stress_Pa * MPa));
+        opening.push_back(c < snapshot.crack_opening_m.size() ? static_cast<float>(snapshot.crack_opening_m[c]) : 0.0F);
+        energy.push_back(static_cast<float>(crack.energy_J));
+    }
+    VtuGrid grid(points, ends, VtkCell::line);
+    grid.point_data("displacement_m", displacement, 3);
+    grid.cell_data("mode", std::span<const std::int32_t>(mode));
+    grid.cell_data("time", time);
+    grid.cell_data("step", std::span<const std::int64_t>(step));
+    grid.cell_data("axial_stress_at_break_MPa", stress);
+    grid.cell_data("opening_m", opening);
+    grid.cell_data("energy_J", energy);
+    return grid.file(comment);
+}
+
+/// ParaView needs times that always grow: the magnitude of the axial strain, or the snapshot's number where it does not.
+struct Times {
+    std::vector<double> values;
+    const char* meaning = "magnitude of the axial strain";
+};
+
+Times times(const std::vector<Snapshot>& snapshots) {
+    Times times;
+    for (const Snapshot& snapshot : snapshots) times.values.push_back(std::abs(snapshot.axial_strain));
+    bool grows = true;
+    for (std::size_t n = 1; n < times.values.size(); ++n) grows = grows && times.values[n] > times.values[n - 1];
+    if (!grows) {
+        for (std::size_t n = 0; n < times.values.size(); ++n) times.values[n] = static_cast<double>(n);
+        times.meaning = "number of the snapshot";
+    }
+    return times;
+}
+
+}  // namespace
+
+void write_vtu(const RunDirectory& directory, const TestResult& result) {
+    if (!result.specimen) return;
+    const std::string stem = test_stem(result);
+    const std::string folder = stem + "-vtu/";
+    const std::vector<CrackFaces> faces = find_crack_faces(*result.specimen, result.cracks);
+    const Times time = times(result.snapshots);
+    std::string collection = fmt::format(
+        "<?xml version=\"1.0\"?>\n<!-- {}; {}. Part 0: grains; part 1: cracks (mode 0 tensile, 1 shear; time = magnitude of the axial "
+        "strain at the break). timestep = {}. -->\n"
+        "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+        stem, sign_convention, time.meaning);
+    for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
+        const Snapshot& snapshot = result.snapshots[n];
+        // numbers only: the label is free text, which an XML comment could not always hold
+        const std::string comment = fmt::format("{}, snapshot {}, step {}, axial strain {}; {}", stem, n, snapshot.step, snapshot.axial_strain,
+                                                sign_convention);
+        const std::string grains = fmt::format("{}grains-{:03}.vtu", folder, n);
+        const std::string cracks = fmt::format("{}cracks-{:03}.vtu", folder, n);
+        directory.write_text(grains, grains_vtu(*result.specimen, snapshot, comment));
+        directory.write_text(cracks, cracks_vtu(result, faces, snapshot, comment));
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time.values[n], grains);
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"1\" file=\"{}\"/>\n", time.values[n], cracks);
+    }
+    directory.write_text(stem + ".pvd", collection + "</Collection>\n</VTKFile>\n");
+}
+
+}  // namespace feldspar

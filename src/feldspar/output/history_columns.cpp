@@ -1,0 +1,52 @@
+#include "feldspar/output/history_columns.hpp"
+
+#include <array>
+
+#include "feldspar/output/user_units.hpp"
+
+namespace feldspar {
+
+namespace {
+
+using Row = const HistoryRow&;
+
+constexpr auto columns = std::to_array<HistoryColumn>({
+    {"phase", "1", "0 isotropic consolidation, 1 elastic start (passed over in closed form), 2 loading", true,
+     [](Row r) { return static_cast<double>(static_cast<int>(r.phase)); }},
+    {"step", "1", "step of the phase", true, [](Row r) { return static_cast<double>(r.step); }},
+    {"platen_displacement_mm", "mm", "approach of the platens", false, [](Row r) { return r.platen_displacement_m * 1e3; }},
+    {"axial_strain", "1", "from the platens (Brazilian: approach of the plates / diameter)", false, [](Row r) { return r.axial_strain; }},
+    {"axial_strain_gauge", "1", "from the gauge, the central half of the specimen", false, [](Row r) { return r.axial_strain_gauge; }},
+    {"lateral_strain_gauge", "1", "from the gauge; negative when the specimen widens", false,
+     [](Row r) { return r.lateral_strain_gauge; }},
+    {"volumetric_strain_gauge", "1", "axial + lateral, from the gauges, in the plane; negative when the specimen dilates", false,
+     [](Row r) { return r.axial_strain_gauge + r.lateral_strain_gauge; }},
+    {"axial_stress_MPa", "MPa", "mean of both platens over the initial section (Brazilian: 2 P / (pi D t))", false,
+     [](Row r) { return r.axial_stress_Pa * MPa; }},
+    {"stress_top_MPa", "MPa", "the top platen alone", false, [](Row r) { return r.stress_top_Pa * MPa; }},
+    {"stress_bottom_MPa", "MPa", "the bottom platen alone", false, [](Row r) { return r.stress_bottom_Pa * MPa; }},
+    {"sigma3_MPa", "MPa", "lateral pressure", false, [](Row r) { return r.sigma3_Pa * MPa; }},
+    {"cracks_tensile", "1", "contact points broken in tension so far", true, [](Row r) { return static_cast<double>(r.cracks_tensile); }},
+    {"cracks_shear", "1", "contact points broken in shear so far", true, [](Row r) { return static_cast<double>(r.cracks_shear); }},
+    {"residual", "1", "R*: sum of the unbalanced forces / platen force", false, [](Row r) { return r.residual; }},
+    {"platen_speed", "m/step", "closing speed of the platens (dynamic numerics: m/s)", false, [](Row r) { return r.platen_speed; }},
+    {"kinetic_deviation_J", "J", "kinetic energy of the motion that departs from the loading motion", false,
+     [](Row r) { return r.kinetic_deviation; }},
+    {"energy_external_J", "J", "work of the platens and the lateral pressure", false, [](Row r) { return r.energy.external; }},
+    {"energy_elastic_start_J", "J", "put in by the computed elastic start", false, [](Row r) { return r.energy.elastic_start; }},
+    {"energy_rate_control_J", "J", "work of the velocity correction when the rate changes", false,
+     [](Row r) { return r.energy.rate_control; }},
+    {"energy_elastic_grains_J", "J", "elastic, in the triangles", false, [](Row r) { return r.energy.elastic_grains; }},
+    {"energy_elastic_contacts_J", "J", "elastic, in the contacts", false, [](Row r) { return r.energy.elastic_contacts; }},
+    {"energy_fracture_J", "J", "dissipated by fracture", false, [](Row r) { return r.energy.fracture; }},
+    {"energy_friction_J", "J", "dissipated by friction", false, [](Row r) { return r.energy.friction; }},
+    {"energy_damping_J", "J", "dissipated by numerical damping", false, [](Row r) { return r.energy.damping; }},
+    {"energy_kinetic_J", "J", "kinetic", false, [](Row r) { return r.energy.kinetic; }},
+    {"energy_residual_J", "J", "what the balance leaves over", false, [](Row r) { return r.energy.residual(); }},
+});
+
+}  // namespace
+
+std::span<const HistoryColumn> history_columns() { return columns; }
+
+}  // namespace feldspar

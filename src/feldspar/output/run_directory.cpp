@@ -1,0 +1,205 @@
+// The run's directory. Every file is written aside, flushed to the disk, and renamed when it is whole.
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <exception>
+#include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/output/results.hpp"
+
+namespace feldspar {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr unsigned long long smallest_space_B = 1ULL << 20;   ///< with less than this a run is refused before it starts
+
+std::string reason(int error) { return std::strerror(error); }
+
+[[noreturn]] void refuse(const std::string& problem, const std::string& allowed = {}) {
+    throw InputError({.file = "", .line = 0, .column = 0, .key = "--out"}, problem, allowed);
+}
+
+[[noreturn]] void lost(const fs::path& path, const std::string& why) {
+    throw OutputError(fmt::format("cannot write '{}': {}", path.string(), why));
+}
+
+/// A file descriptor that closes itself on the way out.
+class Descriptor {
+public:
+    explicit Descriptor(int number) : number_(number) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+    int number() const { return number_; }
+    /// Closes now and says whether that worked: some file systems report a full disk only here.
+    bool close() {
+        const int result = ::close(number_);
+        number_ = -1;
+        return result == 0;
+    }
+
+private:
+    int number_;
+};
+
+/// Makes a write beyond the file-size limit fail with EFBIG, like a full disk, instead of ending the program: SIGXFSZ is
+/// held back in this thread and dropped.
+class HoldFileSizeSignal {
+public:
+    HoldFileSizeSignal() {
+        sigemptyset(&signal_);
+        sigaddset(&signal_, SIGXFSZ);
+        pthread_sigmask(SIG_BLOCK, &signal_, &before_);
+    }
+    HoldFileSizeSignal(const HoldFileSizeSignal&) = delete;
+    HoldFileSizeSignal& operator=(const HoldFileSizeSignal&) = delete;
+    ~HoldFileSizeSignal() {
+        const timespec now{};
+        while (sigtimedwait(&signal_, nullptr, &now) == SIGXFSZ) {
+        }
+        pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    }
+
+private:
+    sigset_t signal_{};
+    sigset_t before_{};
+};
+
+/// The nearest directory on the way up from `path` that exists: where the missing ones would be made.
+fs::path nearest_existing(fs::path path) {
+    std::error_code error;
+    path = fs::absolute(path, error);
+    while (!fs::exists(fs::symlink_status(path, error)) && path.has_parent_path() && path.parent_path() != path) path = path.parent_path();
+    return path;
+}
+
+/// @throws InputError if a directory cannot be made below `place`, or if the disk is full.
+void check_place(const fs::path& place, const fs::path& wanted) {
+    std::error_code error;
+    if (!fs::is_directory(place, error)) {
+        refuse(fmt::format("cannot make the directory '{}': '{}' is not a directory", wanted.string(), place.string()));
+    }
+    if (::faccessat(AT_FDCWD, place.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
+        refuse(fmt::format("cannot make the directory '{}': '{}': {}", wanted.string(), place.string(), reason(errno)),
+               "a directory in which you may write");
+    }
+    struct statvfs space {};
+    if (::statvfs(place.c_str(), &space) == 0 && space.f_blocks > 0) {
+        const unsigned long long available_B = static_cast<unsigned long long>(space.f_bavail) * space.f_frsize;
+        if (available_B < smallest_space_B) {
+            refuse(fmt::format("no space for results in '{}': {} kB are free", place.string(), available_B / 1024),
+                   "a disk with at least 1 MB free (fields and histories of a test take some 10 MB)");
+        }
+    }
+}
+
+void refuse_existing(const fs::path& wanted) {
+    std::error_code error;
+    if (wanted.empty()) refuse("an empty directory name");
+    if (fs::exists(fs::symlink_status(wanted, error))) {
+        refuse(fmt::format("'{}' exists already; results are never overwritten", wanted.string()),
+               "a directory that does not exist yet, or no --out for a new numbered one");
+    }
+}
+
+/// A job name as part of a file name: letters, digits, '-', '_' and '.' stay, everything else becomes '-'.
+std::string file_name_of(const std::string& job_name) {
+    std::string name;
+    for (const char letter : job_name) {
+        const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9') ||
+                           letter == '-' || letter == '_' || letter == '.';
+        name += plain ? letter : '-';
+    }
+    return name.empty() ? "job" : name;
+}
+
+const fs::path results_directory = "results";
+
+void write_bytes(const fs::path& path, std::string_view bytes) {
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    if (file.number() < 0) lost(path, reason(errno));
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(file.number(), bytes.data(), bytes.size());
+        if (written < 0) {
+            if (errno == EINTR) continue;
+            lost(path, reason(errno));
+        }
+        bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    if (!file.close()) lost(path, reason(errno));
+}
+
+/// @throws OutputError unless every byte of `path` is on the disk. A directory is flushed where its file system can do so.
+void flush_to_disk(const fs::path& path, bool directory) {
+    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | (directory ? O_DIRECTORY : 0)));
+    if (file.number() < 0) lost(path, reason(errno));
+    if (::fsync(file.number()) != 0 && !(directory && (errno == EINVAL || errno == EACCES || errno == EBADF))) lost(path, reason(errno));
+    if (!file.close()) lost(path, reason(errno));
+}
+
+}  // namespace
+
+void RunDirectory::check(const std::optional<fs::path>& wanted, const std::string& job_name) {
+    if (wanted) {
+        refuse_existing(*wanted);
+        check_place(nearest_existing(*wanted), *wanted);
+    } else {
+        check_place(nearest_existing(results_directory), results_directory / (file_name_of(job_name) + "-1"));
+    }
+}
+
+RunDirectory RunDirectory::create(const std::optional<fs::path>& wanted, const std::string& job_name) {
+    check(wanted, job_name);
+    const fs::path parent = wanted ? fs::absolute(*wanted).parent_path() : results_directory;
+    std::error_code error;
+    fs::create_directories(parent, error);
+    if (error) refuse(fmt::format("cannot make the directory '{}': {}", parent.string(), error.message()));
+    // mkdir both makes and claims the name, so that two runs started at once never share a directory
+    for (int number = 1;; ++number) {
+        const fs::path path = wanted ? *wanted : parent / fmt::format("{}-{}", file_name_of(job_name), number);
+        if (::mkdir(path.c_str(), 0777) == 0) return RunDirectory(path);
+        if (errno != EEXIST) refuse(fmt::format("cannot make the directory '{}': {}", path.string(), reason(errno)));
+        if (wanted) refuse_existing(path);
+    }
+}
+
+void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const {
+    const fs::path path = path_ / name;
+    const fs::path aside = path.parent_path() / fmt::format(".{}.part", path.filename().string());
+    const HoldFileSizeSignal hold;
+    if (path.parent_path() != path_ && ::mkdir(path.parent_path().c_str(), 0777) != 0 && errno != EEXIST) {
+        lost(path.parent_path(), reason(errno));
+    }
+    try {
+        fill(aside);
+        flush_to_disk(aside, false);
+        if (::rename(aside.c_str(), path.c_str()) != 0) lost(path, reason(errno));
+    } catch (const std::system_error& problem) {   // also std::filesystem and stream failures
+        ::unlink(aside.c_str());
+        lost(path, problem.code().message());
+    } catch (...) {
+        ::unlink(aside.c_str());
+        throw;
+    }
+    flush_to_disk(path.parent_path(), true);
+}
+
+void RunDirectory::write_text(const std::string& name, const std::string& text) const {
+    write(name, [&](const fs::path& aside) { write_bytes(aside, text); });
+}
+
+}  // namespace feldspar

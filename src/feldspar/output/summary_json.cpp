@@ -1,0 +1,212 @@
+// summary.json: every number of a run in user units, compression positive; null where a value is not defined.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/results.hpp"
+#include "feldspar/output/user_units.hpp"
+
+namespace feldspar {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json in_MPa(double value_Pa) { return number(value_Pa * MPa); }
+Json in_GPa(double value_Pa) { return number(value_Pa * GPa); }
+
+Json energy_json(const EnergyLedger& energy) {
+    return {{"external_J", number(energy.external)},
+            {"elastic_start_J", number(energy.elastic_start)},
+            {"rate_control_J", number(energy.rate_control)},
+            {"elastic_grains_J", number(energy.elastic_grains)},
+            {"elastic_contacts_J", number(energy.elastic_contacts)},
+            {"fracture_J", number(energy.fracture)},
+            {"friction_J", number(energy.friction)},
+            {"damping_J", number(energy.damping)},
+            {"kinetic_J", number(energy.kinetic)},
+            {"residual_J", number(energy.residual())}};
+}
+
+/// The files of a test that are in the directory already.
+Json files_json(const RunDirectory& directory, const std::string& stem) {
+    Json files = Json::object();
+    const auto add = [&](const char* what, const std::string& file) {
+        std::error_code error;
+        if (std::filesystem::exists(directory.path() / file, error)) files[what] = file;
+    };
+    add("history", "history-" + stem + ".csv");
+    add("archive", stem + ".h5");
+    add("paraview", stem + ".pvd");
+    return files;
+}
+
+Json test_json(const RunDirectory& directory, const TestResult& result) {
+    const TestProperties& p = result.properties;
+    const QuasiStaticEvidence& e = result.evidence;
+    int tensile = 0;
+    for (const Crack& crack : result.cracks) tensile += crack.mode == CrackMode::tensile ? 1 : 0;
+    Json test;
+    test["kind"] = name(result.test.kind);
+    test["model"] = name(result.model.kind);
+    test["contact"] = name(result.model.contact);
+    test["law"] = name(result.contact.law);
+    test["numerics"] = name(result.numerics.kind);
+    test["plane"] = name(result.model.plane);
+    test["seed"] = result.seed;
+    test["sigma3_MPa"] = in_MPa(result.test.sigma3_Pa);
+    test["peak_stress_MPa"] = in_MPa(p.peak_stress_Pa);
+    test["peak_reached"] = p.peak_reached;
+    test["first_crack_MPa"] = in_MPa(p.first_crack_Pa);
+    test["E_GPa"] = in_GPa(p.E_secant_Pa);
+    test["E_tangent_GPa"] = in_GPa(p.E_tangent_Pa);
+    test["E_average_GPa"] = in_GPa(p.E_average_Pa);
+    test["E_gauge_GPa"] = in_GPa(p.E_gauge_Pa);
+    test["nu"] = number(p.nu);
+    test["sigma_ci_crack_count_MPa"] = in_MPa(p.sigma_ci_crack_count_Pa);
+    test["sigma_ci_crack_volume_MPa"] = in_MPa(p.sigma_ci_crack_volume_Pa);
+    test["sigma_ci_lateral_strain_MPa"] = in_MPa(p.sigma_ci_lateral_strain_Pa);
+    test["sigma_cd_MPa"] = in_MPa(p.sigma_cd_Pa);
+    test["steps"] = result.steps;
+    test["steps_to_peak"] = result.steps_to_peak;
+    test["preparation_steps"] = result.preparation_steps;
+    test["wall_s"] = number(result.wall_s);
+    test["ms_per_step"] = number(result.ms_per_step);
+    test["threads"] = result.threads;
+    test["residual_mean"] = number(e.residual_mean);
+    test["residual_at_peak"] = number(e.residual_at_peak);
+    test["imbalance_max"] = number(e.imbalance_max);
+    test["kinetic_over_strain"] = number(e.kinetic_over_strain);
+    test["damping_over_fracture"] = number(e.damping_over_fracture);
+    test["cracks_tensile"] = tensile;
+    test["cracks_shear"] = static_cast<int>(result.cracks.size()) - tensile;
+    test["energy_residual"] = number(result.energy_residual);
+    test["quasi_static"] = std::string(1, e.grade);
+    test["verdict"] = e.verdict;
+    test["peak_change_at_third"] = e.confirmed ? number(e.peak_change_at_third) : Json(nullptr);
+    test["stop_reason"] = result.stop_reason;
+    test["interrupted"] = result.interrupted;
+    test["energy_at_end"] = energy_json(result.energy_at_end);
+    test["new_contacts"] = result.new_contacts;
+    test["shape_fallbacks"] = result.shape_fallbacks;
+    test["angular_momentum_loss"] = number(result.angular_momentum_loss);
+    test["vanished_compressions"] = result.vanished_compressions;
+    test["stable_omega2"] = number(result.stable_omega2);
+    test["stable_limit"] = number(result.stable_limit);
+    test["files"] = files_json(directory, test_stem(result));
+    return test;
+}
+
+Json specimen_json(const Specimen& specimen) {
+    const SpecimenQuality& q = specimen.quality;
+    Json json = {{"grains", q.grains},
+                 {"contacts", q.contacts},
+                 {"nodes", q.nodes},
+                 {"triangles", q.triangles},
+                 {"merged_edges", q.merged_edges},
+                 {"vertices_per_grain", number(q.vertices_per_grain)},
+                 {"seed", specimen.seed},
+                 {"overlap_mean", number(q.overlap_mean)},
+                 {"overlap_max", number(q.overlap_max)},
+                 {"smallest_edge_mm", number(q.smallest_edge_m * 1e3)},
+                 {"smallest_triangle_height_mm", number(q.smallest_triangle_height_m * 1e3)},
+                 {"mean_diameter_mm", number(q.mean_diameter_m * 1e3)},
+                 {"width_over_largest_grain", number(q.width_over_largest_grain)},
+                 {"area_error", number(q.area_error)},
+                 {"warnings", q.warnings}};
+    return json;
+}
+
+/// Adds `key` for the first specimen of the tests that `wanted` picks, and `keys` for all of them, one a seed.
+template <class Wanted>
+void add_specimens(Json& summary, const std::string& key, std::span<const TestResult> results, Wanted wanted) {
+    Json all = Json::array();
+    std::vector<std::uint64_t> seen;
+    for (const TestResult& result : results) {
+        if (!wanted(result) || !result.specimen || std::ranges::find(seen, result.specimen->seed) != seen.end()) continue;
+        seen.push_back(result.specimen->seed);
+        all.push_back(specimen_json(*result.specimen));
+    }
+    if (all.empty()) return;
+    summary[key] = all.front();
+    summary[key + "s"] = all;
+}
+
+Json properties_json(const PropertySummary& properties) {
+    std::vector<std::pair<UserQuantity, PropertyStatistics>> ordered;
+    for (const auto& [key, statistics] : properties.values) ordered.emplace_back(user_quantity(key), statistics);
+    std::ranges::stable_sort(ordered, {}, [](const auto& entry) { return entry.first.rank; });
+    Json json = Json::object();
+    for (const auto& [quantity, statistics] : ordered) {
+        json[quantity.name] = {{"median", number(statistics.median * quantity.factor)},
+                               {"minimum", number(statistics.minimum * quantity.factor)},
+                               {"maximum", number(statistics.maximum * quantity.factor)},
+                               {"seeds", statistics.seeds}};
+    }
+    return json;
+}
+
+Json laboratory_json(const Job& job) {
+    Json json = Json::object();
+    for (const auto& [key, value] : job.laboratory) {
+        json[user_quantity(property_of_laboratory(key)).name] = number(laboratory_in_user_units(key, value));
+    }
+    return json;
+}
+
+Json list_in_MPa(const std::vector<double>& values_Pa) {
+    Json list = Json::array();
+    for (const double value : values_Pa) list.push_back(in_MPa(value));
+    return list;
+}
+
+Json envelope_json(const PropertySummary& properties) {
+    Json fits = Json::array();
+    for (const EnvelopeFit& fit : properties.fits) {
+        fits.push_back({{"seed", fit.seed},
+                        {"cohesion_MPa", in_MPa(fit.cohesion_Pa)},
+                        {"friction_angle_deg", number(fit.friction_angle_deg)},
+                        {"UCS_measured_MPa", in_MPa(fit.UCS_measured_Pa)},
+                        {"UCS_fitted_MPa", in_MPa(fit.UCS_fitted_Pa)},
+                        {"hoek_brown_mi", number(fit.hoek_brown_mi)},
+                        {"hoek_brown_UCS_MPa", in_MPa(fit.hoek_brown_UCS_Pa)},
+                        {"sigma3_MPa", list_in_MPa(fit.sigma3_Pa)},
+                        {"sigma1_MPa", list_in_MPa(fit.sigma1_Pa)}});
+    }
+    return {{"method", properties.envelope_method}, {"fits", fits}};
+}
+
+}  // namespace
+
+void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                   const PropertySummary& properties, const Provenance& provenance, bool complete) {
+    Json summary;
+    summary["version"] = provenance.version;
+    summary["commit"] = provenance.commit;
+    summary["complete"] = complete;
+    summary["signs"] = sign_convention;
+    summary["seeds"] = job.seeds;
+    add_specimens(summary, "specimen", results, [](const TestResult& r) { return r.test.kind != TestKind::brazilian; });
+    add_specimens(summary, "brazilian_specimen", results, [](const TestResult& r) { return r.test.kind == TestKind::brazilian; });
+    // a run of Brazilian tests only has one kind of specimen
+    if (!summary.contains("specimen") && summary.contains("brazilian_specimen")) summary["specimen"] = summary["brazilian_specimen"];
+    summary["tests"] = Json::array();
+    for (const TestResult& result : results) summary["tests"].push_back(test_json(directory, result));
+    summary["properties"] = properties_json(properties);
+    summary["laboratory"] = laboratory_json(job);
+    summary["envelope"] = envelope_json(properties);
+    summary["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}};
+    summary["provenance"] = {{"version", provenance.version},   {"commit", provenance.commit},   {"machine", provenance.machine},
+                             {"compiler", provenance.compiler}, {"started", provenance.started}, {"threads", provenance.threads},
+                             {"command_line", provenance.command_line}};
+    // a name that is not valid UTF-8 must not lose the run's numbers
+    directory.write_text("summary.json", summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace feldspar

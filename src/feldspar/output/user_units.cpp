@@ -1,0 +1,78 @@
+// The table of the quantities that users read.
+#include "feldspar/output/user_units.hpp"
+
+#include <array>
+#include <numbers>
+
+namespace feldspar {
+
+namespace {
+
+struct Words {
+    const char* property;
+    const char* label;
+    const char* symbol;
+};
+
+/// In the order of a table of results.
+constexpr std::array<Words, 21> known = {{
+    {"E_Pa", "Young's modulus, secant at 50 % of the peak", "E"},
+    {"E_tangent_Pa", "Young's modulus, tangent at 50 % of the peak", "Et50"},
+    {"E_average_Pa", "Young's modulus, average 30 to 70 % of the peak", "Eavg"},
+    {"E_gauge_Pa", "Young's modulus, tangent, from the gauge", "E gauge"},
+    {"nu", "Poisson's ratio", "\u03bd"},
+    {"UCS_Pa", "Uniaxial compressive strength", "UCS"},
+    {"DTS_Pa", "Direct tensile strength", "DTS"},
+    {"BTS_Pa", "Brazilian tensile strength", "BTS"},
+    {"cohesion_Pa", "Cohesion, Mohr-Coulomb", "c"},
+    {"friction_angle_deg", "Friction angle, Mohr-Coulomb", "\u03c6"},
+    {"UCS_fitted_Pa", "UCS from the Mohr-Coulomb line", "UCS fit"},
+    {"hoek_brown_mi", "Hoek-Brown constant, intact rock", "mi"},
+    {"hoek_brown_UCS_Pa", "UCS from the Hoek-Brown fit", "\u03c3ci fit"},
+    {"UCS_over_BTS", "Ratio UCS / BTS", "UCS/BTS"},
+    {"UCS_over_DTS", "Ratio UCS / DTS", "UCS/DTS"},
+    {"BTS_over_DTS", "Ratio BTS / DTS", "BTS/DTS"},
+    {"sigma_ci_crack_count_Pa", "Crack initiation stress, crack count", "\u03c3ci"},
+    {"sigma_ci_crack_volume_Pa", "Crack initiation stress, crack volumetric strain", "\u03c3ci"},
+    {"sigma_ci_lateral_strain_Pa", "Crack initiation stress, lateral strain response", "\u03c3ci"},
+    {"sigma_cd_Pa", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd"},
+    {"first_crack_Pa", "Stress at the first crack", "\u03c31st"},
+}};
+
+bool ends_with_pascal(const std::string& property) { return property.ends_with("_Pa"); }
+bool is_modulus(const std::string& property) { return property.starts_with("E_"); }
+
+}  // namespace
+
+UserQuantity user_quantity(const std::string& property) {
+    UserQuantity quantity;
+    quantity.name = property;
+    if (ends_with_pascal(property)) {
+        quantity.unit = is_modulus(property) ? "GPa" : "MPa";
+        quantity.factor = is_modulus(property) ? GPa : MPa;
+        quantity.name = property.substr(0, property.size() - 2) + quantity.unit;
+    } else if (property.ends_with("_deg")) {
+        quantity.unit = "deg";
+    }
+    quantity.label = quantity.symbol = property;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        if (property != known[i].property) continue;
+        quantity.label = known[i].label;
+        quantity.symbol = known[i].symbol;
+        quantity.rank = static_cast<int>(i);
+    }
+    return quantity;
+}
+
+std::string property_of_laboratory(const std::string& name) {
+    if (name == "friction_angle") return "friction_angle_deg";
+    if (name == "nu" || name == "hoek_brown_mi" || name.find("_over_") != std::string::npos) return name;
+    return name + "_Pa";
+}
+
+double laboratory_in_user_units(const std::string& name, double value) {
+    if (name == "friction_angle") return value * 180.0 / std::numbers::pi;
+    return value * user_quantity(property_of_laboratory(name)).factor;
+}
+
+}  // namespace feldspar
