@@ -1,0 +1,55 @@
+// The only door to threads: a team that stays alive between steps and meets at spin barriers.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace feldspar {
+
+/// A half-open range of indices.
+struct IndexRange {
+    int begin = 0;
+    int end = 0;
+};
+
+/// A fixed number of threads that run the same function side by side. Work is shared out in contiguous ranges; nothing that
+/// a thread computes may depend on how many there are, so results have the same bits for any team.
+class Team {
+public:
+    /// @param threads  at least 1; the caller is one of them
+    explicit Team(int threads);
+    ~Team();
+    Team(const Team&) = delete;
+    Team& operator=(const Team&) = delete;
+
+    int size() const { return size_; }
+
+    /// Calls `work(thread)` on every thread, 0 being the caller's, and returns when all have finished. `work` must not throw.
+    void run(const std::function<void(int)>& work);
+
+    /// All threads of the running work wait here for each other.
+    void barrier();
+
+    /// The contiguous share of [0, count) that belongs to `thread`.
+    IndexRange share(int count, int thread) const {
+        const auto part = [&](int i) { return static_cast<int>(static_cast<std::int64_t>(count) * i / size_); };
+        return {part(thread), part(thread + 1)};
+    }
+
+private:
+    void serve(int thread);
+
+    int size_;
+    const std::function<void(int)>* work_ = nullptr;
+    std::atomic<std::uint32_t> round_{0};      // a new value calls the workers
+    std::atomic<int> unfinished_{0};
+    std::atomic<int> arrived_{0};
+    std::atomic<std::uint32_t> generation_{0}; // of the barrier
+    std::atomic<bool> closing_{false};
+    std::vector<std::jthread> workers_;
+};
+
+}  // namespace feldspar

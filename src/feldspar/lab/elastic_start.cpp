@@ -1,0 +1,125 @@
+#include "feldspar/lab/elastic_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "feldspar/lab/body_energy.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// Smallest factor > 0 with value + factor x change = limit; the start is below the limit.
+double reaches(double value, double change, double limit) { return change > 0.0 ? std::max(0.0, (limit - value) / change) : kNever; }
+
+// The same for shear with friction on top of the cohesion: ks |us| - mu max(-kn un, 0) = tau, per area.
+double shear_with_friction(const BondLaw& law, const BondState& base, double dun, double dus) {
+    double first = kNever;
+    for (const double sign : {1.0, -1.0}) {
+        const double shear = sign * law.Ks_Pa_m * base.us_m, dshear = sign * law.Ks_Pa_m * dus;
+        const double open = reaches(shear, dshear, law.tau_Pa);
+        if (open < kNever && base.un_m + open * dun >= 0.0) first = std::min(first, open);
+        const double pressed = reaches(shear + law.mu * law.Kn_Pa_m * base.un_m, dshear + law.mu * law.Kn_Pa_m * dun, law.tau_Pa);
+        if (pressed < kNever && base.un_m + pressed * dun <= 0.0) first = std::min(first, pressed);
+    }
+    return first;
+}
+
+}  // namespace
+
+BodyState capture(const Assembly& body, double platen_travel_m) {
+    BodyState state{platen_travel_m, body.nodes.displacement, {}, {}};
+    state.bonds.reserve(body.points.size());
+    for (const ContactPoint& point : body.points) state.bonds.push_back(point.bond);
+    for (const Platen& platen : body.platens) state.platen_positions_m.push_back(platen.position_m);
+    return state;
+}
+
+void restore(Assembly& body, const BodyState& state) {
+    body.nodes.displacement = state.displacement_m;
+    std::fill(body.nodes.velocity.begin(), body.nodes.velocity.end(), Vec2{});
+    for (std::size_t p = 0; p < state.bonds.size(); ++p) body.points[p].bond = state.bonds[p];
+    for (std::size_t i = 0; i < body.platens.size(); ++i) body.platens[i].position_m = state.platen_positions_m[i];
+}
+
+BodyState superpose(const BodyState& base, const BodyState& state, double factor) {
+    BodyState sum = base;
+    const auto mix = [factor](double from, double to) { return from + factor * (to - from); };
+    sum.platen_travel_m = mix(base.platen_travel_m, state.platen_travel_m);
+    for (std::size_t n = 0; n < sum.displacement_m.size(); ++n)
+        sum.displacement_m[n] += factor * (state.displacement_m[n] - base.displacement_m[n]);
+    for (std::size_t p = 0; p < sum.bonds.size(); ++p) {
+        BondState& bond = sum.bonds[p];
+        const BondState& to = state.bonds[p];
+        bond.un_m = mix(bond.un_m, to.un_m);
+        bond.us_m = mix(bond.us_m, to.us_m);
+        bond.Fn_N = mix(bond.Fn_N, to.Fn_N);
+        bond.Fs_N = mix(bond.Fs_N, to.Fs_N);
+    }
+    for (std::size_t i = 0; i < sum.platen_positions_m.size(); ++i)
+        if (std::isfinite(sum.platen_positions_m[i])) sum.platen_positions_m[i] = mix(sum.platen_positions_m[i], state.platen_positions_m[i]);
+    return sum;
+}
+
+double first_damage(const Assembly& body, const BodyState& base, const BodyState& state) {
+    double first = kNever;
+    for (const Contact& contact : body.contacts) {
+        const BondLaw& law = body.laws[contact.material];
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+            const BondState& b = base.bonds[p];
+            if (b.damage >= 1.0) continue;
+            const double dun = state.bonds[p].un_m - b.un_m, dus = state.bonds[p].us_m - b.us_m;
+            first = std::min(first, reaches(b.un_m, dun, law.normal.x0));
+            if (law.shear.brittle || law.shear_beyond_friction) {
+                first = std::min(first, shear_with_friction(law, b, dun, dus));
+            } else {
+                first = std::min({first, reaches(b.us_m, dus, law.shear.x0), reaches(-b.us_m, -dus, law.shear.x0)});
+            }
+        }
+    }
+    return first;
+}
+
+Relaxation relax(Assembly& body, Team& team, Strength strength, double tolerance, long long maximum_steps,
+                 const std::function<bool()>& stop) {
+    StepSettings settings;
+    settings.strength = strength;
+    Nodes& nodes = body.nodes;
+    std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
+    evaluate_forces(body, team, strength);
+    std::vector<Vec2> force_before = nodes.force, velocity_before = nodes.velocity;
+    PlatenWork none;
+    Relaxation result;
+    while (result.steps < maximum_steps && !(stop && stop())) {
+        force_before = nodes.force;
+        velocity_before = nodes.velocity;
+        advance(body, team, settings, -1, 1, none);
+        ++result.steps;
+
+        double stiffness = 0.0, inertia = 0.0, force = 0.0;
+        for (int n = 0; n < nodes.count(); ++n) {
+            const double fx = nodes.inverse_mass[n].x != 0.0, fy = nodes.inverse_mass[n].y != 0.0;
+            const Vec2 v = {fx * velocity_before[n].x, fy * velocity_before[n].y};
+            stiffness -= dot(v, nodes.force[n] - force_before[n]);
+            inertia += nodes.mass[n] * dot(v, v);
+            force += std::hypot(fx * nodes.force[n].x, fy * nodes.force[n].y);
+        }
+        if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9, 2.0 * std::sqrt(stiffness / inertia));
+        if (result.steps % 10 == 0) {
+            const double contacts = mean_contact_force(body);
+            result.residual = contacts > 0.0 ? force / nodes.count() / contacts : kNever;
+            if (!std::isfinite(force)) break;
+            if (result.residual < tolerance) {
+                result.converged = true;
+                break;
+            }
+        }
+    }
+    std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
+    for (GrainWork& work : body.grain_work) work = {};   // relaxation is not part of the test's energy balance
+    return result;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,95 @@
+// One explicit step, stage by stage. What each stage reads and writes:
+//
+//   contact_forces     reads node displacements and velocities, platen velocities; writes contact points and slots
+//   grain_forces       reads slots; writes node forces, velocities, displacements, grain work
+//   platen_reactions   reads node forces and slots of the platens; writes nothing
+//   find_contacts      (between steps) makes and drops frictional contacts, chooses the fall-back shape functions
+//
+// advance() runs contact_forces and grain_forces for a number of steps on a team, with a barrier after each stage.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "feldspar/base/parallel.hpp"
+#include "feldspar/model/assembly.hpp"
+
+namespace feldspar {
+
+/// How free nodes are damped.
+enum class Damping {
+    local,     ///< a force alpha |F| against the velocity, component by component (paper, equations (2)-(3))
+    deviation  ///< viscous, on w = V - v B only: the loading motion itself is not dragged
+};
+
+enum class Strength { real, unlimited };   ///< unlimited: intact points stay elastic (the computed elastic start)
+
+struct StepSettings {
+    double dt = 1.0;                       ///< 1 with scaled masses, else s
+    Damping damping = Damping::deviation;
+    double alpha = 0.7;                    ///< local: 0 <= alpha < 1
+    double viscous = 0.0;                  ///< deviation: c, 1 per unit of time
+    Strength strength = Strength::real;
+    double speed = 0.0;                    ///< v: platen motion per unit of time
+};
+
+/// Work of the platens on the body, J, accumulated every step.
+struct PlatenWork {
+    double loading = 0.0;
+};
+
+/// Forces on the two platens by the body, N, along y: the platen's push on the body is the opposite.
+struct Reactions {
+    double loading = 0.0;
+    double rest = 0.0;
+};
+
+/// Stage 1: relative velocity, law, forces of the contacts [begin, end). `step` is written into points that break.
+void contact_forces(Assembly& body, IndexRange contacts, const StepSettings& settings, long long step);
+
+/// Stage 2: gather, triangles, pressure, damping, velocity and displacement of the grains [begin, end).
+void grain_forces(Assembly& body, IndexRange grains, const StepSettings& settings);
+
+/// Stage 3: ordered sums.
+Reactions platen_reactions(const Assembly& body);
+
+/// `count` steps; moves plates, accumulates the platens' work.
+void advance(Assembly& body, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work);
+
+/// Forces at the present state without moving anything: one step of zero length.
+void evaluate_forces(Assembly& body, Team& team, Strength strength);
+
+/// Finds pairs of grains that come to overlap without having a contact, and drops open broken ones.
+class ContactFinder {
+public:
+    /// @param skin_m  pairs are looked for this far apart; contacts are dropped this far open
+    ContactFinder(const Assembly& body, double skin_m);
+
+    struct Changes {
+        int made = 0;
+        int dropped = 0;
+        double kinetic_J = 0.0;   ///< gained because nodes became heavier (scaled masses only)
+    };
+    /// To be called every few steps: looks for candidates again only when some grain has moved by half the skin.
+    /// @param mass_factor  factor of the scaled masses; 0 with real masses
+    Changes update(Assembly& body, double mass_factor);
+
+private:
+    struct Candidate {
+        int a, b;
+        double rest_overlap_m;
+    };
+    void search(const Assembly& body);
+
+    double skin_m_;
+    std::vector<Vec2> centres_at_search_;
+    std::vector<Candidate> candidates_;
+    std::vector<std::array<int, 2>> overlapping_at_start_;   // sorted pairs that overlap without a contact from the start
+    std::vector<double> rest_overlaps_m_;
+};
+
+/// Chooses for each contact between current and initial shape functions: the initial ones where any current value departs
+/// from its initial one by more than 0.5. @return number of contact sides on the fall-back.
+int choose_shape_functions(Assembly& body);
+
+}  // namespace feldspar
