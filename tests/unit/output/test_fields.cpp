@@ -1,0 +1,204 @@
+// The files with fields, read back: HDF5 archive and VTU.
+#include <cstring>
+#include <regex>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <zlib.h>
+
+#include "feldspar/output/crack_geometry.hpp"
+#include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/results.hpp"
+#include "feldspar/output/vtu_grid.hpp"
+#include "scratch_directory.hpp"
+#include "synthetic_result.hpp"
+
+namespace feldspar {
+namespace {
+
+using namespace testing;
+
+class Fields : public ::testing::Test {
+protected:
+    ScratchDirectory scratch;
+    RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
+    TestResult result = make_result();
+};
+
+/// A data set of doubles (HDF5 converts from what is stored).
+std::vector<double> read_set(hid_t file, const std::string& name) {
+    const hid_t set = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+    const hid_t space = H5Dget_space(set);
+    std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    if (!values.empty()) H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Sclose(space);
+    H5Dclose(set);
+    return values;
+}
+
+std::string read_attribute(hid_t file, const std::string& object, const char* key) {
+    const hid_t attribute = H5Aopen_by_name(file, object.c_str(), key, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t type = H5Aget_type(attribute);
+    std::string text(H5Tget_size(type), '\0');
+    H5Aread(attribute, type, text.data());
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return text.c_str();
+}
+
+TEST_F(Fields, ArchiveReadsBack) {
+    write_hdf5(directory, result, make_job(), make_provenance());
+    const hid_t file = H5Fopen((directory.path() / "uniaxial-compression-s3.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    ASSERT_GE(file, 0);
+    for (const HistoryColumn& column : history_columns()) {
+        const auto values = read_set(file, std::string("/history/") + column.name);
+        ASSERT_EQ(values.size(), result.history.size());
+        for (std::size_t r = 0; r < values.size(); ++r) EXPECT_EQ(values[r], column.value(result.history[r])) << column.name;
+        EXPECT_EQ(read_attribute(file, std::string("/history/") + column.name, "unit"), column.unit);
+    }
+    EXPECT_EQ(read_set(file, "/cracks/mode"), (std::vector<double>{0.0, 1.0}));
+    EXPECT_EQ(read_set(file, "/cracks/from").size(), 4U);
+    EXPECT_EQ(read_set(file, "/mesh/nodes").size(), 2 * result.specimen->mesh.nodes.size());
+    EXPECT_EQ(read_set(file, "/mesh/triangles").size(), 3 * result.specimen->mesh.triangles.size());
+    EXPECT_EQ(read_set(file, "/mesh/grain")[5], 1.0);
+    const Snapshot& snapshot = result.snapshots[1];
+    EXPECT_EQ(read_set(file, "/snapshots/001-first-crack/stress_yy"), snapshot.stress_yy_Pa);
+    EXPECT_EQ(read_set(file, "/snapshots/001-first-crack/crack_opening"), snapshot.crack_opening_m);
+    EXPECT_TRUE(read_set(file, "/snapshots/000-start/crack_opening").empty());
+    EXPECT_EQ(read_attribute(file, "/snapshots/001-first-crack/displacement", "unit"), "m");
+    EXPECT_EQ(read_attribute(file, "/", "version"), "0.1.0");
+    EXPECT_NE(read_attribute(file, "/", "signs").find("compression positive"), std::string::npos);
+    H5Fclose(file);
+    EXPECT_EQ(count_entries(directory.path()), 1);
+}
+
+TEST_F(Fields, ArchiveOfTheSameResultsHasTheSameBytes) {
+    write_hdf5(directory, result, make_job(), make_provenance());
+    const std::string before = read_file(directory.path() / "uniaxial-compression-s3.h5");
+    write_hdf5(directory, result, make_job(), make_provenance());
+    EXPECT_EQ(read_file(directory.path() / "uniaxial-compression-s3.h5"), before);
+}
+
+TEST_F(Fields, ArchiveOfATestWithoutAnythingIsWhole) {
+    TestResult empty;
+    empty.seed = 1;
+    EXPECT_NO_THROW(write_hdf5(directory, empty, make_job(), make_provenance()));
+    EXPECT_NO_THROW(write_vtu(directory, empty));
+}
+
+/// What VTK does to a compressed array.
+std::string decompress(std::string_view bytes) {
+    const auto number = [&](std::size_t index) {
+        std::uint64_t value = 0;
+        std::memcpy(&value, bytes.data() + 8 * index, 8);
+        return value;
+    };
+    const std::uint64_t blocks = number(0);
+    std::string data;
+    std::size_t from = 8 * (3 + blocks);
+    for (std::uint64_t b = 0; b < blocks; ++b) {
+        uLongf size = b + 1 == blocks && number(2) > 0 ? number(2) : number(1);
+        std::string block(size, '\0');
+        EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(block.data()), &size, reinterpret_cast<const Bytef*>(bytes.data() + from), number(3 + b)), Z_OK);
+        data.append(block.data(), size);
+        from += number(3 + b);
+    }
+    return data;
+}
+
+template <class Number>
+std::vector<Number> vtu_array(const std::string& file, const std::string& name) {
+    std::smatch match;
+    const std::size_t head = file.find("<AppendedData");
+    const std::string xml = file.substr(0, head);
+    if (!std::regex_search(xml, match, std::regex("Name=\"" + name + "\"[^>]*offset=\"(\\d+)\""))) return {};
+    const std::string data = decompress(std::string_view(file).substr(file.find("\n_", head) + 2 + std::stoull(match[1])));
+    std::vector<Number> values(data.size() / sizeof(Number));
+    std::memcpy(values.data(), data.data(), data.size());
+    return values;
+}
+
+TEST_F(Fields, VtuReadsBack) {
+    write_vtu(directory, result);
+    const auto folder = directory.path() / "uniaxial-compression-s3-vtu";
+    const std::string grains = read_file(folder / "grains-001.vtu");
+    const GrainMesh& mesh = result.specimen->mesh;
+    const Snapshot& snapshot = result.snapshots[1];
+    const auto points = vtu_array<double>(grains, "Points");
+    ASSERT_EQ(points.size(), 3 * mesh.nodes.size());
+    EXPECT_EQ(points[3 * 7 + 1], mesh.nodes[7].y);
+    const auto corners = vtu_array<std::int32_t>(grains, "connectivity");
+    ASSERT_EQ(corners.size(), 3 * mesh.triangles.size());
+    EXPECT_EQ(corners[3 * 5 + 2], mesh.triangles[5][2]);
+    EXPECT_EQ(vtu_array<std::int64_t>(grains, "offsets").back(), static_cast<std::int64_t>(corners.size()));
+    EXPECT_EQ(vtu_array<std::uint8_t>(grains, "types").front(), 5);
+    EXPECT_EQ(vtu_array<float>(grains, "damage"), snapshot.damage);
+    EXPECT_FLOAT_EQ(vtu_array<float>(grains, "stress_yy_MPa")[3], static_cast<float>(snapshot.stress_yy_Pa[3] * 1e-6));
+    EXPECT_FLOAT_EQ(vtu_array<float>(grains, "displacement_m")[3 * 6], static_cast<float>(snapshot.displacement_m[6].x));
+    EXPECT_EQ(vtu_array<std::int32_t>(grains, "grain")[4], 1);
+    const float major = vtu_array<float>(grains, "sigma_1_MPa")[3];
+    EXPECT_GE(major, vtu_array<float>(grains, "sigma_3_MPa")[3]);
+    EXPECT_GE(major, static_cast<float>(snapshot.stress_yy_Pa[3] * 1e-6));
+
+    const std::string cracks = read_file(folder / "cracks-002.vtu");
+    EXPECT_EQ(vtu_array<std::int32_t>(cracks, "mode"), (std::vector<std::int32_t>{0, 1}));
+    EXPECT_EQ(vtu_array<std::int64_t>(cracks, "step"), (std::vector<std::int64_t>{550, 800}));
+    EXPECT_EQ(vtu_array<float>(cracks, "opening_m").size(), 2U);
+    EXPECT_FLOAT_EQ(vtu_array<float>(cracks, "time")[0], static_cast<float>(result.cracks[0].axial_strain));
+    EXPECT_EQ(vtu_array<std::uint8_t>(cracks, "types").front(), 3);
+}
+
+TEST_F(Fields, CollectionNamesEveryFileAtGrowingTimes) {
+    write_vtu(directory, result);
+    const std::string collection = read_file(directory.path() / "uniaxial-compression-s3.pvd");
+    const std::regex entry("timestep=\"([^\"]+)\" group=\"\" part=\"([01])\" file=\"([^\"]+)\"");
+    double before = -1.0;
+    int entries = 0;
+    for (std::sregex_iterator e(collection.begin(), collection.end(), entry), none; e != none; ++e, ++entries) {
+        EXPECT_TRUE(std::filesystem::exists(directory.path() / (*e)[3].str())) << (*e)[3];
+        const double time = std::stod((*e)[1]);
+        EXPECT_TRUE((*e)[2] == "0" ? time > before : time == before) << time;
+        before = time;
+    }
+    EXPECT_EQ(entries, 6);
+}
+
+TEST_F(Fields, TimesThatDoNotGrowBecomeNumbers) {
+    result.snapshots[2].axial_strain = result.snapshots[1].axial_strain;
+    write_vtu(directory, result);
+    const std::string collection = read_file(directory.path() / "uniaxial-compression-s3.pvd");
+    EXPECT_NE(collection.find("timestep=\"2\""), std::string::npos);
+    EXPECT_NE(collection.find("timestep = number of the snapshot"), std::string::npos);
+}
+
+TEST(VtkCompressed, HoldsAnyLength) {
+    for (const std::size_t length : {std::size_t{0}, std::size_t{1}, std::size_t{1} << 20, (std::size_t{1} << 20) + 5, std::size_t{3} << 20}) {
+        std::string bytes(length, '\0');
+        for (std::size_t i = 0; i < length; ++i) bytes[i] = static_cast<char>(i * i % 251);
+        EXPECT_EQ(decompress(vtk_compressed(bytes)), bytes) << length;
+    }
+}
+
+TEST(CrackGeometry, FacesMoveWithTheirOwnGrain) {
+    const TestResult result = make_result();
+    const auto faces = find_crack_faces(*result.specimen, result.cracks);
+    ASSERT_EQ(faces.size(), 2U);
+    const auto a = face_displacement(faces[0].a, result.snapshots[1].displacement_m);
+    const auto b = face_displacement(faces[0].b, result.snapshots[1].displacement_m);
+    EXPECT_NEAR(b[0].x - a[0].x, 1e-6, 1e-15);
+    EXPECT_NEAR(b[1].x - a[1].x, 1e-6, 1e-15);
+    EXPECT_NEAR(a[0].y, -result.snapshots[1].axial_strain * 0.25e-3, 1e-15);   // a quarter of the way up the edge
+    EXPECT_NEAR(b[1].y, -result.snapshots[1].axial_strain * 0.75e-3, 1e-15);
+}
+
+TEST(CrackGeometry, AnUnknownNeighbourDoesNotMove) {
+    TestResult result = make_result();
+    result.cracks[0].grain_b = -1;
+    const auto faces = find_crack_faces(*result.specimen, result.cracks);
+    EXPECT_EQ(faces[0].b.node_0, -1);
+    EXPECT_EQ(face_displacement(faces[0].b, result.snapshots[1].displacement_m)[0].x, 0.0);
+}
+
+}  // namespace
+}  // namespace feldspar

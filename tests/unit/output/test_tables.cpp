@@ -1,0 +1,184 @@
+// The files that users read as tables: history CSV and summary.json.
+#include <charconv>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/results.hpp"
+#include "feldspar/output/user_units.hpp"
+#include "scratch_directory.hpp"
+#include "synthetic_result.hpp"
+
+namespace feldspar {
+namespace {
+
+using namespace testing;
+using nlohmann::json;
+
+class Tables : public ::testing::Test {
+protected:
+    ScratchDirectory scratch;
+    RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
+
+    json summary(const std::vector<TestResult>& results, bool complete = true) {
+        write_summary(directory, make_job(), results, make_properties(), make_provenance(), complete);
+        return json::parse(read_file(directory.path() / "summary.json"));
+    }
+};
+
+std::vector<std::string> split(const std::string& line, char mark) {
+    std::vector<std::string> parts;
+    std::istringstream stream(line);
+    for (std::string part; std::getline(stream, part, mark);) parts.push_back(part);
+    return parts;
+}
+
+TEST(TestStem, NamesKindSeedAndPressure) {
+    EXPECT_EQ(test_stem(make_result()), "uniaxial-compression-s3");
+    TestResult biaxial = make_result(TestKind::biaxial, 1);
+    EXPECT_EQ(test_stem(biaxial), "biaxial-s1-p4");
+    biaxial.test.sigma3_Pa = 2.5e6;
+    EXPECT_EQ(test_stem(biaxial), "biaxial-s1-p2.5");
+    biaxial.test.sigma3_Pa = 10e6;
+    EXPECT_EQ(test_stem(biaxial), "biaxial-s1-p10");
+}
+
+TEST_F(Tables, HistoryHasAHeaderThatSaysUnitsAndSigns) {
+    write_history_csv(directory, make_result(), make_provenance());
+    const std::string text = read_file(directory.path() / "history-uniaxial-compression-s3.csv");
+    EXPECT_NE(text.find("# signs: compression positive"), std::string::npos);
+    for (const HistoryColumn& column : history_columns()) {
+        EXPECT_NE(text.find(std::string("#   ") + column.name + " [" + column.unit + "]"), std::string::npos) << column.name;
+    }
+}
+
+TEST_F(Tables, HistoryReadsBackToTheLastBit) {
+    const TestResult result = make_result();
+    write_history_csv(directory, result, make_provenance());
+    std::istringstream stream(read_file(directory.path() / "history-uniaxial-compression-s3.csv"));
+    std::string line;
+    while (std::getline(stream, line) && line.starts_with("#")) {
+    }
+    const auto names = split(line, ',');
+    const auto columns = history_columns();
+    ASSERT_EQ(names.size(), columns.size());
+    for (std::size_t c = 0; c < columns.size(); ++c) EXPECT_EQ(names[c], columns[c].name);
+    std::size_t row = 0;
+    for (; std::getline(stream, line); ++row) {
+        const auto cells = split(line, ',');
+        ASSERT_EQ(cells.size(), columns.size());
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            double value = 0.0;
+            std::from_chars(cells[c].data(), cells[c].data() + cells[c].size(), value);
+            EXPECT_EQ(value, columns[c].value(result.history[row])) << names[c];
+        }
+    }
+    EXPECT_EQ(row, result.history.size());
+}
+
+TEST_F(Tables, HistoryDependsOnTheResultsAlone) {
+    TestResult result = make_result();
+    write_history_csv(directory, result, make_provenance());
+    const std::string before = read_file(directory.path() / "history-uniaxial-compression-s3.csv");
+    Provenance later = make_provenance();
+    later.started = "2027-01-01T00:00:00Z";
+    later.machine = "another machine";
+    later.threads = 64;
+    later.command_line = "feldspar run --threads 64 augig.toml";
+    result.threads = 64;
+    result.wall_s = 1.0;
+    write_history_csv(directory, result, later);
+    EXPECT_EQ(read_file(directory.path() / "history-uniaxial-compression-s3.csv"), before);
+}
+
+TEST_F(Tables, SummaryHasEveryPromisedName) {
+    const json top = summary({make_result(), make_result(TestKind::brazilian, 3)});
+    for (const char* name : {"version", "commit", "seeds", "specimen", "brazilian_specimen", "tests", "properties", "laboratory", "envelope",
+                             "job", "provenance", "complete", "signs"}) {
+        EXPECT_TRUE(top.contains(name)) << name;
+    }
+    for (const char* name : {"grains", "contacts", "nodes", "triangles", "merged_edges", "vertices_per_grain"}) {
+        EXPECT_TRUE(top["specimen"].contains(name)) << name;
+    }
+    for (const char* name :
+         {"kind", "model", "contact", "law", "numerics", "plane", "seed", "sigma3_MPa", "peak_stress_MPa", "peak_reached", "first_crack_MPa",
+          "E_GPa", "E_tangent_GPa", "nu", "steps", "steps_to_peak", "preparation_steps", "wall_s", "ms_per_step", "threads", "residual_mean",
+          "residual_at_peak", "imbalance_max", "kinetic_over_strain", "damping_over_fracture", "cracks_tensile", "cracks_shear",
+          "energy_residual", "quasi_static"}) {
+        EXPECT_TRUE(top["tests"][0].contains(name)) << name;
+    }
+    for (const char* name : {"E_GPa", "nu", "UCS_MPa", "cohesion_MPa", "friction_angle_deg", "hoek_brown_mi"}) {
+        for (const char* part : {"median", "minimum", "maximum", "seeds"}) EXPECT_TRUE(top["properties"][name].contains(part)) << name;
+    }
+}
+
+TEST_F(Tables, SummaryIsInUserUnits) {
+    const json top = summary({make_result(), make_result(TestKind::biaxial, 4)}, false);
+    const json& test = top["tests"][0];
+    EXPECT_EQ(test["kind"], "uniaxial-compression");
+    EXPECT_EQ(test["contact"], "lobatto3");
+    EXPECT_EQ(test["plane"], "stress");
+    EXPECT_NEAR(test["peak_stress_MPa"].get<double>(), 122.1, 1e-12);
+    EXPECT_NEAR(test["E_GPa"].get<double>(), 25.0, 1e-12);
+    EXPECT_EQ(test["cracks_tensile"], 1);
+    EXPECT_EQ(test["cracks_shear"], 1);
+    EXPECT_EQ(test["quasi_static"], "A");
+    EXPECT_NEAR(top["tests"][1]["sigma3_MPa"].get<double>(), 4.0, 1e-12);
+    EXPECT_NEAR(top["properties"]["UCS_MPa"]["median"].get<double>(), 120.0, 1e-12);
+    EXPECT_NEAR(top["properties"]["E_GPa"]["maximum"].get<double>(), 26.0, 1e-12);
+    EXPECT_NEAR(top["properties"]["friction_angle_deg"]["median"].get<double>(), 52.0, 1e-12);
+    EXPECT_NEAR(top["laboratory"]["friction_angle_deg"].get<double>(), 53.0, 0.01);
+    EXPECT_NEAR(top["laboratory"]["UCS_MPa"].get<double>(), 122.1, 1e-12);
+    EXPECT_NEAR(top["envelope"]["fits"][0]["sigma1_MPa"][2].get<double>(), 200.0, 1e-12);
+    EXPECT_EQ(top["specimens"].size(), 2U);
+    EXPECT_EQ(top["specimen"]["grains"], 12);
+    EXPECT_EQ(top["complete"], false);
+}
+
+TEST_F(Tables, WhatIsNotDefinedIsNull) {
+    const json top = summary({make_result(TestKind::brazilian)});
+    EXPECT_TRUE(top["tests"][0]["nu"].is_null());
+    EXPECT_TRUE(top["tests"][0]["sigma_cd_MPa"].is_null());
+    EXPECT_TRUE(top["tests"][0]["peak_change_at_third"].is_null());
+    EXPECT_TRUE(top["properties"]["hoek_brown_mi"]["median"].is_null());
+}
+
+TEST_F(Tables, SummaryOfNothingIsStillWhole) {
+    const json top = summary({}, false);
+    EXPECT_TRUE(top["tests"].empty());
+    EXPECT_EQ(top["complete"], false);
+}
+
+TEST_F(Tables, SummaryListsTheFilesThatExist) {
+    const TestResult result = make_result();
+    EXPECT_TRUE(summary({result})["tests"][0]["files"].empty());
+    write_history_csv(directory, result, make_provenance());
+    EXPECT_EQ(summary({result})["tests"][0]["files"]["history"], "history-uniaxial-compression-s3.csv");
+}
+
+TEST(UserUnits, EveryNameCarriesItsUnit) {
+    EXPECT_EQ(user_quantity("E_tangent_Pa").name, "E_tangent_GPa");
+    EXPECT_EQ(user_quantity("BTS_Pa").name, "BTS_MPa");
+    EXPECT_EQ(user_quantity("hoek_brown_UCS_Pa").name, "hoek_brown_UCS_MPa");
+    EXPECT_EQ(user_quantity("nu").name, "nu");
+    EXPECT_EQ(user_quantity("unheard_of").label, "unheard_of");
+    EXPECT_EQ(property_of_laboratory("friction_angle"), "friction_angle_deg");
+    EXPECT_EQ(property_of_laboratory("E"), "E_Pa");
+}
+
+TEST(Provenance, NamesProgramMachineAndTime) {
+    const Provenance provenance = collect_provenance("feldspar run job.toml", 2);
+    EXPECT_FALSE(provenance.version.empty());
+    EXPECT_FALSE(provenance.commit.empty());
+    EXPECT_FALSE(provenance.machine.empty());
+    EXPECT_FALSE(provenance.compiler.empty());
+    ASSERT_EQ(provenance.started.size(), 20U);
+    EXPECT_EQ(provenance.started.back(), 'Z');
+    EXPECT_EQ(provenance.threads, 2);
+}
+
+}  // namespace
+}  // namespace feldspar
