@@ -1,0 +1,98 @@
+#include "feldspar/study/job.hpp"
+
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "feldspar/study/job_sections.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr std::size_t largest_file = 16u << 20;  // bytes; a job is a page, so anything beyond is a mistaken file
+
+bool fits_file_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.'; }
+
+// A name for the run's directory: letters, digits, '-', '_' and '.', not beginning with '.'.
+std::string name_from_stem(const std::filesystem::path& file) {
+    std::string stem = file.stem().string();
+    for (char& c : stem)
+        if (!fits_file_name(c)) c = '-';
+    while (!stem.empty() && stem.front() == '.') stem.erase(0, 1);
+    return stem.empty() ? "job" : stem.substr(0, 100);
+}
+
+std::string read_name(const TableReader& root, const std::filesystem::path& file) {
+    if (!root.has("name")) return name_from_stem(file);
+    const std::string given = root.text("name");
+    for (char c : given)
+        if (!fits_file_name(c) || given.front() == '.' || given.size() > 100)
+            root.fail("name", shown(*root.find("name")) + " cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+    return given;
+}
+
+std::string read_text(const std::filesystem::path& file) {
+    const std::string shown_name = file.string();
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) throw InputError({shown_name, 0, 0, {}}, "is a directory, not a job file");
+    errno = 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw InputError({shown_name, 0, 0, {}}, std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"), {}, "'feldspar new uniaxial-compression' prints a job to start from");
+    std::string text(largest_file + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (stream.bad()) throw InputError({shown_name, 0, 0, {}}, "cannot be read to its end");
+    if (text.size() > largest_file) throw InputError({shown_name, 0, 0, {}}, "is larger than 16 MiB, which no job is");
+    return text;
+}
+
+// The disc of the Brazilian test: the same grains in its own outline.
+SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m) {
+    SpecimenSpec disc = specimen;
+    if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m) disc.packing_file.clear();
+    disc.outline = OutlineSpec{};
+    disc.outline.shape = Shape::disc;
+    disc.outline.diameter_m = diameter_m;
+    return disc;
+}
+
+}  // namespace
+
+Job parse_job(const std::string& text, const std::string& name) {
+    const toml::table tree = parse_toml(text, name);
+    const TableReader root(tree, "", name, {"name", "specimen", "model", "material", "numerics", "test", "run", "laboratory"});
+    Job job;
+    job.file = name;
+    job.text = text;
+    job.name = read_name(root, job.file);
+    root.require({"specimen", "material", "test"});
+
+    const RunSettings run = read_run(root);
+    job.seeds = run.seeds;
+    job.threads = run.threads;
+    job.specimen = read_specimen(root, job.file.parent_path());
+    job.model = read_model(root);
+    const TableReader material = root.table("material", {"grain", "contact"});
+    material.require({"grain", "contact"});
+    job.grain = read_grain_material(material, job.model);
+    job.contact = read_contact_material(material);
+    job.numerics = read_numerics(root);
+    TestList tests = read_tests(root, job.specimen, job.seeds);
+    job.tests = std::move(tests.tests);
+    if (tests.brazilian_diameter_m) job.brazilian_specimen = disc_of(job.specimen, *tests.brazilian_diameter_m);
+    job.laboratory = read_laboratory(root);
+
+    if (!job.specimen.packing_file.empty()) {
+        bool several = job.seeds.size() > 1;
+        for (const TestSpec& test : job.tests) several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
+        if (several)
+            root.table("specimen", {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
+                .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
+    }
+    return job;
+}
+
+Job read_job(const std::filesystem::path& file) { return parse_job(read_text(file), file.string()); }
+
+}  // namespace feldspar

@@ -1,0 +1,134 @@
+#include "feldspar/study/job_template.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/study/toml_reader.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr std::array<std::string_view, 5> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory"};
+
+constexpr const char* common_head = R"(#
+#   feldspar check JOB.toml     builds everything, prints counts, memory and expected time, and stops
+#   feldspar run   JOB.toml     runs it; results go to a new directory
+#
+# Every quantity is text with its unit; udunits2 knows most of them (mm, m, MPa, GPa, GPa/m, N/m, kg/m3, deg, %).
+# The numbers are those of the Augig granite (Monteiro Azevedo, Farinha, Oliveira 2022, Geotechnics 2, 523-548, Table 7):
+# replace them with yours. A line that begins with '#' shows a key that may be left out, with its default.
+
+[specimen]
+shape = "rectangle"                 # also "disc" (diameter) and "polygon" (vertices, edge_labels)
+width = "80 mm"                     # the Brazilian test cuts its own disc of this diameter
+height = "160 mm"                   # the direction of loading
+thickness = "80 mm"                 # out of plane; scales forces, not stresses
+
+[specimen.grains]
+diameter = { distribution = "uniform", minimum = "2 mm", maximum = "4 mm" }
+# diameter = { distribution = "log-normal", median = "3 mm", log_standard_deviation = 0.2, minimum = "2 mm", maximum = "5 mm" }
+# diameter = { distribution = "sieve", curve = [["2 mm", "0 %"], ["3 mm", "40 %"], ["4 mm", "100 %"]] }   # by mass passing
+porosity = 0.10                     # sets the number of grains only: the grains fill the plane
+# merge_length = "auto"             # shorter grain edges are merged: mean diameter / 12; or a length, or "none"
+# triangles_per_grain = 0           # 0: the standard mesh of about 15 triangles; or about so many
+
+[model]
+kind = "flexible"                   # grains of elastic triangles
+contact = "lobatto3"                # three contact points on a grain edge; "point": one in the middle
+plane = "stress"                    # or "strain"
+
+[material.grain]
+E = "25.8 GPa"                      # Young's modulus of the grains
+nu = 0.23                           # Poisson's ratio of the grains: above -1, below 0.5
+density = "2650 kg/m3"
+
+[material.contact]
+law = "bilinear"                    # softens in two lines, dissipating Gfn, Gfs; also "bilinear-literal", "linear", "brittle"
+Kn = "18.00e4 GPa/m"                # normal stiffness per area
+eta = 0.28                          # shear over normal stiffness ks/kn; or kratio = kn/ks
+sigma_nt = "8.5 MPa"                # tensile strength
+tau = "29.75 MPa"                   # cohesion
+mu = 0.40                           # friction coefficient
+Gfn = "20 N/m"                      # fracture energy in tension (leave out for "brittle")
+Gfs = "800 N/m"                     # fracture energy in shear (leave out for "brittle")
+# shear_measure = "total"           # damage counts the whole slip; "beyond-friction": only what friction does not carry
+# tension_unloading = "elastic"     # with the initial stiffness; "secant": back to the origin
+
+[numerics]
+kind = "adaptive"                   # finds its own loading rate; also "paper" (fixed speed, local damping), "dynamic" (real masses)
+accuracy = "0.5 %"                  # wanted of a strength: 0.05 % to 10 %; looser is faster
+# confirm = false                   # true: repeat each test at a third of the target and report the change of the peak
+# maximum_steps = 2000000           # stop there with what there is (no limit unless given)
+)";
+
+constexpr const char* common_test = R"(# stop_fraction = 0.8               # the test ends when the stress has fallen to this fraction of the peak
+# maximum_strain = 0.05             # ... or at this axial strain
+# snapshots = 8                     # fields kept between the first crack and the end
+# seeds = [1, 2, 3]                 # the packings of this test, if not all of [run]
+)";
+
+constexpr const char* common_end = R"(
+[run]
+seeds = [1, 2, 3]                   # one packing each: the scatter between packings is part of the answer
+threads = "auto"                    # as many as there are cores; the results do not depend on it
+
+[laboratory]                        # measured values, shown beside the results; leave out what you have not
+E = "25.8 GPa"
+nu = 0.23
+UCS = "122.1 MPa"                   # uniaxial compressive strength
+# DTS = "8 MPa"                     # direct tensile strength
+BTS = "8.8 MPa"                     # Brazilian tensile strength
+cohesion = "21.0 MPa"               # Mohr-Coulomb
+friction_angle = "53.0 deg"
+# hoek_brown_mi = 25                # Hoek-Brown
+)";
+
+std::string uniaxial_test() {
+    return std::string(R"(
+[[test]]
+kind = "uniaxial-compression"       # gives E, nu, UCS, crack initiation and crack damage stress
+)") + common_test;
+}
+
+std::string tension_test() {
+    return std::string(R"(
+[[test]]
+kind = "direct-tension"             # gives the direct tensile strength DTS
+)") + common_test;
+}
+
+std::string biaxial_test() {
+    return std::string(R"(
+[[test]]
+kind = "biaxial"                    # isotropic consolidation, then axial loading at constant sigma3
+sigma3 = ["4 MPa", "10 MPa"]        # one test for each; with a uniaxial test they give cohesion, friction angle and mi
+)") + common_test;
+}
+
+std::string brazilian_test() {
+    return std::string(R"(
+[[test]]
+kind = "brazilian"                  # a disc pressed between two plates: gives the indirect tensile strength BTS
+# diameter = "80 mm"                # of the disc; the specimen's width unless given
+# plate_stiffness_factor = 1.0      # stiffness of the plates, as a multiple of the contacts' Kn
+# plate_mu = 0.4                    # friction between plates and disc
+)") + common_test;
+}
+
+}  // namespace
+
+std::vector<std::string_view> job_template_kinds() { return {kinds.begin(), kinds.end()}; }
+
+std::string job_template(std::string_view kind) {
+    if (kind == "uniaxial-compression") return "# A uniaxial compression test.\n" + std::string(common_head) + uniaxial_test() + common_end;
+    if (kind == "direct-tension") return "# A direct tension test.\n" + std::string(common_head) + tension_test() + common_end;
+    if (kind == "brazilian") return "# A Brazilian test.\n" + std::string(common_head) + brazilian_test() + common_end;
+    if (kind == "biaxial")  // the envelope needs the uniaxial point
+        return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" + std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
+    if (kind == "laboratory")
+        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() + biaxial_test() + common_end;
+    throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(kinds), did_you_mean(kind, kinds));
+}
+
+}  // namespace feldspar

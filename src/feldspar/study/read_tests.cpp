@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "feldspar/study/job_sections.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr long long largest_seed = std::numeric_limits<long long>::max();
+
+bool has_label(const OutlineSpec& outline, std::string_view label) {
+    return std::find(outline.edge_labels.begin(), outline.edge_labels.end(), label) != outline.edge_labels.end();
+}
+
+// Platens need a flat top and bottom.
+void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& outline) {
+    if (kind == TestKind::brazilian || outline.shape == Shape::rectangle) return;
+    if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) return;
+    const std::string shape = outline.shape == Shape::disc ? "a disc" : "a polygon without edges labelled \"top\" and \"bottom\"";
+    table.fail("kind", "'" + std::string(name(kind)) + "' presses on flat ends, which " + shape + " has not",
+               "shape = \"rectangle\", or a polygon with edges labelled \"top\" and \"bottom\"");
+}
+
+// The Brazilian test makes its own disc, of the specimen's width unless the test says otherwise.
+double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen) {
+    if (!table.has("diameter") && specimen.outline.shape == Shape::polygon)
+        table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)");
+    const double usual = specimen.outline.shape == Shape::disc ? specimen.outline.diameter_m : specimen.outline.width_m;
+    const double diameter = table.quantity("diameter", Dimension::length, positive, usual);
+    const double largest = largest_diameter_m(specimen.grain_sizes);
+    if (largest > 0.5 * diameter)
+        table.fail("diameter", "grains of up to " + format_exact(1000.0 * largest) + " mm do not fit a disc of " + format_exact(1000.0 * diameter) + " mm",
+                   "a disc of at least twice the largest grain");
+    return diameter;
+}
+
+std::vector<double> confining_stresses(const TableReader& table) {
+    const toml::array* list = table.find("sigma3") == nullptr ? nullptr : table.find("sigma3")->as_array();
+    const Range range{0.0, std::numeric_limits<double>::infinity(), false, true, "greater than zero (for zero: kind = \"uniaxial-compression\")"};
+    if (list == nullptr) return {table.quantity("sigma3", Dimension::stress, range)};
+    if (list->empty()) table.fail("sigma3", "the list is empty", "one stress or more");
+    std::vector<double> values;
+    for (const toml::node& node : *list) values.push_back(table.quantity_of(node, "sigma3", Dimension::stress, range));
+    return values;
+}
+
+struct ReadTest {
+    std::vector<TestSpec> tests;  // one for each sigma3
+    std::optional<double> diameter_m;
+};
+
+ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen) {
+    TestSpec test;
+    test.kind = table.choice<TestKind>("kind", {{"uniaxial-compression", TestKind::uniaxial_compression},
+                                                {"direct-tension", TestKind::direct_tension},
+                                                {"biaxial", TestKind::biaxial},
+                                                {"brazilian", TestKind::brazilian}});
+    const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
+    const bool brazilian = test.kind == TestKind::brazilian;
+    if (!brazilian) table.refuse({"diameter", "plate_stiffness_factor", "plate_mu"}, setting, "only with kind = \"brazilian\"");
+    if (test.kind != TestKind::biaxial) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
+    check_outline(table, test.kind, specimen.outline);
+
+    test.stop_fraction = table.fraction("stop_fraction", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.stop_fraction);
+    test.maximum_strain = table.fraction("maximum_strain", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.maximum_strain);
+    test.snapshots = static_cast<int>(table.integer("snapshots", 0, 1000, test.snapshots));
+    if (table.has("seeds"))
+        for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
+
+    ReadTest result;
+    if (brazilian) {
+        result.diameter_m = brazilian_diameter(table, specimen);
+        test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
+        test.plate_mu = table.number("plate_mu", not_negative, test.plate_mu);
+    }
+    if (test.kind != TestKind::biaxial) {
+        result.tests.push_back(test);
+        return result;
+    }
+    for (double sigma3 : confining_stresses(table)) {
+        test.sigma3_Pa = sigma3;
+        result.tests.push_back(test);
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_view key) {
+    std::vector<std::uint64_t> seeds;
+    for (const toml::node& node : table.array(key)) {
+        const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, 0, largest_seed));
+        if (std::find(seeds.begin(), seeds.end(), seed) != seeds.end())
+            table.fail_at(node, key, "the seed " + std::to_string(seed) + " is given twice", "each seed once");
+        seeds.push_back(seed);
+    }
+    if (seeds.empty()) table.fail(key, "the list is empty", "one seed or more, such as [1, 2, 3]");
+    return seeds;
+}
+
+TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<std::uint64_t>& run_seeds) {
+    if (!root.has("test")) throw InputError({root.file(), 0, 0, {}}, "there is no test", "one [[test]] or more");
+    if (root.find("test")->is_table()) root.fail("test", "is written as one table", "a list of tables, each headed [[test]]");
+    const toml::array& list = root.array("test");
+    if (list.empty()) root.fail("test", "there is no test", "one [[test]] or more");
+
+    TestList result;
+    std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
+    int number = 0;
+    for (const toml::node& node : list) {
+        const std::string path = "test[" + std::to_string(++number) + "]";
+        if (!node.is_table()) root.fail_at(node, "test", shown(node) + " is not a test", "a table headed [[test]]");
+        const TableReader table(*node.as_table(), path, root.file(),
+                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "diameter", "plate_stiffness_factor",
+                                 "plate_mu", "snapshots", "seeds"});
+        ReadTest read = read_one(table, specimen);
+        if (read.diameter_m) {
+            if (result.brazilian_diameter_m && *result.brazilian_diameter_m != *read.diameter_m)
+                table.fail("diameter", "differs from that of an earlier Brazilian test", "one diameter in a job");
+            result.brazilian_diameter_m = read.diameter_m;
+        }
+        for (TestSpec& test : read.tests) {
+            std::vector<std::uint64_t> seeds(test.seeds.begin(), test.seeds.end());
+            if (seeds.empty()) seeds = run_seeds;
+            for (std::uint64_t seed : seeds) {
+                // as many digits as the names of the result files show
+                const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
+                const std::string key = std::string(name(test.kind)) + (test.kind == TestKind::biaxial ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
+                if (!taken.insert(key + " s" + std::to_string(seed)).second)
+                    table.fail(table.has("sigma3") ? "sigma3" : "kind", key + " with seed " + std::to_string(seed) + " is asked for twice", "each test once for each seed");
+            }
+            result.tests.push_back(std::move(test));
+        }
+    }
+    return result;
+}
+
+RunSettings read_run(const TableReader& root) {
+    RunSettings run;
+    if (!root.has("run")) return run;
+    const TableReader table = root.table("run", {"seeds", "seed", "threads"});
+    if (table.has("seeds") && table.has("seed")) table.fail("seed", "given beside seeds", "seeds = [1, 2, 3], or seed = 1");
+    if (table.has("seeds")) run.seeds = read_seed_list(table, "seeds");
+    if (table.has("seed")) run.seeds = {static_cast<std::uint64_t>(table.integer("seed", 0, largest_seed))};
+    const toml::node* threads = table.find("threads");
+    const bool automatic = threads != nullptr && threads->is_string() && threads->as_string()->get() == "auto";
+    if (threads != nullptr && !automatic) {
+        if (!threads->is_integer()) table.fail("threads", shown(*threads) + " is not a number of threads", "\"auto\", or a whole number from 1 to 256");
+        run.threads = static_cast<int>(table.integer("threads", 1, 256));
+    }
+    return run;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,177 @@
+// A job written out in full: SI units, every default, digits enough to read back the same bits.
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "feldspar/base/units.hpp"
+#include "feldspar/study/job.hpp"
+
+namespace feldspar {
+namespace {
+
+std::string quote(const std::string& text) {
+    std::string result = "\"";
+    for (char c : text) {
+        if (c == '"' || c == '\\') result += '\\';
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) result += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+        else result += c;
+    }
+    return result + "\"";
+}
+
+std::string si(double value, Dimension dimension) { return quote(format_si(value, dimension)); }
+
+// A key's line: key = value.
+class Lines {
+public:
+    void head(const std::string& title) { text_ += (text_.empty() ? "" : "\n") + title + "\n"; }
+    void raw(const std::string& key, const std::string& value) { text_ += key + " = " + value + "\n"; }
+    void word(const std::string& key, const std::string& value) { raw(key, quote(value)); }
+    void number(const std::string& key, double value) { raw(key, format_exact(value)); }
+    void quantity(const std::string& key, double value, Dimension dimension) { raw(key, si(value, dimension)); }
+    std::string take() { return std::move(text_); }
+
+private:
+    std::string text_;
+};
+
+template <class Seeds>
+std::string seed_list(const Seeds& seeds) {
+    return fmt::format("[{}]", fmt::join(seeds, ", "));
+}
+
+void write_outline(Lines& out, const OutlineSpec& outline) {
+    switch (outline.shape) {
+        case Shape::rectangle:
+            out.word("shape", "rectangle");
+            out.quantity("width", outline.width_m, Dimension::length);
+            out.quantity("height", outline.height_m, Dimension::length);
+            break;
+        case Shape::disc:
+            out.word("shape", "disc");
+            out.quantity("diameter", outline.diameter_m, Dimension::length);
+            break;
+        case Shape::polygon: {
+            out.word("shape", "polygon");
+            std::vector<std::string> items;
+            for (Vec2 v : outline.vertices_m) items.push_back(fmt::format("[{}, {}]", si(v.x, Dimension::length), si(v.y, Dimension::length)));
+            out.raw("vertices", fmt::format("[{}]", fmt::join(items, ", ")));
+            items.clear();
+            for (const std::string& label : outline.edge_labels) items.push_back(quote(label));
+            if (!items.empty()) out.raw("edge_labels", fmt::format("[{}]", fmt::join(items, ", ")));
+            break;
+        }
+    }
+}
+
+std::string grain_sizes(const GrainSizeSpec& sizes) {
+    switch (sizes.kind) {
+        case GrainSizeKind::uniform:
+            return fmt::format("{{ distribution = \"uniform\", minimum = {}, maximum = {} }}", si(sizes.minimum_m, Dimension::length),
+                               si(sizes.maximum_m, Dimension::length));
+        case GrainSizeKind::log_normal:
+            return fmt::format("{{ distribution = \"log-normal\", median = {}, log_standard_deviation = {}, minimum = {}, maximum = {} }}",
+                               si(sizes.median_m, Dimension::length), format_exact(sizes.log_standard_deviation),
+                               si(sizes.minimum_m, Dimension::length), si(sizes.maximum_m, Dimension::length));
+        case GrainSizeKind::sieve: break;
+    }
+    std::vector<std::string> points;
+    for (const SievePoint& point : sizes.sieve) points.push_back(fmt::format("[{}, {}]", si(point.diameter_m, Dimension::length), format_exact(point.passing)));
+    return fmt::format("{{ distribution = \"sieve\", curve = [{}] }}", fmt::join(points, ", "));
+}
+
+void write_specimen(Lines& out, const SpecimenSpec& specimen) {
+    out.head("[specimen]");
+    write_outline(out, specimen.outline);
+    out.quantity("thickness", specimen.thickness_m, Dimension::length);
+    if (!specimen.packing_file.empty()) out.word("packing", std::filesystem::absolute(specimen.packing_file).string());
+    out.head("[specimen.grains]");
+    out.raw("diameter", grain_sizes(specimen.grain_sizes));
+    out.number("porosity", specimen.porosity);
+    if (!specimen.merge_length_m) out.word("merge_length", "auto");
+    else if (*specimen.merge_length_m == 0.0) out.word("merge_length", "none");
+    else out.quantity("merge_length", *specimen.merge_length_m, Dimension::length);
+    out.raw("triangles_per_grain", std::to_string(specimen.triangles_per_grain));
+}
+
+void write_materials(Lines& out, const Job& job) {
+    out.head("[material.grain]");
+    out.quantity("E", job.grain.E_Pa, Dimension::stress);
+    out.number("nu", job.grain.nu);
+    out.quantity("density", job.grain.density_kg_m3, Dimension::density);
+    out.head("[material.contact]");
+    out.word("law", name(job.contact.law));
+    out.quantity("Kn", job.contact.Kn_Pa_m, Dimension::stiffness_gradient);
+    out.number("eta", job.contact.eta);
+    out.quantity("sigma_nt", job.contact.sigma_nt_Pa, Dimension::stress);
+    out.quantity("tau", job.contact.tau_Pa, Dimension::stress);
+    out.number("mu", job.contact.mu);
+    if (job.contact.law == ContactLaw::brittle) return;
+    out.quantity("Gfn", job.contact.Gfn_J_m2, Dimension::fracture_energy);
+    out.quantity("Gfs", job.contact.Gfs_J_m2, Dimension::fracture_energy);
+    out.word("shear_measure", job.contact.shear_measure == ShearMeasure::total ? "total" : "beyond-friction");
+    out.word("tension_unloading", job.contact.tension_unloading == TensionUnloading::elastic ? "elastic" : "secant");
+}
+
+void write_numerics(Lines& out, const NumericsSpec& numerics) {
+    out.head("[numerics]");
+    out.word("kind", name(numerics.kind));
+    if (numerics.kind == NumericsKind::adaptive) {
+        if (numerics.residual_target) out.number("residual_target", *numerics.residual_target);
+        else out.number("accuracy", numerics.accuracy);
+    } else {
+        out.number("damping", numerics.damping);
+    }
+    if (numerics.speed_m) out.quantity("speed", *numerics.speed_m, numerics.kind == NumericsKind::paper ? Dimension::speed_per_step : Dimension::speed);
+    if (numerics.mass_factor) out.number("mass_factor", *numerics.mass_factor);
+    if (numerics.time_step_s) out.quantity("time_step", *numerics.time_step_s, Dimension::time);
+    if (numerics.maximum_steps) out.raw("maximum_steps", std::to_string(*numerics.maximum_steps));
+    out.raw("confirm", numerics.confirm ? "true" : "false");
+}
+
+void write_test(Lines& out, const TestSpec& test, const Job& job) {
+    out.head("[[test]]");
+    out.word("kind", name(test.kind));
+    if (test.kind == TestKind::biaxial) out.quantity("sigma3", test.sigma3_Pa, Dimension::stress);
+    out.number("stop_fraction", test.stop_fraction);
+    out.number("maximum_strain", test.maximum_strain);
+    if (test.kind == TestKind::brazilian) {
+        out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
+        out.number("plate_stiffness_factor", test.plate_stiffness_factor);
+        out.number("plate_mu", test.plate_mu);
+    }
+    out.raw("snapshots", std::to_string(test.snapshots));
+    if (!test.seeds.empty()) out.raw("seeds", seed_list(test.seeds));
+}
+
+void write_laboratory(Lines& out, const Job& job) {
+    if (job.laboratory.empty()) return;
+    out.head("[laboratory]");
+    for (const auto& [key, value] : job.laboratory) {
+        if (key == "nu" || key == "hoek_brown_mi") out.number(key, value);
+        else out.quantity(key, value, key == "friction_angle" ? Dimension::angle : Dimension::stress);
+    }
+}
+
+}  // namespace
+
+std::string resolved_toml(const Job& job) {
+    Lines out;
+    out.word("name", job.name);
+    write_specimen(out, job.specimen);
+    out.head("[model]");
+    out.word("kind", name(job.model.kind));
+    out.word("contact", name(job.model.contact));
+    out.word("normal", "centres");
+    out.word("plane", name(job.model.plane));
+    write_materials(out, job);
+    write_numerics(out, job.numerics);
+    for (const TestSpec& test : job.tests) write_test(out, test, job);
+    out.head("[run]");
+    out.raw("seeds", seed_list(job.seeds));
+    out.raw("threads", job.threads == 0 ? "\"auto\"" : std::to_string(job.threads));
+    write_laboratory(out, job);
+    return out.take();
+}
+
+}  // namespace feldspar

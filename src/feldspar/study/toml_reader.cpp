@@ -1,0 +1,233 @@
+#define TOML_IMPLEMENTATION
+#include "feldspar/study/toml_reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace feldspar {
+namespace {
+
+char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+
+// Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours count one each.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const bool same = lower(a[i - 1]) == lower(b[j - 1]);
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (same ? 0 : 1)});
+            const bool swapped = i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
+            if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+    return d[a.size()][b.size()];
+}
+
+std::string type_words(const toml::node& node) {
+    if (node.is_table()) return "a table";
+    if (node.is_array()) return "a list";
+    if (node.is_string()) return "text";
+    if (node.is_boolean()) return "true or false";
+    if (node.is_number()) return "a number";
+    return "a date or time";
+}
+
+InputPlace place_of(const toml::source_region& region, const std::string& file, std::string key) {
+    return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), std::move(key)};
+}
+
+std::string bounded(const Range& range, std::string_view kind) { return std::string(kind) + ", " + std::string(range.words); }
+
+}  // namespace
+
+std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
+    if (word.size() > 64) return {};
+    std::string_view best;
+    std::size_t best_distance = word.size() <= 3 ? 2 : 1 + std::max<std::size_t>(2, word.size() / 3);  // first distance that is too far
+    for (std::string_view candidate : candidates) {
+        const std::size_t distance = edit_distance(word, candidate);
+        if (distance < best_distance && distance < candidate.size()) {
+            best = candidate;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates) {
+    const std::string_view best = nearest(word, candidates);
+    return best.empty() ? std::string() : "did you mean '" + std::string(best) + "'?";
+}
+
+std::string listed(std::span<const std::string_view> words) {
+    std::string text;
+    for (std::string_view word : words) {
+        if (!text.empty()) text += ", ";
+        text += word;
+    }
+    return text;
+}
+
+std::string shown(const toml::node& node) {
+    if (const auto* text = node.as_string()) return "'" + text->get() + "'";
+    if (const auto* whole = node.as_integer()) return std::to_string(whole->get());
+    if (const auto* real = node.as_floating_point()) return format_exact(real->get());
+    if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+    return type_words(node);
+}
+
+toml::table parse_toml(const std::string& text, const std::string& file) {
+    try {
+        return toml::parse(text, file);
+    } catch (const toml::parse_error& error) {
+        throw InputError(place_of(error.source(), file, {}), "syntax error: " + std::string(error.description()));
+    }
+}
+
+TableReader::TableReader(const toml::table& table, std::string path, std::string file,
+                         std::initializer_list<std::string_view> known)
+    : table_(&table), path_(std::move(path)), file_(std::move(file)) {
+    // complain about the first unknown key in the order of the file, not of the alphabet
+    const toml::key* first = nullptr;
+    for (const auto& [key, value] : table) {
+        if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+        const auto& here = key.source().begin;
+        if (first == nullptr || here < first->source().begin) first = &key;
+    }
+    if (first == nullptr) return;
+    const std::vector<std::string_view> words(known);
+    throw InputError(place_of(first->source(), file_, full(first->str())), "unknown key", listed(words), did_you_mean(first->str(), words));
+}
+
+void TableReader::require(std::initializer_list<std::string_view> keys) const {
+    std::vector<std::string_view> missing;
+    for (std::string_view key : keys)
+        if (!has(key)) missing.push_back(key);
+    if (missing.empty()) return;
+    InputPlace place = path_.empty() ? InputPlace{file_, 0, 0, {}} : place_of(table_->source(), file_, path_);
+    throw InputError(std::move(place), (missing.size() == 1 ? "missing key: " : "missing keys: ") + listed(missing));
+}
+
+void TableReader::refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed) const {
+    for (std::string_view key : keys)
+        if (has(key)) fail(key, "does not apply to " + setting, allowed);
+}
+
+const toml::node& TableReader::must_have(std::string_view key) const {
+    if (!has(key)) require({key});
+    return *find(key);
+}
+
+TableReader TableReader::table(std::string_view key, std::initializer_list<std::string_view> known) const {
+    const toml::node& node = must_have(key);
+    if (!node.is_table()) fail(key, "is " + type_words(node) + ", not a table", "a table [" + full(key) + "]");
+    return TableReader(*node.as_table(), full(key), file_, known);
+}
+
+const toml::array& TableReader::array(std::string_view key) const {
+    const toml::node& node = must_have(key);
+    if (!node.is_array()) fail(key, shown(node) + " is not a list", "a list in square brackets");
+    return *node.as_array();
+}
+
+double TableReader::quantity_of(const toml::node& node, std::string_view key, Dimension dimension, const Range& range) const {
+    const std::string wanted = std::string(describe(dimension)) + " with its unit, such as \"" + std::string(example(dimension)) + "\"";
+    if (node.is_number()) fail_at(node, key, shown(node) + " has no unit", wanted);
+    if (!node.is_string()) fail_at(node, key, shown(node) + " is not " + std::string(describe(dimension)), wanted);
+    double value = 0.0;
+    try {
+        value = parse_quantity(node.as_string()->get(), dimension);
+    } catch (const InputError& error) {
+        fail_at(node, key, error.problem(), error.allowed(), error.suggestion());
+    }
+    if (!range.contains(value)) fail_at(node, key, shown(node) + " is not allowed", bounded(range, describe(dimension)));
+    return value;
+}
+
+double TableReader::quantity(std::string_view key, Dimension dimension, const Range& range, std::optional<double> fallback) const {
+    if (!has(key) && fallback) return *fallback;
+    return quantity_of(must_have(key), key, dimension, range);
+}
+
+double TableReader::number(std::string_view key, const Range& range, std::optional<double> fallback) const {
+    if (!has(key) && fallback) return *fallback;
+    const toml::node& node = must_have(key);
+    if (!node.is_number()) fail(key, shown(node) + " is not a plain number", bounded(range, "a number without quotes or unit"));
+    const double value = *node.value<double>();
+    if (!std::isfinite(value)) fail(key, shown(node) + " is not a finite number", bounded(range, "a number"));
+    if (!range.contains(value)) fail(key, shown(node) + " is not allowed", bounded(range, "a number"));
+    return value;
+}
+
+double TableReader::fraction_of(const toml::node& node, std::string_view key, const Range& range) const {
+    double value = 0.0;
+    if (node.is_number()) {
+        value = *node.value<double>();
+        if (!std::isfinite(value)) fail_at(node, key, shown(node) + " is not a finite number", bounded(range, "a fraction"));
+    } else if (node.is_string()) {
+        try {
+            value = parse_quantity(node.as_string()->get(), Dimension::fraction);
+        } catch (const InputError& error) {
+            fail_at(node, key, error.problem(), error.allowed(), error.suggestion());
+        }
+    } else {
+        fail_at(node, key, shown(node) + " is not a fraction", bounded(range, "a fraction"));
+    }
+    if (!range.contains(value)) fail_at(node, key, shown(node) + " is not allowed", bounded(range, "a fraction"));
+    return value;
+}
+
+double TableReader::fraction(std::string_view key, const Range& range, std::optional<double> fallback) const {
+    if (!has(key) && fallback) return *fallback;
+    return fraction_of(must_have(key), key, range);
+}
+
+long long TableReader::integer_of(const toml::node& node, std::string_view key, long long low, long long high) const {
+    const std::string allowed = high == std::numeric_limits<long long>::max()
+                                    ? "a whole number, " + std::to_string(low) + " or greater"
+                                    : "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    if (!node.is_integer()) fail_at(node, key, shown(node) + " is not a whole number", allowed);
+    const long long value = node.as_integer()->get();
+    if (value < low || value > high) fail_at(node, key, shown(node) + " is not allowed", allowed);
+    return value;
+}
+
+long long TableReader::integer(std::string_view key, long long low, long long high, std::optional<long long> fallback) const {
+    if (!has(key) && fallback) return *fallback;
+    return integer_of(must_have(key), key, low, high);
+}
+
+bool TableReader::flag(std::string_view key, bool fallback) const {
+    if (!has(key)) return fallback;
+    const toml::node& node = *find(key);
+    if (!node.is_boolean()) fail(key, shown(node) + " is neither true nor false", "true, false (without quotes)");
+    return node.as_boolean()->get();
+}
+
+std::string TableReader::text_of(const toml::node& node, std::string_view key) const {
+    if (!node.is_string()) fail_at(node, key, shown(node) + " is not text", "text in quotes");
+    const std::string& value = node.as_string()->get();
+    if (value.empty()) fail_at(node, key, "the text is empty");
+    return value;
+}
+
+std::string TableReader::text(std::string_view key, std::optional<std::string> fallback) const {
+    if (!has(key) && fallback) return *fallback;
+    return text_of(must_have(key), key);
+}
+
+void TableReader::fail(std::string_view key, const std::string& problem, const std::string& allowed, const std::string& suggestion) const {
+    const toml::node* node = find(key);
+    const toml::source_region& where = node != nullptr ? node->source() : table_->source();
+    throw InputError(place_of(where, file_, full(key)), problem, allowed, suggestion);
+}
+
+void TableReader::fail_at(const toml::node& node, std::string_view key, const std::string& problem, const std::string& allowed,
+                          const std::string& suggestion) const {
+    throw InputError(place_of(node.source(), file_, full(key)), problem, allowed, suggestion);
+}
+
+}  // namespace feldspar

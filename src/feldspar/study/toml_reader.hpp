@@ -1,0 +1,117 @@
+// A checked view of one table of a job file: every key known, every value converted and bounded, and every complaint with
+// file, line, column, key, what was given and what is allowed.
+#pragma once
+
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/base/units.hpp"
+#include "feldspar/study/toml_include.hpp"
+
+namespace feldspar {
+
+/// The allowed values of a number, with the words that say so.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_allowed = true;
+    bool high_allowed = true;
+    std::string_view words = "any finite number";
+
+    bool contains(double v) const { return (low_allowed ? v >= low : v > low) && (high_allowed ? v <= high : v < high); }
+};
+
+inline constexpr Range any_value{};
+inline constexpr Range positive{0.0, std::numeric_limits<double>::infinity(), false, true, "greater than zero"};
+inline constexpr Range not_negative{0.0, std::numeric_limits<double>::infinity(), true, true, "zero or greater"};
+
+/// The candidate that `word` was probably meant to be (optimal string alignment distance, case ignored), or "" when none is near.
+std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
+
+/// "did you mean 'candidate'?" or "".
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> candidates);
+
+/// "a, b, c".
+std::string listed(std::span<const std::string_view> words);
+
+/// One table, with the names that may stand in it.
+class TableReader {
+public:
+    /// @param path   dotted path of the table, "" for the file itself
+    /// @param known  all keys that may stand in it. @throws InputError for any other, with "did you mean"
+    TableReader(const toml::table& table, std::string path, std::string file, std::initializer_list<std::string_view> known);
+
+    bool has(std::string_view key) const { return table_->contains(key); }
+    const toml::node* find(std::string_view key) const { return table_->get(key); }
+    const std::string& file() const { return file_; }
+
+    /// @throws InputError naming every one of `keys` that is missing.
+    void require(std::initializer_list<std::string_view> keys) const;
+    /// @throws InputError if one of `keys` is given; `setting` is what it contradicts ("shape = \"disc\"").
+    void refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed = {}) const;
+
+    /// A table inside this one, which must be there.
+    TableReader table(std::string_view key, std::initializer_list<std::string_view> known) const;
+
+    /// Text with a unit, in SI. Without a fallback the key must be there.
+    double quantity(std::string_view key, Dimension dimension, const Range& range, std::optional<double> fallback = {}) const;
+    /// A plain number.
+    double number(std::string_view key, const Range& range, std::optional<double> fallback = {}) const;
+    /// A number, or a percentage as text.
+    double fraction(std::string_view key, const Range& range, std::optional<double> fallback = {}) const;
+    long long integer(std::string_view key, long long low, long long high, std::optional<long long> fallback = {}) const;
+    bool flag(std::string_view key, bool fallback) const;
+    /// Text that is not empty.
+    std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
+    const toml::array& array(std::string_view key) const;
+
+    /// One of several words.
+    template <class Value>
+    Value choice(std::string_view key, std::initializer_list<std::pair<std::string_view, Value>> choices,
+                 std::optional<Value> fallback = {}) const {
+        if (!has(key) && fallback) return *fallback;
+        const std::string given = text(key);
+        std::vector<std::string_view> words;
+        for (const auto& [word, value] : choices) {
+            if (word == given) return value;
+            words.push_back(word);
+        }
+        fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
+    }
+
+    /// The same readings for a value that stands in a list; `key` is what messages call it.
+    double quantity_of(const toml::node& node, std::string_view key, Dimension dimension, const Range& range) const;
+    double fraction_of(const toml::node& node, std::string_view key, const Range& range) const;
+    long long integer_of(const toml::node& node, std::string_view key, long long low, long long high) const;
+    std::string text_of(const toml::node& node, std::string_view key) const;
+
+    /// Complains about `key`, at its value if it has one, else at the head of the table.
+    [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& allowed = {},
+                           const std::string& suggestion = {}) const;
+    /// Complains about a value inside a list.
+    [[noreturn]] void fail_at(const toml::node& node, std::string_view key, const std::string& problem,
+                              const std::string& allowed = {}, const std::string& suggestion = {}) const;
+
+private:
+    std::string full(std::string_view key) const { return path_.empty() ? std::string(key) : path_ + "." + std::string(key); }
+    const toml::node& must_have(std::string_view key) const;
+
+    const toml::table* table_;
+    std::string path_;
+    std::string file_;
+};
+
+/// Parses TOML. @throws InputError at the place of a syntax error.
+toml::table parse_toml(const std::string& text, const std::string& file);
+
+/// The value as the user wrote it, for messages: 'text', 12, "a table", ...
+std::string shown(const toml::node& node);
+
+}  // namespace feldspar
