@@ -1,0 +1,54 @@
+// A complete job that reads well, and small edits of it.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace feldspar {
+
+inline const std::string sample_job = R"([specimen]
+shape = "rectangle"
+width = "80 mm"
+height = "160 mm"
+thickness = "80 mm"
+[specimen.grains]
+diameter = { distribution = "uniform", minimum = "2 mm", maximum = "4 mm" }
+porosity = 0.10
+merge_length = "auto"
+[model]
+kind = "flexible"
+contact = "lobatto3"
+normal = "centres"
+plane = "stress"
+[material.grain]
+E = "25.8 GPa"
+nu = 0.23
+density = "2650 kg/m3"
+[material.contact]
+law = "bilinear"
+Kn = "18.00e4 GPa/m"
+eta = 0.28
+sigma_nt = "8.5 MPa"
+tau = "29.75 MPa"
+mu = 0.40
+Gfn = "20 N/m"
+Gfs = "800 N/m"
+[numerics]
+kind = "adaptive"
+accuracy = "0.5 %"
+[[test]]
+kind = "uniaxial-compression"
+[run]
+seeds = [1, 2, 3, 4, 5]
+[laboratory]
+UCS = "122.1 MPa"
+)";
+
+/// The sample with one line (or part of one) replaced.
+inline std::string edited(const std::string& from, const std::string& to, std::string text = sample_job) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) throw std::logic_error("the sample job has no '" + from + "'");
+    return text.replace(at, from.size(), to);
+}
+
+}  // namespace feldspar

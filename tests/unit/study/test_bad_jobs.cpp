@@ -1,0 +1,161 @@
+// A table of mistakes: what is written, where the message points, and what it must say.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/study/job.hpp"
+#include "sample_job.hpp"
+
+namespace feldspar {
+namespace {
+
+struct BadJob {
+    const char* what;
+    std::string text;
+    int line;                        // 0: the message has no place in the file
+    std::vector<std::string> parts;  // of the whole message
+};
+
+std::string with_test(const std::string& keys) { return edited("kind = \"uniaxial-compression\"", keys); }
+std::string with_sizes(const std::string& keys) { return edited("distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\"", keys); }
+std::string with_numerics(const std::string& keys) { return edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", keys); }
+std::string with_outline(const std::string& keys) { return edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", keys); }
+
+std::vector<BadJob> bad_jobs() {
+    return {
+        {"empty file", "", 0, {"missing keys: specimen, material, test"}},
+        {"lone bracket", "[", 1, {"syntax error", "table header"}},
+        {"syntax", edited("width = \"80 mm\"", "width = 80 mm"), 3, {"syntax error"}},
+        {"key twice", edited("width = \"80 mm\"", "width = \"80 mm\"\nwidth = \"90 mm\""), 4, {"syntax error", "width"}},
+        {"not UTF-8", edited("shape", "sh\xff\xff"), 2, {"syntax error"}},
+        {"unknown table", edited("[numerics]", "[numeric]"), 28, {"numeric: unknown key", "did you mean 'numerics'?", "specimen"}},
+        {"unknown key", edited("width", "widht"), 3, {"job.toml:3:1", "specimen.widht: unknown key", "did you mean 'width'?", "allowed: shape, width"}},
+        {"unknown nested key", edited("maximum", "maximun"), 7, {"specimen.grains.diameter.maximun", "did you mean 'maximum'?"}},
+        {"key in another case", edited("Kn =", "kn ="), 21, {"material.contact.kn", "did you mean 'Kn'?"}},
+        {"far from any key", edited("mu = 0.40", "mu = 0.40\nfavourite_colour = 1"), 26, {"favourite_colour", "unknown key"}},
+        {"table that is a number", "model = 3\n" + edited("[model]\nkind = \"flexible\"\ncontact = \"lobatto3\"\nnormal = \"centres\"\nplane = \"stress\"\n", ""), 1, {"model", "not a table"}},
+        {"missing keys", edited("E = \"25.8 GPa\"\nnu = 0.23\n", ""), 15, {"material.grain", "missing keys: E, nu"}},
+        {"missing material", edited("[material.grain]\nE = \"25.8 GPa\"\nnu = 0.23\ndensity = \"2650 kg/m3\"\n", ""), 15, {"material", "missing key: grain"}},
+        {"missing width", edited("width = \"80 mm\"\n", ""), 1, {"missing key: width"}},
+        {"missing distribution", with_sizes("minimum = \"2 mm\", maximum = \"4 mm\""), 7, {"missing key: distribution"}},
+        {"no unit", edited("\"80 mm\"", "80"), 3, {"specimen.width", "80 has no unit", "\"80 mm\""}},
+        {"no unit in text", edited("\"80 mm\"", "\"80\""), 3, {"'80' has no unit"}},
+        {"no number", edited("\"80 mm\"", "\"wide\""), 3, {"'wide' does not begin with a number"}},
+        {"wrong unit", edited("\"80 mm\"", "\"80 mn\""), 3, {"'80 mn'", "did you mean 'mN'?"}},
+        {"unknown unit", edited("\"80 mm\"", "\"80 ells\""), 3, {"unknown unit 'ells'"}},
+        {"wrong dimension", edited("\"25.8 GPa\"", "\"25.8 GPa/m\""), 16, {"material.grain.E", "is a stiffness per area, not a stress"}},
+        {"milli for mega", edited("\"8.5 MPa\"", "\"8.5 mPa\""), 23, {"sigma_nt", "thousandth of a pascal", "did you mean 'MPa'?"}},
+        {"infinite", edited("\"8.5 MPa\"", "\"inf MPa\""), 23, {"not a finite number"}},
+        {"not a number", edited("mu = 0.40", "mu = nan"), 25, {"mu", "not a finite number"}},
+        {"number as text", edited("mu = 0.40", "mu = \"0.40\""), 25, {"'0.40' is not a plain number"}},
+        {"list for a quantity", edited("\"80 mm\"", "[\"80 mm\"]"), 3, {"a list is not a length"}},
+        {"negative size", edited("\"80 mm\"", "\"-80 mm\""), 3, {"'-80 mm' is not allowed", "greater than zero"}},
+        {"no height", edited("\"160 mm\"", "\"0 mm\""), 4, {"specimen.height", "greater than zero"}},
+        {"zero thickness", edited("thickness = \"80 mm\"", "thickness = \"0 mm\""), 5, {"specimen.thickness", "greater than zero"}},
+        {"porosity 1.1", edited("0.10", "1.1"), 8, {"specimen.grains.porosity", "1.1 is not allowed", "less than 1"}},
+        {"porosity 1", edited("0.10", "1"), 8, {"porosity", "less than 1"}},
+        {"porosity negative", edited("0.10", "-0.1"), 8, {"porosity"}},
+        {"nu 0.5 in plane stress", edited("0.23", "0.5"), 17, {"material.grain.nu", "0.5 is not allowed", "less than 0.5"}},
+        {"nu 0.5 in plane strain", edited("0.23", "0.5", edited("plane = \"stress\"", "plane = \"strain\"")), 17, {"0.5 is not allowed", "plane strain"}},
+        {"nu -1", edited("0.23", "-1.0"), 17, {"greater than -1"}},
+        {"E zero", edited("\"25.8 GPa\"", "\"0 GPa\""), 16, {"material.grain.E", "greater than zero"}},
+        {"density negative", edited("\"2650 kg/m3\"", "\"-1 kg/m3\""), 18, {"density"}},
+        {"Kn zero", edited("\"18.00e4 GPa/m\"", "\"0 GPa/m\""), 21, {"Kn", "greater than zero"}},
+        {"strength zero", edited("\"8.5 MPa\"", "\"0 MPa\""), 23, {"sigma_nt", "greater than zero"}},
+        {"cohesion zero", edited("\"29.75 MPa\"", "\"0 MPa\""), 24, {"tau", "greater than zero"}},
+        {"friction negative", edited("mu = 0.40", "mu = -0.4"), 25, {"mu", "zero or greater"}},
+        {"fracture energy zero", edited("\"20 N/m\"", "\"0 N/m\""), 26, {"Gfn", "greater than zero"}},
+        {"Gfn missing", edited("Gfn = \"20 N/m\"\n", ""), 19, {"material.contact", "missing key: Gfn"}},
+        {"Gfn with brittle", edited("\"bilinear\"", "\"brittle\""), 26, {"Gfn", "does not apply to law = \"brittle\""}},
+        {"eta and kratio", edited("eta = 0.28", "eta = 0.28\nkratio = 3.6"), 23, {"kratio", "eta = ks/kn or kratio = kn/ks"}},
+        {"neither eta nor kratio", edited("eta = 0.28\n", ""), 19, {"eta", "missing key", "kratio"}},
+        {"unknown law", edited("\"bilinear\"", "\"bilinaer\""), 20, {"law", "'bilinaer'", "did you mean 'bilinear'?"}},
+        {"rigid grains", edited("kind = \"flexible\"", "kind = \"rigid\""), 11, {"model.kind", "'rigid' is not available yet in this version"}},
+        {"inner particles", edited("kind = \"flexible\"", "kind = \"inner-particles\""), 11, {"not available yet in this version"}},
+        {"edge normal", edited("normal = \"centres\"", "normal = \"edge\""), 13, {"model.normal", "not available yet"}},
+        {"grains larger than the specimen", with_sizes("distribution = \"uniform\", minimum = \"2 mm\", maximum = \"400 mm\""), 7, {"specimen.grains.diameter", "do not fit", "80 mm"}},
+        {"too many grains", with_sizes("distribution = \"uniform\", minimum = \"2 um\", maximum = \"4 um\""), 7, {"grains", "at most 5000000"}},
+        {"minimum above maximum", with_sizes("distribution = \"uniform\", minimum = \"5 mm\", maximum = \"4 mm\""), 7, {"maximum", "less than the minimum"}},
+        {"median outside", with_sizes("distribution = \"log-normal\", median = \"9 mm\", log_standard_deviation = 0.2, minimum = \"2 mm\", maximum = \"4 mm\""), 7, {"median", "between"}},
+        {"median for uniform", with_sizes("distribution = \"uniform\", median = \"3 mm\", minimum = \"2 mm\", maximum = \"4 mm\""), 7, {"median", "does not apply"}},
+        {"sieve not increasing", with_sizes("distribution = \"sieve\", curve = [[\"2 mm\", 0], [\"4 mm\", 0.5], [\"3 mm\", 1]]"), 7, {"curve", "'3 mm' is not larger than the sieve before it"}},
+        {"passing not increasing", with_sizes("distribution = \"sieve\", curve = [[\"2 mm\", 0], [\"3 mm\", 0.5], [\"4 mm\", 0.4]]"), 7, {"curve", "0.4 is not more"}},
+        {"sieve incomplete", with_sizes("distribution = \"sieve\", curve = [[\"2 mm\", 0], [\"3 mm\", 0.5]]"), 7, {"everything must pass the last sieve"}},
+        {"sieve of one point", with_sizes("distribution = \"sieve\", curve = [[\"2 mm\", 0]]"), 7, {"at least two points"}},
+        {"merge length in words", edited("\"auto\"", "\"automatic\""), 9, {"merge_length", "'automatic'", "\"auto\""}},
+        {"merge length too long", edited("\"auto\"", "\"2 mm\""), 9, {"merge_length", "half a grain"}},
+        {"no packing there", edited("thickness = \"80 mm\"", "packing = \"none-such.txt\""), 5, {"specimen.packing", "there is no file"}},
+        {"outline crosses itself", with_outline("shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"80 mm\", \"0 mm\"], [\"0 mm\", \"160 mm\"]]"), 3, {"specimen.vertices", "crosses or touches itself"}},
+        {"two vertices", with_outline("shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"]]"), 3, {"at least three vertices"}},
+        {"labels do not match", with_outline("shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"]]\nedge_labels = [\"bottom\", \"top\"]"), 4, {"2 labels for 3 edges"}},
+        {"radius of a rectangle", edited("width = \"80 mm\"", "width = \"80 mm\"\ndiameter = \"80 mm\""), 4, {"specimen.diameter", "does not apply to shape = \"rectangle\""}},
+        {"compression of a disc", with_outline("shape = \"disc\"\ndiameter = \"80 mm\""), 31, {"test[1].kind", "a disc", "\"rectangle\""}},
+        {"polygon without platens", with_outline("shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"]]"), 31, {"\"top\" and \"bottom\""}},
+        {"accuracy too fine", edited("\"0.5 %\"", "\"0.01 %\""), 30, {"numerics.accuracy", "'0.01 %' is not allowed", "0.05 % to 10 %"}},
+        {"accuracy forgotten percent", edited("\"0.5 %\"", "0.5"), 30, {"accuracy", "0.05 % to 10 %"}},
+        {"speed under adaptive", with_numerics("kind = \"adaptive\"\nspeed = \"6.25e-9 m\""), 30, {"numerics.speed", "finds its own speed"}},
+        {"accuracy under paper", with_numerics("kind = \"paper\"\naccuracy = \"0.5 %\""), 30, {"numerics.accuracy", "does not apply to kind = \"paper\""}},
+        {"speed per second under paper", with_numerics("kind = \"paper\"\nspeed = \"0.1 m/s\""), 30, {"is a speed, not a length per step"}},
+        {"dynamic without speed", with_numerics("kind = \"dynamic\""), 28, {"missing key: speed"}},
+        {"damping 1", with_numerics("kind = \"paper\"\ndamping = 1.0"), 30, {"numerics.damping", "less than 1"}},
+        {"no steps", with_numerics("maximum_steps = 0"), 29, {"maximum_steps", "1 or greater"}},
+        {"half a step", with_numerics("maximum_steps = 1.5"), 29, {"not a whole number"}},
+        {"confirm as text", with_numerics("confirm = \"yes\""), 29, {"numerics.confirm", "true, false"}},
+        {"residual and accuracy", with_numerics("accuracy = 0.005\nresidual_target = 0.005"), 30, {"residual_target", "accuracy"}},
+        {"no test", edited("[[test]]\nkind = \"uniaxial-compression\"\n", ""), 0, {"missing key: test"}},
+        {"empty test list", "test = []\n" + edited("[[test]]\nkind = \"uniaxial-compression\"\n", ""), 1, {"there is no test"}},
+        {"test as one table", edited("[[test]]", "[test]"), 31, {"[[test]]"}},
+        {"unknown test", with_test("kind = \"uniaxial\""), 32, {"test[1].kind", "'uniaxial'", "brazilian"}},
+        {"biaxial without sigma3", with_test("kind = \"biaxial\""), 31, {"missing key: sigma3"}},
+        {"sigma3 zero", with_test("kind = \"biaxial\"\nsigma3 = \"0 MPa\""), 33, {"sigma3", "uniaxial-compression"}},
+        {"sigma3 in a uniaxial test", with_test("kind = \"uniaxial-compression\"\nsigma3 = \"4 MPa\""), 33, {"only with kind = \"biaxial\""}},
+        {"the same test twice", with_test("kind = \"biaxial\"\nsigma3 = [\"4 MPa\", \"4.0 MPa\"]"), 33, {"asked for twice"}},
+        {"plates in compression", with_test("kind = \"uniaxial-compression\"\nplate_mu = 0.1"), 33, {"only with kind = \"brazilian\""}},
+        {"grains larger than the disc", with_test("kind = \"brazilian\"\ndiameter = \"5 mm\""), 33, {"test[1].diameter", "do not fit a disc of 5 mm"}},
+        {"two diameters", with_test("kind = \"brazilian\"\ndiameter = \"50 mm\"\nseeds = [1]\n[[test]]\nkind = \"brazilian\"\nseeds = [2]"), 35, {"one diameter in a job"}},
+        {"stop fraction 1", with_test("kind = \"uniaxial-compression\"\nstop_fraction = 1.0"), 33, {"stop_fraction", "less than 1"}},
+        {"seed twice", edited("[1, 2, 3, 4, 5]", "[1, 2, 1]"), 34, {"run.seeds", "the seed 1 is given twice"}},
+        {"no seeds", edited("[1, 2, 3, 4, 5]", "[]"), 34, {"run.seeds", "the list is empty"}},
+        {"negative seed", edited("[1, 2, 3, 4, 5]", "[-1]"), 34, {"-1 is not allowed"}},
+        {"seed and seeds", edited("seeds = [1, 2, 3, 4, 5]", "seeds = [1]\nseed = 2"), 35, {"run.seed"}},
+        {"no threads", edited("seeds = [1, 2, 3, 4, 5]", "threads = 0"), 34, {"run.threads", "1 to 256"}},
+        {"threads in words", edited("seeds = [1, 2, 3, 4, 5]", "threads = \"many\""), 34, {"run.threads", "auto"}},
+        {"name with a slash", "name = \"a/b\"\n" + sample_job, 1, {"name", "cannot name a directory"}},
+        {"laboratory in the wrong unit", edited("\"122.1 MPa\"", "\"122.1 mm\""), 36, {"laboratory.UCS", "is a length, not a stress"}},
+        {"angle without unit", edited("UCS = \"122.1 MPa\"", "phi = 53"), 36, {"53 has no unit", "deg"}},
+        {"cohesion twice", edited("UCS = \"122.1 MPa\"", "c = \"2 MPa\"\ncohesion = \"2 MPa\""), 36, {"which is the same"}},
+    };
+}
+
+TEST(BadJob, IsRefusedAtItsPlaceWithItsReason) {
+    for (const BadJob& bad : bad_jobs()) {
+        SCOPED_TRACE(bad.what);
+        try {
+            (void)parse_job(bad.text, "job.toml");
+            ADD_FAILURE() << "accepted";
+        } catch (const InputError& error) {
+            const std::string message = error.what();
+            EXPECT_EQ(error.place().file, "job.toml");
+            EXPECT_EQ(error.place().line, bad.line) << message;
+            EXPECT_GE(error.place().column, bad.line > 0 ? 1 : 0) << message;
+            for (const std::string& part : bad.parts) EXPECT_NE(message.find(part), std::string::npos) << "wanted: " << part << "\ngot: " << message;
+        }
+    }
+    EXPECT_GE(bad_jobs().size(), 20u);
+}
+
+TEST(BadJob, FilesThatCannotBeRead) {
+    for (const char* file : {"/none/such/job.toml", "/", ""}) {
+        try {
+            (void)read_job(file);
+            ADD_FAILURE() << "accepted " << file;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.place().file, file);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace feldspar

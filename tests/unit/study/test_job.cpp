@@ -1,0 +1,275 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <vector>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/study/job.hpp"
+#include "feldspar/study/job_template.hpp"
+#include "sample_job.hpp"
+
+namespace feldspar {
+namespace {
+
+TEST(Job, ReadsTheGuidesCompleteJob) {
+    const Job job = parse_job(sample_job, "somewhere/augig.toml");
+    EXPECT_EQ(job.name, "augig");
+    EXPECT_EQ(job.text, sample_job);
+    EXPECT_EQ(job.specimen.outline.shape, Shape::rectangle);
+    EXPECT_EQ(job.specimen.outline.width_m, 0.08);
+    EXPECT_EQ(job.specimen.outline.height_m, 0.16);
+    EXPECT_EQ(job.specimen.thickness_m, 0.08);
+    EXPECT_EQ(job.specimen.grain_sizes.minimum_m, 0.002);
+    EXPECT_EQ(job.specimen.grain_sizes.maximum_m, 0.004);
+    EXPECT_EQ(job.specimen.porosity, 0.1);
+    EXPECT_FALSE(job.specimen.merge_length_m.has_value());
+    EXPECT_EQ(job.grain.E_Pa, 25.8e9);
+    EXPECT_EQ(job.grain.nu, 0.23);
+    EXPECT_EQ(job.grain.density_kg_m3, 2650.0);
+    EXPECT_EQ(job.contact.law, ContactLaw::bilinear);
+    EXPECT_EQ(job.contact.Kn_Pa_m, 18e13);
+    EXPECT_EQ(job.contact.eta, 0.28);
+    EXPECT_EQ(job.contact.sigma_nt_Pa, 8.5e6);
+    EXPECT_EQ(job.contact.tau_Pa, 29.75e6);
+    EXPECT_EQ(job.contact.mu, 0.4);
+    EXPECT_EQ(job.contact.Gfn_J_m2, 20.0);
+    EXPECT_EQ(job.contact.Gfs_J_m2, 800.0);
+    EXPECT_EQ(job.numerics.kind, NumericsKind::adaptive);
+    EXPECT_EQ(job.numerics.accuracy, 0.005);
+    ASSERT_EQ(job.tests.size(), 1u);
+    EXPECT_EQ(job.tests[0].kind, TestKind::uniaxial_compression);
+    EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
+    EXPECT_EQ(job.threads, 0);
+    EXPECT_EQ(job.laboratory.at("UCS"), 122.1e6);
+}
+
+TEST(Job, DefaultsAreThoseOfTheSpecs) {
+    const Job job = parse_job(R"(
+        specimen = { shape = "disc", diameter = "80 mm", grains = { diameter = { distribution = "uniform", minimum = "2 mm", maximum = "4 mm" } } }
+        material.grain = { E = "25.8 GPa", nu = 0.23 }
+        material.contact = { Kn = "18e4 GPa/m", kratio = 4, sigma_nt = "8.5 MPa", tau = "29.75 MPa", mu = 0, Gfn = "20 J/m2", Gfs = "800 J/m2" }
+        test = [ { kind = "brazilian" } ]
+    )", "minimal");
+    EXPECT_EQ(job.name, "minimal");
+    EXPECT_EQ(job.contact.eta, 0.25);
+    EXPECT_EQ(job.specimen.porosity, SpecimenSpec{}.porosity);
+    EXPECT_EQ(job.specimen.thickness_m, SpecimenSpec{}.thickness_m);
+    EXPECT_EQ(job.grain.density_kg_m3, GrainMaterial{}.density_kg_m3);
+    EXPECT_EQ(job.numerics.accuracy, NumericsSpec{}.accuracy);
+    EXPECT_EQ(job.tests[0].stop_fraction, TestSpec{}.stop_fraction);
+    EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1}));
+    EXPECT_EQ(job.brazilian_specimen.outline.shape, Shape::disc);
+    EXPECT_EQ(job.brazilian_specimen.outline.diameter_m, 0.08);
+}
+
+TEST(Job, BrazilianDiscHasTheSpecimensWidthUnlessTold) {
+    const Job usual = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\""), "job");
+    EXPECT_EQ(usual.brazilian_specimen.outline.diameter_m, 0.08);
+    EXPECT_EQ(usual.brazilian_specimen.grain_sizes.maximum_m, 0.004);
+    const Job told = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"50 mm\"\nplate_mu = 0.2"), "job");
+    EXPECT_EQ(told.brazilian_specimen.outline.diameter_m, 0.05);
+    EXPECT_EQ(told.tests[0].plate_mu, 0.2);
+}
+
+TEST(Job, AListOfSigma3IsAListOfTests) {
+    const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"biaxial\"\nsigma3 = [\"4 MPa\", \"10 MPa\"]\nseeds = [2, 3]"), "job");
+    ASSERT_EQ(job.tests.size(), 2u);
+    EXPECT_EQ(job.tests[0].sigma3_Pa, 4e6);
+    EXPECT_EQ(job.tests[1].sigma3_Pa, 10e6);
+    EXPECT_EQ(job.tests[1].seeds, (std::vector<unsigned long long>{2, 3}));
+}
+
+TEST(Job, ReadsEverySizeDistributionAndOutline) {
+    const std::string uniform = R"({ distribution = "uniform", minimum = "2 mm", maximum = "4 mm" })";
+    const Job normal = parse_job(edited(uniform, R"({ distribution = "log-normal", median = "3 mm", log_standard_deviation = 0.2, minimum = "2 mm", maximum = "5 mm" })"), "job");
+    EXPECT_EQ(normal.specimen.grain_sizes.kind, GrainSizeKind::log_normal);
+    EXPECT_EQ(normal.specimen.grain_sizes.median_m, 0.003);
+    const Job sieve = parse_job(edited(uniform, R"({ distribution = "sieve", curve = [["2 mm", 0], ["3 mm", "40 %"], ["4 mm", "100 %"]] })"), "job");
+    ASSERT_EQ(sieve.specimen.grain_sizes.sieve.size(), 3u);
+    EXPECT_EQ(sieve.specimen.grain_sizes.sieve[1].passing, 0.4);
+    const Job polygon = parse_job(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
+                                         "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\n"
+                                         "edge_labels = [\"bottom\", \"right\", \"top\", \"left\"]"), "job");
+    ASSERT_EQ(polygon.specimen.outline.vertices_m.size(), 4u);
+    EXPECT_EQ(polygon.specimen.outline.vertices_m[2], (Vec2{0.08, 0.16}));
+    EXPECT_EQ(polygon.specimen.outline.edge_labels[2], "top");
+}
+
+TEST(Job, MergeLengthIsAutoNoneOrALength) {
+    EXPECT_EQ(parse_job(edited("merge_length = \"auto\"", "merge_length = \"none\""), "job").specimen.merge_length_m, 0.0);
+    EXPECT_EQ(parse_job(edited("merge_length = \"auto\"", "merge_length = \"0.25 mm\""), "job").specimen.merge_length_m, 0.00025);
+}
+
+TEST(Job, EachNumericsHasItsOwnKeys) {
+    const Job paper = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"\nspeed = \"6.25e-9 m\"\ndamping = 0.5\nmass_factor = 1.7"), "job");
+    EXPECT_EQ(paper.numerics.speed_m, 6.25e-9);
+    EXPECT_EQ(paper.numerics.damping, 0.5);
+    EXPECT_EQ(paper.numerics.mass_factor, 1.7);
+    const Job dynamic = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"dynamic\"\nspeed = \"50 mm/s\"\ntime_step = \"10 ns\"\nmaximum_steps = 1000"), "job");
+    EXPECT_EQ(dynamic.numerics.speed_m, 0.05);
+    EXPECT_EQ(dynamic.numerics.time_step_s, 1e-8);
+    EXPECT_EQ(dynamic.numerics.maximum_steps, 1000);
+    const Job expert = parse_job(edited("accuracy = \"0.5 %\"", "residual_target = 0.003\nconfirm = true"), "job");
+    EXPECT_EQ(expert.numerics.residual_target, 0.003);
+    EXPECT_TRUE(expert.numerics.confirm);
+    for (const char* accuracy : {"\"0.05 %\"", "\"10 %\"", "0.0005", "0.1"}) EXPECT_NO_THROW(parse_job(edited("\"0.5 %\"", accuracy), "job")) << accuracy;
+}
+
+TEST(Job, LaboratoryValuesHaveOneNameInside) {
+    const Job job = parse_job(edited("UCS = \"122.1 MPa\"", "E = \"25.8 GPa\"\nc = \"21 MPa\"\nphi = \"45 deg\"\nmi = 20"), "job");
+    EXPECT_EQ(job.laboratory.at("cohesion"), 21e6);
+    EXPECT_DOUBLE_EQ(job.laboratory.at("friction_angle"), std::numbers::pi / 4);
+    EXPECT_EQ(job.laboratory.at("hoek_brown_mi"), 20.0);
+}
+
+TEST(Job, AByteOrderMarkAndWindowsLineEndsAreFine) {
+    std::string text = "\xEF\xBB\xBF";
+    for (char c : sample_job) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    EXPECT_EQ(parse_job(text, "job").grain.E_Pa, 25.8e9);
+}
+
+void expect_same(const OutlineSpec& a, const OutlineSpec& b) {
+    EXPECT_EQ(a.shape, b.shape);
+    EXPECT_EQ(a.width_m, b.width_m);
+    EXPECT_EQ(a.height_m, b.height_m);
+    EXPECT_EQ(a.diameter_m, b.diameter_m);
+    EXPECT_EQ(a.vertices_m, b.vertices_m);
+    EXPECT_EQ(a.edge_labels, b.edge_labels);
+}
+
+void expect_same(const SpecimenSpec& a, const SpecimenSpec& b) {
+    expect_same(a.outline, b.outline);
+    EXPECT_EQ(a.thickness_m, b.thickness_m);
+    EXPECT_EQ(a.grain_sizes.kind, b.grain_sizes.kind);
+    EXPECT_EQ(a.grain_sizes.minimum_m, b.grain_sizes.minimum_m);
+    EXPECT_EQ(a.grain_sizes.maximum_m, b.grain_sizes.maximum_m);
+    EXPECT_EQ(a.grain_sizes.median_m, b.grain_sizes.median_m);
+    EXPECT_EQ(a.grain_sizes.log_standard_deviation, b.grain_sizes.log_standard_deviation);
+    ASSERT_EQ(a.grain_sizes.sieve.size(), b.grain_sizes.sieve.size());
+    for (std::size_t i = 0; i < a.grain_sizes.sieve.size(); ++i) {
+        EXPECT_EQ(a.grain_sizes.sieve[i].diameter_m, b.grain_sizes.sieve[i].diameter_m);
+        EXPECT_EQ(a.grain_sizes.sieve[i].passing, b.grain_sizes.sieve[i].passing);
+    }
+    EXPECT_EQ(a.porosity, b.porosity);
+    EXPECT_EQ(a.merge_length_m, b.merge_length_m);
+    EXPECT_EQ(a.triangles_per_grain, b.triangles_per_grain);
+}
+
+void expect_same(const Job& a, const Job& b) {
+    EXPECT_EQ(a.name, b.name);
+    expect_same(a.specimen, b.specimen);
+    expect_same(a.brazilian_specimen, b.brazilian_specimen);
+    EXPECT_EQ(a.model.kind, b.model.kind);
+    EXPECT_EQ(a.model.contact, b.model.contact);
+    EXPECT_EQ(a.model.plane, b.model.plane);
+    EXPECT_EQ(a.grain.E_Pa, b.grain.E_Pa);
+    EXPECT_EQ(a.grain.nu, b.grain.nu);
+    EXPECT_EQ(a.grain.density_kg_m3, b.grain.density_kg_m3);
+    EXPECT_EQ(a.contact.law, b.contact.law);
+    EXPECT_EQ(a.contact.Kn_Pa_m, b.contact.Kn_Pa_m);
+    EXPECT_EQ(a.contact.eta, b.contact.eta);
+    EXPECT_EQ(a.contact.sigma_nt_Pa, b.contact.sigma_nt_Pa);
+    EXPECT_EQ(a.contact.tau_Pa, b.contact.tau_Pa);
+    EXPECT_EQ(a.contact.mu, b.contact.mu);
+    EXPECT_EQ(a.contact.Gfn_J_m2, b.contact.Gfn_J_m2);
+    EXPECT_EQ(a.contact.Gfs_J_m2, b.contact.Gfs_J_m2);
+    EXPECT_EQ(a.contact.shear_measure, b.contact.shear_measure);
+    EXPECT_EQ(a.contact.tension_unloading, b.contact.tension_unloading);
+    EXPECT_EQ(a.numerics.kind, b.numerics.kind);
+    EXPECT_EQ(a.numerics.accuracy, b.numerics.accuracy);
+    EXPECT_EQ(a.numerics.residual_target, b.numerics.residual_target);
+    EXPECT_EQ(a.numerics.damping, b.numerics.damping);
+    EXPECT_EQ(a.numerics.speed_m, b.numerics.speed_m);
+    EXPECT_EQ(a.numerics.mass_factor, b.numerics.mass_factor);
+    EXPECT_EQ(a.numerics.time_step_s, b.numerics.time_step_s);
+    EXPECT_EQ(a.numerics.maximum_steps, b.numerics.maximum_steps);
+    EXPECT_EQ(a.numerics.confirm, b.numerics.confirm);
+    ASSERT_EQ(a.tests.size(), b.tests.size());
+    for (std::size_t i = 0; i < a.tests.size(); ++i) {
+        EXPECT_EQ(a.tests[i].kind, b.tests[i].kind);
+        EXPECT_EQ(a.tests[i].sigma3_Pa, b.tests[i].sigma3_Pa);
+        EXPECT_EQ(a.tests[i].stop_fraction, b.tests[i].stop_fraction);
+        EXPECT_EQ(a.tests[i].maximum_strain, b.tests[i].maximum_strain);
+        EXPECT_EQ(a.tests[i].plate_stiffness_factor, b.tests[i].plate_stiffness_factor);
+        EXPECT_EQ(a.tests[i].plate_mu, b.tests[i].plate_mu);
+        EXPECT_EQ(a.tests[i].snapshots, b.tests[i].snapshots);
+        EXPECT_EQ(a.tests[i].seeds, b.tests[i].seeds);
+    }
+    EXPECT_EQ(a.seeds, b.seeds);
+    EXPECT_EQ(a.threads, b.threads);
+    EXPECT_EQ(a.laboratory, b.laboratory);
+}
+
+void expect_round_trip(const std::string& text) {
+    const Job first = parse_job(text, "round trip");
+    const std::string written = resolved_toml(first);
+    SCOPED_TRACE(written);
+    Job second;
+    ASSERT_NO_THROW(second = parse_job(written, "resolved"));
+    expect_same(first, second);
+    EXPECT_EQ(resolved_toml(second), written);
+}
+
+TEST(ResolvedJob, ReadsBackToTheSameBits) {
+    expect_round_trip(sample_job);
+    expect_round_trip(edited("width = \"80 mm\"", "width = \"3.1 in\""));
+    expect_round_trip(edited("law = \"bilinear\"", "law = \"linear\"\nshear_measure = \"beyond-friction\"\ntension_unloading = \"secant\""));
+    expect_round_trip(edited("eta = 0.28", "kratio = 3.7"));
+    expect_round_trip(edited("merge_length = \"auto\"", "merge_length = \"none\"\ntriangles_per_grain = 40"));
+    expect_round_trip(edited("merge_length = \"auto\"", "merge_length = \"0.123 mm\""));
+    expect_round_trip(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"\nspeed = \"6.25e-9 m\"\nmaximum_steps = 123456"));
+    expect_round_trip(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"dynamic\"\nspeed = \"0.07 m/s\"\ntime_step = \"9.9 ns\""));
+    expect_round_trip(edited("accuracy = \"0.5 %\"", "residual_target = 3.3e-3"));
+    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = \"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\""));
+    expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3"));
+    expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
+    expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));
+    expect_round_trip(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
+                             "shape = \"polygon\"\nvertices = [[\"-1 mm\", \"0.3 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"161.7 mm\"], [\"0 mm\", \"160 mm\"]]\n"
+                             "edge_labels = [\"bottom\", \"say \\\"right\\\"\", \"top\", \"le\\\\ft\"]"));
+    expect_round_trip(edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
+                             "{ distribution = \"sieve\", curve = [[\"2.1 mm\", 0], [\"3.3 mm\", \"41.7 %\"], [\"4 mm\", 1.0]] }"));
+    expect_round_trip(edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
+                             "{ distribution = \"log-normal\", median = \"3.14 mm\", log_standard_deviation = 0.217, minimum = \"2 mm\", maximum = \"5 mm\" }"));
+}
+
+TEST(JobTemplate, EveryKindIsAJob) {
+    for (std::string_view kind : job_template_kinds()) {
+        SCOPED_TRACE(kind);
+        expect_round_trip(job_template(kind));
+    }
+    EXPECT_EQ(parse_job(job_template("laboratory"), "job").tests.size(), 5u);
+    EXPECT_THROW(job_template("triaxial"), InputError);
+}
+
+TEST(JobTemplate, TheCommentedDefaultsAreTheDefaults) {
+    // every line that begins "# key = value" is switched on, save those that show alternatives
+    const std::string text = job_template("laboratory");
+    std::string on;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = text.find('\n', at);
+        std::string line = text.substr(at, end - at);
+        at = end + 1;
+        const bool alternative = line.find("distribution") != std::string::npos || line.starts_with("# DTS") || line.starts_with("# hoek") || line.starts_with("# maximum_steps") || line.starts_with("# seeds");
+        if (line.starts_with("# ") && line.find(" = ") != std::string::npos && line.find(" = ") == line.find(' ', 2) && !alternative) line = line.substr(2);
+        on += line + "\n";
+    }
+    EXPECT_NE(on, text);
+    expect_same(parse_job(on, "job"), parse_job(text, "job"));
+}
+
+TEST(Job, RelativePackingsCountFromTheJobsFolder) {
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "feldspar-packing-test";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "p.txt") << "a packing\n";
+    std::ofstream(folder / "job.toml") << edited("thickness = \"80 mm\"", "packing = \"p.txt\"", edited("[1, 2, 3, 4, 5]", "[1]"));
+    EXPECT_EQ(read_job(folder / "job.toml").specimen.packing_file, folder / "p.txt");
+    std::ofstream(folder / "several.toml") << edited("thickness = \"80 mm\"", "packing = \"p.txt\"");
+    EXPECT_THROW(read_job(folder / "several.toml"), InputError);
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace feldspar
