@@ -1,0 +1,38 @@
+// Distributions of grain diameters: moments and random samples.
+#pragma once
+
+#include <vector>
+
+#include "feldspar/base/rng.hpp"
+#include "feldspar/specimen/specimen.hpp"
+
+namespace feldspar {
+
+/// Moments of the distribution by NUMBER of grains.
+struct DiameterMoments {
+    double mean_m = 0.0;             ///< E[d]
+    double mean_square_m2 = 0.0;     ///< E[d^2]
+};
+
+/// @throws InputError naming the key, for bounds that are not positive or not ordered, a standard deviation that is not
+///         positive, a truncation that leaves nothing, or a sieve curve that does not rise from 0 to 1
+void check_grain_sizes(const GrainSizeSpec& spec);
+
+/// Moments in closed form.
+///   uniform     E[d] = (a + b) / 2, E[d^2] = (a^2 + a b + b^2) / 3
+///   log-normal  truncated to [a, b]: E[d^k] = m^k exp(k^2 s^2 / 2) (Phi(B - k s) - Phi(A - k s)) / (Phi(B) - Phi(A)), with
+///               median m, s the standard deviation of ln d, A = ln(a/m)/s, B = ln(b/m)/s
+///   sieve       passing (area fraction) is linear in ln d between points, so the number density in an interval is
+///               proportional to d^-3
+DiameterMoments diameter_moments(const GrainSizeSpec& spec);
+
+/// The diameter that the number of grains N = (1 - porosity) A / (pi d^2 / 4) is counted with: the mean for a uniform
+/// distribution (so the published specimens have exactly 1630 and 640 grains), else the root mean square, with which the
+/// area of the discs is (1 - porosity) A on average.
+double counting_diameter(const GrainSizeSpec& spec);
+
+/// Draws `count` diameters (m) in the stream's order, by inversion of the distribution function: one uniform number each.
+/// Sieve fractions are of area: the share of the area in grains finer than d follows the curve.
+std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, RandomStream& random);
+
+}  // namespace feldspar

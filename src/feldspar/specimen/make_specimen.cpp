@@ -1,0 +1,178 @@
+// Outline -> grain sizes -> packing -> Laguerre cells -> grain mesh, and what a user should know of the result.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/base/rng.hpp"
+#include "feldspar/geometry/polygon.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
+#include "feldspar/specimen/mesh_grains.hpp"
+#include "feldspar/specimen/outline.hpp"
+#include "feldspar/specimen/pack_discs.hpp"
+#include "feldspar/specimen/specimen.hpp"
+#include "feldspar/specimen/tessellate_laguerre.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double most_grains = 1e7;
+
+void check_numbers(const SpecimenSpec& spec) {
+    if (!(spec.porosity >= 0.0 && spec.porosity < 1.0)) {
+        throw InputError({"", 0, 0, "specimen.grains.porosity"}, fmt::format("{:g}", spec.porosity), "from 0 to below 1");
+    }
+    if (!(spec.thickness_m > 0.0) || !std::isfinite(spec.thickness_m)) {
+        throw InputError({"", 0, 0, "specimen.thickness"}, fmt::format("{:g} m", spec.thickness_m), "a length greater than zero");
+    }
+    if (spec.merge_length_m && !(*spec.merge_length_m >= 0.0 && std::isfinite(*spec.merge_length_m))) {
+        throw InputError({"", 0, 0, "specimen.grains.merge_length"}, fmt::format("{:g} m", *spec.merge_length_m), "a length, or 0 for never");
+    }
+    if (spec.triangles_per_grain < 0) {
+        throw InputError({"", 0, 0, "specimen.grains.triangles_per_grain"}, fmt::format("{}", spec.triangles_per_grain),
+                         "0 for the fixed topology, or a number of triangles");
+    }
+}
+
+double largest_diameter(const GrainSizeSpec& grains) {
+    return grains.kind == GrainSizeKind::sieve ? grains.sieve.back().diameter_m : grains.maximum_m;
+}
+
+double mean_diameter(const Packing& packing) {
+    return 2.0 * std::accumulate(packing.radii_m.begin(), packing.radii_m.end(), 0.0) / static_cast<double>(packing.radii_m.size());
+}
+
+double smaller_side(const Outline& outline) {
+    const Box box = bounding_box(outline);
+    return std::min(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
+}
+
+Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint64_t seed) {
+    const int count = grain_count(spec);
+    const double largest = largest_diameter(spec.grain_sizes);
+    if (count < 1 || largest > smaller_side(outline)) {
+        throw InputError({"", 0, 0, "specimen.grains.diameter"},
+                         fmt::format("grains of up to {:.4g} mm do not fit into an outline {:.4g} mm across", 1e3 * largest,
+                                     1e3 * smaller_side(outline)),
+                         "grains several times smaller than the specimen");
+    }
+    RandomStream sizes(seed, "grain sizes");
+    RandomStream places(seed, "packing positions");
+    return pack_discs(outline, sample_diameters(spec.grain_sizes, count, sizes), places);
+}
+
+/// Twice the area between the boundary edges and the origin, which is the area of the outline, or of its chords on a disc.
+double boundary_area(const Tessellation& cells) {
+    double twice = 0.0;
+    for (const Cell& cell : cells.cells) {
+        for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
+            if (cell.neighbours[k] >= 0) continue;
+            twice += cross(cells.vertices[cell.vertices[k]], cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]]);
+        }
+    }
+    return 0.5 * twice;
+}
+
+void measure_cells(const Specimen& specimen, SpecimenQuality& quality) {
+    quality.smallest_edge_m = std::numeric_limits<double>::infinity();
+    double area = 0.0;
+    long vertices = 0;
+    std::vector<Vec2> corners;
+    for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
+        const Cell& cell = specimen.cells.cells[g];
+        corners.clear();
+        for (const int v : cell.vertices) corners.push_back(specimen.cells.vertices[v]);
+        area += signed_area(corners);
+        vertices += std::ssize(corners);
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            quality.smallest_edge_m = std::min(quality.smallest_edge_m, norm(corners[(k + 1) % corners.size()] - corners[k]));
+            if (cell.neighbours[k] > g) ++quality.contacts;
+        }
+    }
+    quality.vertices_per_grain = static_cast<double>(vertices) / static_cast<double>(quality.grains);
+    const double reference = specimen.outline.is_disc ? boundary_area(specimen.cells) : specimen.outline.area_m2;
+    quality.area_error = std::abs(area - reference) / reference;
+}
+
+void measure_mesh(const GrainMesh& mesh, SpecimenQuality& quality) {
+    quality.nodes = static_cast<int>(mesh.nodes.size());
+    quality.triangles = static_cast<int>(mesh.triangles.size());
+    quality.smallest_triangle_m2 = std::numeric_limits<double>::infinity();
+    quality.smallest_triangle_height_m = std::numeric_limits<double>::infinity();
+    for (const auto& t : mesh.triangles) {
+        const Vec2 a = mesh.nodes[t[0]], b = mesh.nodes[t[1]], c = mesh.nodes[t[2]];
+        const double area = 0.5 * cross(b - a, c - a);
+        const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+        quality.smallest_triangle_m2 = std::min(quality.smallest_triangle_m2, area);
+        quality.smallest_triangle_height_m = std::min(quality.smallest_triangle_height_m, 2.0 * area / longest);
+    }
+}
+
+std::vector<std::string> warnings_about(const SpecimenQuality& quality) {
+    std::vector<std::string> warnings;
+    if (quality.width_over_largest_grain < 10.0) {
+        warnings.push_back(fmt::format("the specimen is only {:.1f} times as wide as its largest grain; ISRM suggests at least 10",
+                                       quality.width_over_largest_grain));
+    }
+    if (quality.area_error > 1e-9) {
+        warnings.push_back(fmt::format("the cells miss the outline's area by a share of {:.1e}", quality.area_error));
+    }
+    if (quality.overlap_mean > 0.15) {
+        warnings.push_back(fmt::format("the discs overlap by {:.0f} % of the mean diameter on average: the grain sizes will differ from the "
+                                       "distribution; a larger porosity gives fewer grains", 100.0 * quality.overlap_mean));
+    }
+    if (quality.overlap_mean < 1e-5 && quality.grains > 1) {
+        warnings.push_back("the packing is loose: cells are larger than their discs, and grain sizes differ from the distribution");
+    }
+    if (quality.smallest_triangle_height_m < 0.005 * quality.mean_diameter_m) {
+        warnings.push_back(fmt::format("the flattest triangle is only {:.2g} mm high, which slows explicit steps; a larger merge length helps",
+                                       1e3 * quality.smallest_triangle_height_m));
+    }
+    return warnings;
+}
+
+}  // namespace
+
+int grain_count(const SpecimenSpec& spec) {
+    check_numbers(spec);
+    const double d = counting_diameter(spec.grain_sizes);
+    const double count = std::round((1.0 - spec.porosity) * make_outline(spec.outline).area_m2 / (0.25 * std::numbers::pi * d * d));
+    if (count > most_grains) {
+        throw InputError({"", 0, 0, "specimen.grains.diameter"}, fmt::format("these grain sizes ask for {:.3g} grains", count),
+                         fmt::format("at most {:.0e}", most_grains));
+    }
+    return static_cast<int>(count);
+}
+
+Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed) {
+    check_numbers(spec);
+    Specimen specimen;
+    specimen.spec = spec;
+    specimen.seed = seed;
+    specimen.outline = make_outline(spec.outline);
+    specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed) : load_packing(spec.packing_file, specimen.outline);
+
+    SpecimenQuality& quality = specimen.quality;
+    quality.mean_diameter_m = mean_diameter(specimen.packing);
+    const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
+    specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
+    specimen.mesh = mesh_grains(specimen.cells, spec.triangles_per_grain);
+
+    quality.grains = static_cast<int>(specimen.packing.centres.size());
+    quality.merged_edges = specimen.cells.merged_edges;
+    quality.overlap_mean = specimen.packing.overlap_mean;
+    quality.overlap_max = specimen.packing.overlap_max;
+    quality.relaxation_residual = specimen.packing.residual;
+    quality.width_over_largest_grain =
+        smaller_side(specimen.outline) / (2.0 * *std::max_element(specimen.packing.radii_m.begin(), specimen.packing.radii_m.end()));
+    measure_cells(specimen, quality);
+    measure_mesh(specimen.mesh, quality);
+    quality.warnings = warnings_about(quality);
+    return specimen;
+}
+
+}  // namespace feldspar

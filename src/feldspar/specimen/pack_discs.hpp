@@ -1,0 +1,33 @@
+// Random dense packing of discs inside an outline: insertion at half radius, then relaxation at full radius.
+#pragma once
+
+#include <span>
+
+#include "feldspar/base/rng.hpp"
+#include "feldspar/specimen/specimen.hpp"
+
+namespace feldspar {
+
+/// Inserts discs of the given diameters at random without overlap, at half their radius and largest first, then gives them
+/// their full radius and relaxes them (relax_discs). The discs come out sorted in rows from the bottom, so that neighbours
+/// are near each other in memory.
+/// @throws InputError      if a disc finds no room: the grains are too large for the outline
+/// @throws NumericalError  from the relaxation
+Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random);
+
+/// When the relaxation may stop.
+struct RelaxationCriterion {
+    double residual = 1e-4;       ///< mean unbalanced force on a disc / mean contact force, at most
+    double loose_overlap = 1e-6;  ///< or: mean overlap / mean diameter below this, for packings too loose to carry force
+    int most_steps = 50000;       ///< after so many steps it has failed
+};
+
+/// Moves the discs until their overlaps are spread evenly: linear repulsion of equal stiffness at every overlap of two discs
+/// or of a disc and the outline, no cohesion, no friction. In the plane a contact of grains of size d under an even stress
+/// carries a force proportional to d, so equal stiffness means overlaps in proportion to d. Minimised by FIRE (Bitzek et al.,
+/// Phys. Rev. Lett. 97, 170201, 2006): damped dynamics whose time step grows while the motion goes downhill.
+/// Fills overlap_mean, overlap_max, residual and relaxation_steps. Same input, same bits.
+/// @throws NumericalError  if the criterion is not met in the most steps, or a disc has left the outline
+void relax_discs(Packing& packing, const Outline& outline, const RelaxationCriterion& criterion = {});
+
+}  // namespace feldspar

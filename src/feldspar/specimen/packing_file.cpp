@@ -1,0 +1,155 @@
+// A packing as text, so that it can be kept, exchanged and loaded again with the same bits.
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/specimen/outline.hpp"
+#include "feldspar/specimen/specimen.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr const char* first_line = "feldspar packing 1";
+
+/// Reads line by line, and knows the line for error messages.
+class PackingReader {
+public:
+    explicit PackingReader(const std::filesystem::path& file) : name_(file.string()), stream_(file) {
+        if (!stream_) throw InputError({name_, 0, 0, ""}, "the packing file cannot be opened", "a file saved with save_packing");
+    }
+
+    [[noreturn]] void fail(const std::string& problem, const std::string& allowed) const {
+        throw InputError({name_, line_, line_ > 0 ? 1 : 0, ""}, problem, allowed);
+    }
+
+    /// The words of the next line. `what` says what should stand there.
+    std::vector<std::string> next(const std::string& what) {
+        std::string text;
+        ++line_;
+        if (!std::getline(stream_, text)) fail("the file ends too early", what);
+        text_ = text;
+        std::istringstream words(text);
+        std::vector<std::string> result;
+        for (std::string word; words >> word;) result.push_back(word);
+        return result;
+    }
+
+    /// The numbers of the next line, which must start with `keyword` (if not empty) and hold `count` finite numbers.
+    std::vector<double> numbers(const std::string& keyword, std::size_t count) {
+        const std::string what = keyword.empty() ? fmt::format("{} numbers", count) : fmt::format("'{}' and {} numbers", keyword, count);
+        std::vector<std::string> words = next(what);
+        if (!keyword.empty()) {
+            if (words.empty() || words[0] != keyword) fail(fmt::format("'{}'", text_), what);
+            words.erase(words.begin());
+        }
+        if (words.size() != count) fail(fmt::format("'{}'", text_), what);
+        std::vector<double> result;
+        for (const std::string& word : words) {
+            double value = 0.0;
+            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+            if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
+                fail(fmt::format("'{}' is not a number", word), what);
+            }
+            result.push_back(value);
+        }
+        return result;
+    }
+
+    /// A count at least `least`, from a line `keyword` n.
+    std::size_t count(const std::string& keyword, double least) {
+        const double value = numbers(keyword, 1)[0];
+        if (value != std::floor(value) || value < least || value > 1e8) fail(fmt::format("'{}'", text_), "a whole number");
+        return static_cast<std::size_t>(value);
+    }
+
+private:
+    std::string name_;
+    std::ifstream stream_;
+    std::string text_;
+    int line_ = 0;
+};
+
+std::string outline_text(const Outline& outline) {
+    if (outline.is_disc) return fmt::format("disc {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m);
+    std::string text = fmt::format("polygon {}\n", outline.vertices.size());
+    for (const Vec2 v : outline.vertices) text += fmt::format("{:.17g} {:.17g}\n", v.x, v.y);
+    return text;
+}
+
+void require_same_outline(PackingReader& reader, const Outline& outline) {
+    const Box box = bounding_box(outline);
+    const double tolerance = 1e-9 * norm(box.upper - box.lower);
+    const auto same = [&](Vec2 a, Vec2 b) { return norm(a - b) <= tolerance; };
+    if (outline.is_disc) {
+        const auto disc = reader.numbers("disc", 3);
+        if (!same({disc[0], disc[1]}, outline.centre) || std::abs(disc[2] - outline.radius_m) > tolerance) {
+            reader.fail(fmt::format("the packing was made for a disc of radius {:.9g} m", disc[2]),
+                        fmt::format("the outline of this specimen: a disc of radius {:.9g} m", outline.radius_m));
+        }
+        return;
+    }
+    const std::size_t n = reader.count("polygon", 3);
+    if (n != outline.vertices.size()) {
+        reader.fail(fmt::format("the packing was made for an outline of {} vertices", n),
+                    fmt::format("this specimen's outline of {} vertices", outline.vertices.size()));
+    }
+    for (const Vec2 v : outline.vertices) {
+        const auto xy = reader.numbers("", 2);
+        if (!same({xy[0], xy[1]}, v)) {
+            reader.fail(fmt::format("the packing was made for an outline with a vertex at ({:.9g}, {:.9g}) m", xy[0], xy[1]),
+                        fmt::format("this specimen's vertex at ({:.9g}, {:.9g}) m", v.x, v.y));
+        }
+    }
+}
+
+}  // namespace
+
+void save_packing(const Specimen& specimen, const std::filesystem::path& file) {
+    const Packing& packing = specimen.packing;
+    std::string text = fmt::format("{}\nseed {}\n{}", first_line, specimen.seed, outline_text(specimen.outline));
+    text += fmt::format("relaxation {:.17g} {:.17g} {:.17g} {}\n", packing.overlap_mean, packing.overlap_max, packing.residual,
+                        packing.relaxation_steps);
+    text += fmt::format("discs {}\n", packing.centres.size());
+    for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+        text += fmt::format("{:.17g} {:.17g} {:.17g}\n", packing.centres[i].x, packing.centres[i].y, packing.radii_m[i]);
+    }
+    text += "end\n";
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream) throw OutputError(fmt::format("the packing could not be written to {}", file.string()));
+}
+
+Packing load_packing(const std::filesystem::path& file, const Outline& outline) {
+    PackingReader reader(file);
+    const std::vector<std::string> head = reader.next(first_line);
+    if (head != std::vector<std::string>{"feldspar", "packing", "1"}) reader.fail("this is not a packing file", first_line);
+    const std::vector<std::string> seed = reader.next("'seed' and a number");
+    if (seed.size() != 2 || seed[0] != "seed") reader.fail("the seed is missing", "'seed' and a number");
+    require_same_outline(reader, outline);
+
+    Packing packing;
+    const auto relaxation = reader.numbers("relaxation", 4);
+    packing.overlap_mean = relaxation[0];
+    packing.overlap_max = relaxation[1];
+    packing.residual = relaxation[2];
+    packing.relaxation_steps = static_cast<int>(relaxation[3]);
+    const std::size_t discs = reader.count("discs", 1);
+    for (std::size_t i = 0; i < discs; ++i) {
+        const auto disc = reader.numbers("", 3);
+        const Vec2 centre = {disc[0], disc[1]};
+        if (!contains(outline, centre)) reader.fail(fmt::format("the centre of disc {} lies outside the outline", i), "a centre inside");
+        if (!(disc[2] > 0.0)) reader.fail(fmt::format("the radius of disc {} is {:g} m", i, disc[2]), "a radius greater than zero");
+        packing.centres.push_back(centre);
+        packing.radii_m.push_back(disc[2]);
+    }
+    if (reader.next("'end'") != std::vector<std::string>{"end"}) reader.fail("more lines than discs", "'end'");
+    return packing;
+}
+
+}  // namespace feldspar
