@@ -61,7 +61,7 @@ std::string failures(const std::vector<Criterion>& table, bool against_a) {
 std::string advice(const NumericsSpec& numerics, char grade) {
     switch (numerics.kind) {
         case NumericsKind::adaptive: {
-            if (numerics.residual_target) return fmt::format("lower the residual target to {:.1g}", *numerics.residual_target / 3.0);
+            if (numerics.residual_target) return fmt::format("run with residual_target = {:.1g}", *numerics.residual_target / 3.0);
             const bool asked_for_less = grade == 'B' && numerics.accuracy > 0.0075;
             const double accuracy = asked_for_less ? 0.005 : std::max(numerics.accuracy / 3.0, 0.0005);
             return fmt::format("run with accuracy = \"{:.1g} %\"", 100.0 * accuracy);
