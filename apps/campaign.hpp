@@ -1,0 +1,48 @@
+// The runs that a job stands for: every test on every one of its packings.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "feldspar/lab/run_test.hpp"
+#include "feldspar/study/job.hpp"
+
+namespace feldspar {
+
+/// One test on one packing.
+struct PlannedRun {
+    const TestSpec* test = nullptr;  ///< points into the job
+    std::uint64_t seed = 0;
+};
+
+/// All runs of the job, packing by packing, so that an interrupted job leaves whole packings behind.
+std::vector<PlannedRun> planned_runs(const Job& job);
+
+/// "biaxial at 4 MPa".
+std::string title(const TestSpec& test);
+
+/// The packings of a job, each made once.
+class Specimens {
+public:
+    explicit Specimens(const Job& job) : job_(&job) {}
+
+    /// The specimen of the run, made on the first call.
+    std::shared_ptr<const Specimen> get(const PlannedRun& run);
+
+    /// "packing-s3" or "packing-disc-s3": the stem of the file of the run's packing.
+    static std::string packing_stem(const PlannedRun& run);
+
+private:
+    const Job* job_;
+    std::map<std::pair<bool, std::uint64_t>, std::shared_ptr<const Specimen>> made_;  // (disc of the Brazilian test?, seed)
+};
+
+/// What run_test() and preview_test() ask for.
+TestSetup setup_of(const Job& job, const PlannedRun& run, std::shared_ptr<const Specimen> specimen);
+
+}  // namespace feldspar

@@ -1,0 +1,42 @@
+// The program's commands. Each prints its results to stdout and everything else to stderr, throws what the library throws,
+// and returns the exit code.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/study/job.hpp"
+
+namespace feldspar {
+
+/// What stands on the command line beside the job file; it takes precedence over the job.
+struct JobOptions {
+    std::string job;
+    std::vector<std::uint64_t> seeds;  ///< for every test; empty = as the job says
+    std::optional<int> threads;
+};
+
+struct RunOptions : JobOptions {
+    std::optional<std::string> out;
+    std::string command_line;  ///< for provenance
+};
+
+/// Runs all tests of a job and leaves a directory of results.
+ExitCode run_command(const RunOptions& options);
+
+/// Builds everything, prints counts, memory, stable step, expected steps and time, and stops.
+ExitCode check_command(const JobOptions& options);
+
+/// Prints a commented job, or writes it to a new file.
+ExitCode new_command(const std::string& kind, const std::optional<std::string>& out);
+
+/// Reads the job and applies the command line to it.
+Job job_with_options(const JobOptions& options);
+
+/// The number of threads to use: as the job says, or one for each core. Warns on stderr when there are fewer cores.
+int thread_count(const Job& job);
+
+}  // namespace feldspar

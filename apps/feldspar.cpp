@@ -1,0 +1,114 @@
+// The program `feldspar`: reads the command line, calls a command, and turns what it throws into a message and an exit code.
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "feldspar/output/results.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  feldspar new uniaxial-compression --out granite.toml   a commented job to start from
+  feldspar check granite.toml                            is it sound, how long will it take?
+  feldspar run granite.toml                              results in results/granite-1
+  feldspar run granite.toml --out trial --seed 7         another packing, another place
+  feldspar run granite.toml --threads 2                  the results do not depend on the threads
+
+Exit codes: 0 done, 2 mistake in the input (no file is left), 3 numerical failure, 4 results could not be written,
+130 interrupted (the results so far are kept).)";
+
+int complain(ExitCode code, const std::string& message) {
+    fmt::print(stderr, "feldspar: {}\n", message);
+    return static_cast<int>(code);
+}
+
+int guarded(const std::function<ExitCode()>& command) {
+    try {
+        const ExitCode code = command();
+        if (std::fflush(stdout) != 0) return complain(ExitCode::output, "the results could not be printed");
+        return static_cast<int>(code);
+    } catch (const InputError& error) {
+        return complain(ExitCode::input, error.what());
+    } catch (const NumericalError& error) {
+        return complain(ExitCode::numerical, error.what());
+    } catch (const OutputError& error) {
+        return complain(ExitCode::output, error.what());
+    } catch (const Interrupted& error) {
+        return complain(ExitCode::interrupted, error.what());
+    } catch (const std::bad_alloc&) {
+        return complain(ExitCode::numerical, "there is not enough memory for this job");
+    } catch (const std::exception& error) {
+        return complain(ExitCode::numerical, fmt::format("internal error: {}", error.what()));
+    }
+}
+
+std::string joined(int argc, char** argv) {
+    std::string text = "feldspar";
+    for (int i = 1; i < argc; ++i) text += std::string(" ") + argv[i];
+    return text;
+}
+
+std::string version_text() {
+    const Provenance provenance = collect_provenance("", 1);
+    return fmt::format("feldspar {} ({}, {})", provenance.version, provenance.commit, provenance.compiler);
+}
+
+void add_job_options(CLI::App& command, JobOptions& options) {
+    command.add_option("job", options.job, "the job file")->required()->type_name("JOB.toml");
+    command.add_option("--threads", options.threads, "number of threads (default: as the job says, else one for each core)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 256));
+    command.add_option("--seed", options.seeds, "run all tests on this packing instead of the job's seeds; may be repeated")
+        ->type_name("S")
+        ->allow_extra_args(false)
+        ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+}
+
+int run_program(int argc, char** argv) {
+    CLI::App app("A laboratory for rock fracture with the flexible particle model.", "feldspar");
+    app.footer(examples);
+    app.require_subcommand(1);
+    app.set_version_flag("--version", version_text);
+    app.failure_message([](const CLI::App*, const CLI::Error& error) {
+        return fmt::format("feldspar: {}\n  'feldspar --help' shows the commands with examples\n", error.what());
+    });
+
+    RunOptions run;
+    run.command_line = joined(argc, argv);
+    CLI::App* run_app = app.add_subcommand("run", "run all tests of a job");
+    add_job_options(*run_app, run);
+    run_app->add_option("--out", run.out, "a new directory for the results (default: results/<job>-<n>)")->type_name("DIR");
+
+    JobOptions check;
+    CLI::App* check_app = app.add_subcommand("check", "build everything, print counts, memory and expected time, and stop");
+    add_job_options(*check_app, check);
+
+    std::string kind;
+    std::optional<std::string> file;
+    CLI::App* new_app = app.add_subcommand("new", "print a commented job to start from");
+    new_app->add_option("kind", kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")->required()->type_name("KIND");
+    new_app->add_option("--out", file, "write it to this new file instead")->type_name("FILE");
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? static_cast<int>(ExitCode::success) : static_cast<int>(ExitCode::input);
+    }
+    return guarded([&] {
+        if (*run_app) return run_command(run);
+        if (*check_app) return check_command(check);
+        return new_command(kind, file);
+    });
+}
+
+}  // namespace
+}  // namespace feldspar
+
+int main(int argc, char** argv) { return feldspar::run_program(argc, argv); }

@@ -1,0 +1,40 @@
+// Progress on stderr: one line that is rewritten on a terminal, a plain line every ten seconds elsewhere.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "feldspar/lab/run_test.hpp"
+
+namespace feldspar {
+
+/// "12 s", "3 min 20 s", "2 h 05 min".
+std::string duration_text(double seconds);
+
+class Progress {
+public:
+    Progress();
+
+    /// A line that stays.
+    void note(const std::string& line);
+
+    /// What is being done now, for work that does not report by itself.
+    void busy(const std::string& what);
+
+    /// A running test reports. `label` is "3/21 biaxial at 4 MPa, seed 1".
+    void report(const std::string& label, const TestProgress& progress);
+
+    /// Takes the rewritten line away.
+    void clear();
+
+private:
+    void rewrite(const std::string& line);
+
+    bool terminal_ = false;
+    bool line_shown_ = false;
+    std::string last_label_;
+    std::string last_stage_;
+    std::chrono::steady_clock::time_point last_line_;
+};
+
+}  // namespace feldspar

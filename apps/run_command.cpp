@@ -1,0 +1,195 @@
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "campaign.hpp"
+#include "commands.hpp"
+#include "feldspar/output/results.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "tables.hpp"
+
+namespace feldspar {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Bytes that the job will leave, roughly: fields at the snapshots in two formats, histories and the report.
+double expected_bytes(const Job& job, const std::vector<PlannedRun>& runs) {
+    double bytes = 1e6;
+    for (const PlannedRun& run : runs) {
+        const SpecimenSpec& specimen = run.test->kind == TestKind::brazilian ? job.brazilian_specimen : job.specimen;
+        const double grains = grain_count(specimen);
+        bytes += 1e6 + 500.0 * grains * (run.test->snapshots + 4);
+    }
+    return bytes;
+}
+
+void check_space(const std::optional<std::string>& out, const Job& job, const std::vector<PlannedRun>& runs) {
+    std::error_code error;
+    fs::path place = fs::absolute(out ? fs::path(*out) : fs::path("results"), error);
+    while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();
+    const fs::space_info space = fs::space(place, error);
+    if (error) return;  // a file system that does not tell is not full
+    const double wanted = expected_bytes(job, runs);
+    if (static_cast<double>(space.available) < wanted)
+        throw InputError({{}, 0, 0, "--out"}, fmt::format("the results need about {:.0f} MB, but the disk of '{}' has only {:.0f} MB free", wanted / 1e6, place.string(), static_cast<double>(space.available) / 1e6),
+                         "a directory on a disk with more space, or fewer snapshots");
+}
+
+// One campaign: makes everything, runs test after test, and writes each test's files as soon as it has ended.
+class Campaign {
+public:
+    Campaign(const Job& job, const RunOptions& options) : job_(job), runs_(planned_runs(job)), specimens_(job) {
+        RunDirectory::check(options.out, job.name);
+        check_space(options.out, job, runs_);
+        control_.threads = thread_count(job);
+        control_.stop = &stop_requested();
+        provenance_ = collect_provenance(options.command_line, control_.threads);
+    }
+
+    /// Makes every specimen and judges every setting of the user's, so that a mistake shows before there is a directory.
+    void prepare() {
+        for (std::size_t i = 0; i < runs_.size(); ++i) {
+            if (stop_requested()) throw Interrupted();
+            progress_.busy(fmt::format("preparing {}/{}: specimen of {}, seed {}", i + 1, runs_.size(), title(*runs_[i].test), runs_[i].seed));
+            const std::shared_ptr<const Specimen> specimen = specimens_.get(runs_[i]);
+            const bool own_setting = job_.numerics.kind != NumericsKind::adaptive || job_.numerics.mass_factor;
+            if (own_setting) (void)preview_test(setup_of(job_, runs_[i], specimen), control_);
+        }
+        progress_.clear();
+        for (const PlannedRun& run : runs_)
+            for (const std::string& warning : specimens_.get(run)->quality.warnings) warn(warning);
+    }
+
+    void create_directory(const std::optional<std::string>& out) {
+        directory_ = RunDirectory::create(out, job_.name);
+        progress_.note(fmt::format("results go to {}", directory_->path().string()));
+        directory_->write_text("job.toml", job_.text);
+        directory_->write_text("job-resolved.toml", resolved_toml(job_));
+    }
+
+    /// Runs everything. @throws what a test or a write throws, after the results so far have been written.
+    void run() {
+        for (std::size_t i = 0; i < runs_.size() && !stop_requested(); ++i) {
+            try {
+                run_one(i);
+            } catch (const Interrupted&) {
+                break;  // before there was anything to keep of this test
+            } catch (const NumericalError& error) {
+                progress_.clear();
+                write_overview(false);
+                throw NumericalError(fmt::format("{}, seed {}: {}", title(*runs_[i].test), runs_[i].seed, error.what()));
+            }
+        }
+        progress_.clear();
+        interrupted_ = stop_requested();
+        write_overview(!interrupted_);
+    }
+
+    bool interrupted() const { return interrupted_; }
+
+    void print_results() const {
+        fmt::print("\n{}\n{}\n", property_table(job_, properties_), test_table(results_));
+        fmt::print("Report: {}\n", (directory_->path() / "report.html").string());
+    }
+
+    /// Where the results are, once there is a place.
+    std::optional<fs::path> place() const { return directory_ ? std::optional<fs::path>(directory_->path()) : std::nullopt; }
+    std::size_t finished() const { return results_.size(); }
+
+private:
+    void run_one(std::size_t i) {
+        const PlannedRun& run = runs_[i];
+        const std::string label = fmt::format("{}/{} {}, seed {}", i + 1, runs_.size(), title(*run.test), run.seed);
+        const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
+        const std::string packing = Specimens::packing_stem(run) + ".txt";
+        if (std::find(packings_.begin(), packings_.end(), packing) == packings_.end()) {
+            directory_->write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
+            packings_.push_back(packing);
+        }
+        control_.progress = [&](const TestProgress& state) { progress_.report(label, state); };
+        TestResult result = run_test(setup_of(job_, run, specimen), control_);
+        progress_.note(fmt::format("{}: {}", label, test_line(result)));
+        if (result.history.empty()) return;  // interrupted before the first row
+        results_.push_back(std::move(result));
+        write_history_csv(*directory_, results_.back(), provenance_);
+        write_hdf5(*directory_, results_.back(), job_, provenance_);
+        write_vtu(*directory_, results_.back());
+        if (i + 1 < runs_.size()) write_overview(false);
+    }
+
+    void write_overview(bool complete) {
+        properties_ = summarise(results_);
+        write_summary(*directory_, job_, results_, properties_, provenance_, complete);
+        write_report(*directory_, job_, results_, properties_, provenance_, complete);
+    }
+
+    void warn(const std::string& warning) {
+        if (std::find(warned_.begin(), warned_.end(), warning) != warned_.end()) return;
+        progress_.note("warning: " + warning);
+        warned_.push_back(warning);
+    }
+
+    const Job& job_;
+    std::vector<PlannedRun> runs_;
+    Specimens specimens_;
+    RunControl control_;
+    Provenance provenance_;
+    Progress progress_;
+    std::optional<RunDirectory> directory_;
+    std::vector<TestResult> results_;
+    PropertySummary properties_;
+    std::vector<std::string> packings_;  // written already
+    std::vector<std::string> warned_;
+    bool interrupted_ = false;
+};
+
+}  // namespace
+
+Job job_with_options(const JobOptions& options) {
+    Job job = read_job(options.job);
+    if (options.threads) job.threads = *options.threads;
+    if (options.seeds.empty()) return job;
+    for (std::uint64_t seed : options.seeds)
+        if (std::count(options.seeds.begin(), options.seeds.end(), seed) > 1)
+            throw InputError({{}, 0, 0, "--seed"}, fmt::format("the seed {} is given twice", seed), "each seed once");
+    if (!job.specimen.packing_file.empty() && options.seeds.size() > 1)
+        throw InputError({{}, 0, 0, "--seed"}, "several seeds are asked for, but the job loads one packing", "one seed");
+    job.seeds = options.seeds;
+    for (TestSpec& test : job.tests) test.seeds.clear();
+    return job;
+}
+
+int thread_count(const Job& job) {
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    if (job.threads == 0) return cores;
+    if (job.threads > cores) fmt::print(stderr, "warning: {} threads on {} core{} will wait for each other\n", job.threads, cores, cores == 1 ? "" : "s");
+    return job.threads;
+}
+
+ExitCode run_command(const RunOptions& options) {
+    install_signal_handlers();
+    const Job job = job_with_options(options);
+    Campaign campaign(job, options);
+    campaign.prepare();
+    campaign.create_directory(options.out);
+    try {
+        campaign.run();
+    } catch (const std::exception&) {
+        fmt::print(stderr, "the files of {} finished test{} are in {}\n", campaign.finished(), campaign.finished() == 1 ? "" : "s", campaign.place()->string());
+        throw;
+    }
+    campaign.print_results();
+    if (!campaign.interrupted()) return ExitCode::success;
+    fmt::print(stderr, "interrupted; the results so far are in {}\n", campaign.place()->string());
+    return ExitCode::interrupted;
+}
+
+}  // namespace feldspar

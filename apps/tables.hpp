@@ -1,0 +1,21 @@
+// What `feldspar run` prints at its end.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "feldspar/lab/properties.hpp"
+#include "feldspar/study/job.hpp"
+
+namespace feldspar {
+
+/// Properties of the rock: median, range, number of packings, and the laboratory's value with the deviation from it.
+std::string property_table(const Job& job, const PropertySummary& properties);
+
+/// The tests one by one: peak, cracks, steps, time, energy residual, and the verdict in words.
+std::string test_table(std::span<const TestResult> results);
+
+/// One line for a test that has just ended.
+std::string test_line(const TestResult& result);
+
+}  // namespace feldspar
