@@ -12,10 +12,10 @@ enum class ExitCode : int { success = 0, input = 2, numerical = 3, output = 4, i
 /// Where in the user's input a mistake stands. `line` and `column` count from 1; 0 means that it has no place (a
 /// command-line option, or a key that is missing altogether).
 struct InputPlace {
-    std::string file;
+    std::string file{};
     int line = 0;
     int column = 0;
-    std::string key;  ///< full dotted key, for example `material.contact.Kn`; empty for a syntax error
+    std::string key{};  ///< full dotted key, for example `material.contact.Kn`; empty for a syntax error
 };
 
 /// A mistake of the user's, found before anything runs: exit code 2, and no file has been written.
@@ -39,16 +39,7 @@ public:
 
 private:
     static std::string compose(const InputPlace& place, const std::string& problem, const std::string& allowed,
-                               const std::string& suggestion) {
-        std::string text = place.file;
-        if (place.line > 0) text += ":" + std::to_string(place.line) + ":" + std::to_string(place.column);
-        if (!text.empty()) text += ": ";
-        if (!place.key.empty()) text += place.key + ": ";
-        text += problem;
-        if (!allowed.empty()) text += "\n  allowed: " + allowed;
-        if (!suggestion.empty()) text += "\n  " + suggestion;
-        return text;
-    }
+                               const std::string& suggestion);
 
     InputPlace place_;
     std::string problem_;

@@ -65,7 +65,7 @@ struct BondState {
 };
 
 /// What an update tells besides the state.
-enum class BondEvent { none, broke_in_tension, broke_in_shear };
+enum class BondEvent { none, broke_in_tension, broke_in_shear, broke_in_shear_losing_compression };
 
 /// Recoverable energy of a point, J.
 inline double elastic_energy(const BondLaw& law, double area_m2, const BondState& s) {
@@ -116,7 +116,9 @@ inline BondEvent update_damaged(const BondLaw& law, double area_m2, double dun_m
             if (law.secant_unloading && s.un_m > 0.0 && s.max_un_m > law.normal.x0)
                 s.Fn_N = -tension_limit * s.un_m / s.max_un_m;
         } else {
-            event = Fn_trial < 0.0 ? BondEvent::broke_in_tension : BondEvent::broke_in_shear;
+            // Unloading with the slope kn may have left compression at an open gap, which vanishes now: counted.
+            event = Fn_trial < 0.0 ? BondEvent::broke_in_tension
+                    : Fn_trial > 0.0 && s.un_m > 0.0 ? BondEvent::broke_in_shear_losing_compression : BondEvent::broke_in_shear;
         }
     }
     if (s.damage >= 1.0) {

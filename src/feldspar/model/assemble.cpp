@@ -73,8 +73,8 @@ void remember_shapes(Assembly& body, const Contact& contact) {
 
 void add_bonded_contact(Assembly& body, ContactKind kind, int ga, int ka, int gb, int kb) {
     Contact contact;
-    contact.a = {body.grain_edges[body.grains[ga].edge_begin + ka], ga, -1};
-    contact.b = {body.grain_edges[body.grains[gb].edge_begin + kb], gb, -1};
+    contact.a = {body.grain_edges[body.grains[ga].edge_begin + ka], ga, 0};
+    contact.b = {body.grain_edges[body.grains[gb].edge_begin + kb], gb, 0};
     const Vec2 p0 = body.nodes.position(contact.a.node[0]), p1 = body.nodes.position(contact.a.node[1]);
     const double area = norm(p1 - p0) * body.thickness_m;
     place_on_edge(body, contact, p0, p1);
@@ -85,13 +85,13 @@ void add_bonded_contact(Assembly& body, ContactKind kind, int ga, int ka, int gb
         contact.points = 3;
         const ContactFrame frame = contact_frame(body, contact);
         const double from = dot(p0 - frame.reference_point, frame.edge_tangent), to = from + norm(p1 - p0);
-        body.points.push_back({from, area / 6.0, {}, -1, false});
-        body.points.push_back({0.5 * (from + to), 2.0 * area / 3.0, {}, -1, false});
-        body.points.push_back({to, area / 6.0, {}, -1, false});
+        body.points.push_back({from, area / 6.0, {}, -1, false, false});
+        body.points.push_back({0.5 * (from + to), 2.0 * area / 3.0, {}, -1, false, false});
+        body.points.push_back({to, area / 6.0, {}, -1, false, false});
     } else {
         contact.points = 1;   // PCM: on the discs' own contact plane (dv = 0)
         contact.offset_m = 0.5 * (body.grains[ga].radius_m - body.grains[gb].radius_m);
-        body.points.push_back({0.0, area, {}, -1, false});
+        body.points.push_back({0.0, area, {}, -1, false, false});
     }
     body.contacts.push_back(contact);
     remember_shapes(body, contact);
@@ -243,7 +243,7 @@ void attach_plates(Assembly& body, const Specimen& specimen, const ContactMateri
             const double x = std::clamp(centre.x, std::min(p0.x, p1.x), std::max(p0.x, p1.x));
             const Vec2 touch = p0 + ((x - p0.x) / (p1.x - p0.x)) * (p1 - p0);
             Contact plate;
-            plate.a = {edge, g, -1};
+            plate.a = {edge, g, 0};
             plate.b.platen = side;
             plate.material = material;
             plate.offset_m = dot(touch - centre, platen.normal);
@@ -278,8 +278,8 @@ void add_new_contact(Assembly& body, int grain_a, int grain_b, double rest_overl
     contact.closing_distance_m = closing_distance_m;
     contact.new_contact = true;
     const Vec2 x = xa + ((0.5 * d + contact.offset_m) / d) * line;
-    contact.a = {closest_edge(body, grain_a, x), grain_a, -1};
-    contact.b = {closest_edge(body, grain_b, x), grain_b, -1};
+    contact.a = {closest_edge(body, grain_a, x), grain_a, 0};
+    contact.b = {closest_edge(body, grain_b, x), grain_b, 0};
     const auto length = [&](const EdgeNodes& e) { return norm(body.nodes.position(e[1]) - body.nodes.position(e[0])); };
     contact.first_point = static_cast<std::int32_t>(body.points.size());
     contact.points = 1;

@@ -54,7 +54,7 @@ using EdgeNodes = std::array<std::int32_t, 3>;
 struct ContactSide {
     EdgeNodes node{};          ///< of the triangle behind the edge; unused by a platen
     std::int32_t grain = -1;   ///< < 0: a platen
-    std::int32_t platen = -1;
+    std::int32_t platen = 0;   ///< which, if it is one
 };
 
 /// Two facing grain edges, or a grain and a platen (always side B).
@@ -80,6 +80,7 @@ struct ContactPoint {
     BondState bond;
     long long broken_step = -1;    ///< step at which damage became 1; -1: not broken, or broken from the start
     bool broke_in_tension = false;
+    bool lost_compression = false; ///< compression left at an open gap vanished when it broke
 };
 
 /// Initial shape functions of a contact point on both sides; read only by the fall-back.

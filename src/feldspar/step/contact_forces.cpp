@@ -54,6 +54,7 @@ void forces_of_contact(Assembly& body, int index, const StepSettings& settings, 
         if (event != BondEvent::none) {
             point.broken_step = step;
             point.broke_in_tension = event == BondEvent::broke_in_tension;
+            point.lost_compression = event == BondEvent::broke_in_shear_losing_compression;
         }
         const Vec2 on_b = point.bond.Fn_N * frame.n + point.bond.Fs_N * s;   // compression pushes B along n
         add(slot_a, Na, -on_b);

@@ -1,0 +1,60 @@
+// A test under way: the body between its platens, the settings of its step and the account of its energy.
+#pragma once
+
+#include <memory>
+
+#include "feldspar/base/parallel.hpp"
+#include "feldspar/lab/elastic_start.hpp"
+#include "feldspar/lab/gauges.hpp"
+#include "feldspar/lab/run_test.hpp"
+#include "feldspar/model/assembly.hpp"
+#include "feldspar/step/step.hpp"
+
+namespace feldspar {
+
+/// Everything that the stages of a test share. Each stage (prepare, load) is a function of its own.
+struct Experiment {
+    Experiment(const TestSetup& setup, const RunControl& control);
+
+    const TestSetup& setup;
+    const RunControl& control;
+    Assembly body;
+    Team team;
+    StrainGauge gauge;
+    StepSettings settings;
+
+    double height_m = 0.0;        ///< between the platens (Brazilian: the diameter)
+    double section_m2 = 0.0;      ///< initial, loaded (Brazilian: pi D t / 2, so that stress = 2P / (pi D t))
+    double direction = 1.0;       ///< +1 compression, -1 tension
+    double mass_factor = 0.0;     ///< of the scaled masses; 0 with real masses
+    double omega2 = 0.0;          ///< largest omega^2 dt^2 of the initial state
+    double omega2_bound = 4.0;    ///< its limit
+    double travel_time = 0.0;     ///< of a wave over the height, units of dt
+    double platen_travel_m = 0.0; ///< along the loading platen's mode since the start
+    double axial_stiffness = 0.0; ///< N per m of platen travel, of the intact body (an estimate until the elastic start)
+    long long step = 0;
+    long long preparation_steps = 0;
+    PlatenWork platen_work;
+    double elastic_start_J = 0.0;
+    double rate_control_J = 0.0;
+    bool computed_start = false;  ///< the elastic phase was passed over in closed form
+    HistoryRow isotropic;         ///< biaxial: the state when shearing starts
+
+    bool stopped() const { return control.stop != nullptr && control.stop->load(); }
+    bool brazilian() const { return setup.test.kind == TestKind::brazilian; }
+    double stress(double platen_force_N) const { return platen_force_N / section_m2; }
+
+    /// Runs `count` steps with the present settings.
+    void run(int count);
+
+    /// Changes the speed of the loading, and with it the velocity of the whole body by dv B; books the work.
+    void change_speed(double speed);
+};
+
+/// Damping, masses and time step as the numerics ask; refuses an unstable setting (@throws InputError).
+void choose_step(Experiment& experiment);
+
+/// From the unloaded body to the first moment of loading: elastic start (adaptive), consolidation (biaxial), initial velocities.
+void prepare(Experiment& experiment);
+
+}  // namespace feldspar

@@ -1,0 +1,207 @@
+#include "feldspar/lab/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "feldspar/lab/body_energy.hpp"
+
+namespace feldspar {
+namespace {
+
+// The share of the grain edge that a contact point stands for, in the undeformed state.
+struct EdgeShare {
+    double from, to, middle;
+};
+
+EdgeShare share_of_edge(int point, int points) {
+    if (points == 1) return {0.0, 1.0, 0.5};
+    constexpr EdgeShare kLobatto[3] = {{0.0, 1.0 / 6.0, 0.0}, {1.0 / 6.0, 5.0 / 6.0, 0.5}, {5.0 / 6.0, 1.0, 1.0}};
+    return kLobatto[point];
+}
+
+}  // namespace
+
+Recorder::Recorder(const Experiment& experiment, TestResult& result) : e_(experiment), result_(result) {}
+
+HistoryRow Recorder::present(Phase phase) const {
+    HistoryRow row;
+    const Reactions reactions = platen_reactions(e_.body);
+    row.phase = phase;
+    row.step = e_.step;
+    row.platen_displacement_m = e_.direction * e_.platen_travel_m;
+    row.axial_strain = row.platen_displacement_m / e_.height_m;
+    row.axial_strain_gauge = e_.gauge.axial(e_.body);
+    row.lateral_strain_gauge = e_.gauge.lateral(e_.body);
+    row.stress_top_Pa = e_.stress(reactions.loading);
+    row.stress_bottom_Pa = e_.stress(-reactions.rest);
+    row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
+    row.sigma3_Pa = e_.body.pressure_Pa;
+    row.cracks_tensile = tensile_;
+    row.cracks_shear = shear_;
+    const double force = 0.5 * (std::abs(reactions.loading) + std::abs(reactions.rest));
+    row.residual = force > 0.0 ? unbalanced_force(e_.body) / force : 0.0;
+    row.platen_speed = e_.settings.speed;
+    const StoredEnergy stored = stored_energy(e_.body);
+    const KineticEnergy kinetic = kinetic_energy(e_.body, e_.settings.speed);
+    row.kinetic_deviation = e_.settings.damping == Damping::deviation ? kinetic.deviation_J : kinetic.total_J;
+    row.energy.external = e_.platen_work.loading + stored.pressure_J;
+    row.energy.elastic_start = e_.elastic_start_J;
+    row.energy.rate_control = e_.rate_control_J;
+    row.energy.elastic_grains = stored.grains_J;
+    row.energy.elastic_contacts = stored.contacts_J;
+    row.energy.fracture = stored.fracture_J;
+    row.energy.friction = stored.friction_J;
+    row.energy.damping = stored.damping_J;
+    row.energy.kinetic = kinetic.total_J;
+    return row;
+}
+
+void Recorder::elastic_phase(const HistoryRow& from) {
+    constexpr int kRows = 20;
+    const HistoryRow to = present(Phase::elastic);
+    const int first = result_.history.empty() ? 0 : 1;   // the row at `from` may stand there already
+    const auto mix = [](double a, double b, double share) { return a + share * (b - a); };
+    for (int i = first; i < kRows; ++i) {
+        const double share = static_cast<double>(i) / kRows;
+        HistoryRow row = to;
+        for (double HistoryRow::*value : {&HistoryRow::platen_displacement_m, &HistoryRow::axial_strain, &HistoryRow::axial_strain_gauge,
+                                          &HistoryRow::lateral_strain_gauge, &HistoryRow::stress_top_Pa, &HistoryRow::stress_bottom_Pa,
+                                          &HistoryRow::axial_stress_Pa})
+            row.*value = mix(from.*value, to.*value, share);
+        // Energies grow with the square of the load only from an unloaded start; elsewhere they follow the two states.
+        for (double EnergyLedger::*value : {&EnergyLedger::elastic_grains, &EnergyLedger::elastic_contacts, &EnergyLedger::elastic_start})
+            row.energy.*value = from.axial_stress_Pa == 0.0 ? share * share * (to.energy.*value) : mix(from.energy.*value, to.energy.*value, share);
+        row.energy.rate_control = row.energy.kinetic = row.kinetic_deviation = row.residual = row.platen_speed = 0.0;
+        result_.history.push_back(row);
+    }
+}
+
+const HistoryRow& Recorder::record(Phase phase) {
+    collect_cracks();
+    result_.history.push_back(present(phase));
+    const HistoryRow& row = result_.history.back();
+    for (std::size_t c = result_.cracks.size(); c-- > 0 && result_.cracks[c].step >= cracks_seen_until_;) {   // those of this interval
+        result_.cracks[c].axial_strain = row.axial_strain;
+        result_.cracks[c].axial_stress_Pa = row.axial_stress_Pa;
+    }
+    cracks_seen_until_ = e_.step;
+    keep_snapshots(row);
+    return row;
+}
+
+void Recorder::collect_cracks() {
+    struct Found {
+        long long step;
+        int contact, point;
+    };
+    std::vector<Found> found;
+    for (int c = 0; c < static_cast<int>(e_.body.contacts.size()); ++c) {
+        const Contact& contact = e_.body.contacts[c];
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
+            if (e_.body.points[p].broken_step >= std::max(0LL, cracks_seen_until_)) found.push_back({e_.body.points[p].broken_step, c, p});
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Found& l, const Found& r) { return l.step < r.step; });
+    for (const Found& f : found) {
+        const Contact& contact = e_.body.contacts[f.contact];
+        const ContactPoint& point = e_.body.points[f.point];
+        const Vec2 p0 = e_.body.nodes.reference[contact.a.node[0]], p1 = e_.body.nodes.reference[contact.a.node[1]];
+        const EdgeShare share = share_of_edge(f.point - contact.first_point, contact.points);
+        Crack crack;
+        crack.step = f.step;
+        crack.mode = point.broke_in_tension ? CrackMode::tensile : CrackMode::shear;
+        crack.grain_a = contact.a.grain;
+        crack.grain_b = contact.b.grain;
+        crack.contact = f.contact;
+        crack.point = f.point - contact.first_point;
+        crack.from = p0 + share.from * (p1 - p0);
+        crack.to = p0 + share.to * (p1 - p0);
+        crack.place = p0 + share.middle * (p1 - p0);
+        crack.area_m2 = point.area_m2;
+        crack.energy_J = point.bond.fracture_J;
+        ++(crack.mode == CrackMode::tensile ? tensile_ : shear_);
+        result_.cracks.push_back(crack);
+        crack_points_.push_back(f.point);
+    }
+}
+
+Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& row) const {
+    Fields f{label, row, e_.body.nodes.displacement, {}, {}, static_cast<int>(result_.cracks.size())};
+    f.damage.reserve(e_.body.points.size());
+    f.opening.reserve(e_.body.points.size());
+    for (const ContactPoint& point : e_.body.points) {
+        f.damage.push_back(static_cast<float>(point.bond.damage));
+        f.opening.push_back(point.bond.un_m);
+    }
+    return f;
+}
+
+void Recorder::keep_snapshots(const HistoryRow& row) {
+    if (row.phase == Phase::consolidation) return;
+    const int cracks = static_cast<int>(result_.cracks.size()), most = result_.test.snapshots;
+    if (start_.empty()) start_.push_back(fields("start", row));
+    if (cracks > 0 && first_crack_.empty()) first_crack_.push_back(fields("first-crack", row));
+    const double load = strength_sign() * row.axial_stress_Pa;
+    if (peak_.empty() || load > 1.001 * strength_sign() * peak_.back().row.axial_stress_Pa) peak_.assign(1, fields("peak", row));
+    if (most <= 0 || cracks == 0 || cracks < next_cracks_) return;
+    loading_.push_back(fields("load", row));
+    if (static_cast<int>(loading_.size()) > 2 * most) {   // keep every second one
+        std::vector<Fields> kept;
+        for (std::size_t i = 1; i < loading_.size(); i += 2) kept.push_back(std::move(loading_[i]));
+        loading_ = std::move(kept);
+        crack_spacing_ *= 2;
+    }
+    next_cracks_ = cracks + crack_spacing_;
+}
+
+Snapshot Recorder::complete(const Fields& f) const {
+    Snapshot s;
+    s.label = f.label;
+    s.step = f.row.step;
+    s.axial_strain = f.row.axial_strain;
+    s.axial_stress_Pa = f.row.axial_stress_Pa;
+    s.displacement_m = f.displacement;
+    for (const Triangle& triangle : e_.body.triangles) {
+        const auto [i, j, k] = triangle.node;
+        const Vec2 gj = triangle.gradient[0], gk = triangle.gradient[1];
+        const Vec2 uj = f.displacement[j] - f.displacement[i], uk = f.displacement[k] - f.displacement[i];
+        const Mat2 stress = cauchy_stress(e_.body.elasticity, {uj.x * gj.x + uk.x * gk.x, uj.x * gj.y + uk.x * gk.y,
+                                                               uj.y * gj.x + uk.y * gk.x, uj.y * gj.y + uk.y * gk.y});
+        s.stress_xx_Pa.push_back(-stress.xx);
+        s.stress_yy_Pa.push_back(-stress.yy);
+        s.stress_xy_Pa.push_back(-stress.xy);
+    }
+    s.damage.assign(e_.body.triangles.size(), 0.0F);
+    const GrainMesh& mesh = result_.specimen->mesh;
+    for (const Contact& contact : e_.body.contacts) {
+        if (contact.b.grain < 0 || contact.new_contact) continue;
+        for (const ContactSide* side : {&contact.a, &contact.b}) {
+            const int edge = mesh.edge_begin[side->grain] + side->node[0] - mesh.node_begin[side->grain];
+            float& damage = s.damage[mesh.edge_triangle[edge]];
+            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) damage = std::max(damage, f.damage[p]);
+        }
+    }
+    s.cracks = f.cracks;
+    for (int c = 0; c < f.cracks; ++c) s.crack_opening_m.push_back(f.opening[crack_points_[c]]);
+    return s;
+}
+
+void Recorder::finish() {
+    if (result_.history.empty()) return;
+    std::vector<Fields> all;
+    for (auto* group : {&start_, &first_crack_, &peak_}) all.insert(all.end(), group->begin(), group->end());
+    all.push_back(fields("end", result_.history.back()));
+    for (std::size_t i = 0; i < loading_.size(); ++i) {
+        if (static_cast<int>(loading_.size()) > result_.test.snapshots && i % 2 == 0) continue;
+        if (std::any_of(all.begin(), all.end(), [&](const Fields& f) { return f.row.step == loading_[i].row.step; })) continue;
+        all.push_back(loading_[i]);
+    }
+    std::stable_sort(all.begin(), all.end(), [](const Fields& l, const Fields& r) { return l.row.step < r.row.step; });
+    int number = 0;
+    for (Fields& f : all) {
+        if (f.label == "load") f.label = "load-" + std::to_string(++number);
+        result_.snapshots.push_back(complete(f));
+    }
+}
+
+}  // namespace feldspar

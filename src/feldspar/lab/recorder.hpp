@@ -1,0 +1,54 @@
+// Writes down what a test does: history rows, cracks, fields. It only reads the body.
+#pragma once
+
+#include <vector>
+
+#include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/result.hpp"
+
+namespace feldspar {
+
+class Recorder {
+public:
+    explicit Recorder(const Experiment& experiment, TestResult& result);
+
+    /// Rows of the phase that was passed over in closed form, from `from` (stress and strain) to the present state.
+    void elastic_phase(const HistoryRow& from);
+
+    /// A row of the present state; collects new cracks and keeps snapshots as they fall due.
+    const HistoryRow& record(Phase phase);
+
+    /// Fields of the present state.
+    void snapshot(const std::string& label);
+
+    /// Puts the snapshots in order and adds the end and the peak. @param last_row  the last row of the history
+    void finish();
+
+private:
+    struct Fields {   // what a snapshot needs, copied cheaply; stresses are computed at the end
+        std::string label;
+        HistoryRow row;
+        std::vector<Vec2> displacement;
+        std::vector<float> damage;     // a contact point
+        std::vector<double> opening;   // a contact point
+        int cracks = 0;
+    };
+    HistoryRow present(Phase phase) const;
+    Fields fields(const std::string& label, const HistoryRow& row) const;
+    Snapshot complete(const Fields& fields) const;
+    void collect_cracks();
+    void keep_snapshots(const HistoryRow& row);
+    int strength_sign() const { return e_.direction < 0.0 ? -1 : 1; }
+
+    const Experiment& e_;
+    TestResult& result_;
+    long long cracks_seen_until_ = -1;      // step
+    std::vector<int> crack_points_;         // contact point of each crack
+    std::vector<Fields> loading_;           // evenly spaced in cracks, thinned out as their number grows
+    int crack_spacing_ = 1;
+    int next_cracks_ = 0;
+    std::vector<Fields> start_, first_crack_, peak_;
+    int tensile_ = 0, shear_ = 0;
+};
+
+}  // namespace feldspar

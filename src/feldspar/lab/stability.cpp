@@ -1,0 +1,72 @@
+#include "feldspar/lab/stability.hpp"
+
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include "feldspar/base/rng.hpp"
+
+namespace feldspar {
+namespace {
+
+// Force of the linearised body on the displacement field x (with the sign of -K x), by one step of zero length.
+void apply_stiffness(Assembly& body, Team& team, const Eigen::VectorXd& x, Eigen::VectorXd& Kx) {
+    constexpr double kAmplitude = 1e-12;   // m: rotations of 1e-8, far from both nonlinearity and rounding
+    Nodes& nodes = body.nodes;
+    StepSettings settings;
+    settings.strength = Strength::unlimited;
+    const double scale = kAmplitude / x.lpNorm<Eigen::Infinity>();
+    for (ContactPoint& point : body.points) point.bond = {};
+    for (int n = 0; n < nodes.count(); ++n) {
+        nodes.displacement[n] = {};
+        nodes.velocity[n] = {scale * x[2 * n], scale * x[2 * n + 1]};
+    }
+    team.run([&](int t) { contact_forces(body, team.share(static_cast<int>(body.contacts.size()), t), settings, -1); });
+    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] = nodes.velocity[n];
+    settings.dt = 0.0;
+    team.run([&](int t) { grain_forces(body, team.share(static_cast<int>(body.grains.size()), t), settings); });
+    for (int n = 0; n < nodes.count(); ++n) {
+        Kx[2 * n] = -nodes.force[n].x / scale;
+        Kx[2 * n + 1] = -nodes.force[n].y / scale;
+    }
+}
+
+}  // namespace
+
+double largest_omega2(Assembly body, Team& team) {
+    const int dofs = 2 * body.nodes.count(), iterations = 80;
+    body.pressure_Pa = 0.0;
+    Eigen::VectorXd root_inverse_mass(dofs);   // 0 where the motion is imposed
+    for (int n = 0; n < body.nodes.count(); ++n) {
+        root_inverse_mass[2 * n] = std::sqrt(body.nodes.inverse_mass[n].x);
+        root_inverse_mass[2 * n + 1] = std::sqrt(body.nodes.inverse_mass[n].y);
+    }
+    RandomStream random(1, "stability");
+    Eigen::VectorXd q(dofs), previous = Eigen::VectorXd::Zero(dofs), w(dofs);
+    for (int i = 0; i < dofs; ++i) q[i] = root_inverse_mass[i] > 0.0 ? random.uniform(-1.0, 1.0) : 0.0;
+    q.normalize();
+    Eigen::VectorXd alpha(iterations), beta(iterations);
+    int steps = 0;
+    double last_beta = 0.0;
+    for (; steps < iterations; ++steps) {
+        const Eigen::VectorXd x = root_inverse_mass.cwiseProduct(q);
+        apply_stiffness(body, team, x, w);
+        w = root_inverse_mass.cwiseProduct(w) - last_beta * previous;
+        alpha[steps] = q.dot(w);
+        w -= alpha[steps] * q;
+        last_beta = w.norm();
+        beta[steps] = last_beta;
+        if (last_beta < 1e-12 * std::abs(alpha[0])) {
+            ++steps;
+            break;
+        }
+        previous = q;
+        q = w / last_beta;
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    if (steps == 1) return alpha[0];
+    solver.computeFromTridiagonal(alpha.head(steps), beta.head(steps - 1), Eigen::EigenvaluesOnly);
+    return solver.eigenvalues().maxCoeff();
+}
+
+}  // namespace feldspar
