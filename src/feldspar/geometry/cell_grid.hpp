@@ -32,6 +32,12 @@ public:
         entries_.reserve(expected_count);
     }
 
+    /// Forgets all points; the cells stay.
+    void clear() {
+        std::fill(first_.begin(), first_.end(), -1);
+        entries_.clear();
+    }
+
     /// Adds `number` at `point`.
     void insert(int number, Vec2 point) {
         int& first = first_[index(column(point.x), row(point.y))];
@@ -84,8 +90,8 @@ private:
 class DiscGrid {
 public:
     /// @param box    where the centres will lie
-    /// @param radii  of all discs that will be inserted (> 0); only referred to, so it must outlive the grid
-    DiscGrid(const Box& box, std::span<const double> radii) : radii_(radii) {
+    /// @param radii  of all discs that will be inserted (> 0)
+    DiscGrid(const Box& box, std::span<const double> radii) {
         if (radii.empty()) return;
         const auto [least, largest] = std::minmax_element(radii.begin(), radii.end());
         smallest_ = *least;
@@ -94,6 +100,7 @@ public:
         largest_in_class_.assign(static_cast<std::size_t>(classes), 0.0);
         for (const double r : radii) {
             const std::size_t c = class_of(r);
+            class_.push_back(static_cast<unsigned char>(c));
             ++counts[c];
             largest_in_class_[c] = std::max(largest_in_class_[c], r);
         }
@@ -103,7 +110,12 @@ public:
     }
 
     /// Adds disc `number` (an index into the radii) at `centre`.
-    void insert(int number, Vec2 centre) { grids_[class_of(radii_[static_cast<std::size_t>(number)])].insert(number, centre); }
+    void insert(int number, Vec2 centre) { grids_[class_[static_cast<std::size_t>(number)]].insert(number, centre); }
+
+    /// Forgets all discs; the cells stay.
+    void clear() {
+        for (CellGrid& grid : grids_) grid.clear();
+    }
 
     /// Calls visit(number) for every inserted disc whose rim may lie within `reach` of `point`, and for some farther ones.
     template <typename Visit>
@@ -119,8 +131,8 @@ private:
         return static_cast<std::size_t>(std::clamp(octave, 0.0, static_cast<double>(largest_in_class_.size()) - 1.0));
     }
 
-    std::span<const double> radii_;
     double smallest_ = 1.0;
+    std::vector<unsigned char> class_;  ///< of each disc
     std::vector<double> largest_in_class_;
     std::vector<CellGrid> grids_;
 };

@@ -17,9 +17,9 @@ Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, 
 
 /// When the relaxation may stop.
 struct RelaxationCriterion {
-    double residual = 1e-4;       ///< mean unbalanced force on a disc / mean contact force, at most
+    double residual = 1e-3;       ///< mean unbalanced force on a disc / mean contact force, at most
     double loose_overlap = 1e-6;  ///< or: mean overlap / mean diameter below this, for packings too loose to carry force
-    int most_steps = 50000;       ///< after so many steps it has failed
+    int most_steps = 50000;       ///< after so many steps it has failed; the criterion is judged at every tenth
 };
 
 /// Moves the discs until their overlaps are spread evenly: linear repulsion of equal stiffness at every overlap of two discs
