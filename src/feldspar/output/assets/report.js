@@ -1,0 +1,389 @@
+// The report's page: reads the data beside it and lays out tables, charts and the viewer.
+"use strict";
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const page = document.getElementById("page");
+const kindNames = {"uniaxial-compression": "Uniaxial compression", "direct-tension": "Direct tension", biaxial: "Biaxial compression", brazilian: "Brazilian test"};
+const redraw = [];   // what must be drawn again when the theme changes
+
+function setTheme(forced) {
+  const dark = forced ? forced === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+}
+function redrawAll() {
+  for (const chart of charts) chart.rebuild();
+  for (const draw of redraw) draw();
+}
+
+function titleOf(test) {
+  return (kindNames[test.kind] || test.kind) + (test.kind === "biaxial" ? " at \u03c3\u2083 = " + show(test.sigma3, 3) + " MPa" : "");
+}
+function median(values) {
+  const list = values.filter((v) => v !== null && Number.isFinite(v)).sort((a, b) => a - b);
+  if (!list.length) return null;
+  return list.length % 2 ? list[(list.length - 1) / 2] : (list[list.length / 2 - 1] + list[list.length / 2]) / 2;
+}
+function plural(count, word) { return count + " " + word + (count === 1 ? "" : "s"); }
+function table(className, head, rows) {
+  return h("div", {class: "scroll"}, h("table", {class: className}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)));
+}
+function th(text, number, title) { return h("th", {class: number ? "number" : null, scope: "col", title}, text); }
+function td(text, number, className) { return h("td", {class: ((number ? "number " : "") + (className || "")).trim() || null}, text); }
+
+/** Tests of one kind (and sigma_3) over all packings. */
+function groupTests() {
+  const groups = new Map();
+  data.tests.forEach((test, index) => {
+    const key = titleOf(test);
+    if (!groups.has(key)) groups.set(key, []);
+    groups.get(key).push(Object.assign(test, {index}));
+  });
+  return groups;
+}
+
+function writeHeader() {
+  const m = data.model, seeds = new Set(data.tests.map((t) => t.seed));
+  page.append(h("header", {},
+    h("div", {class: "maker"}, "Feldspar \u00b7 laboratory report"),
+    h("h1", {}, data.job.name),
+    h("ul", {class: "facts"},
+      h("li", {}, plural(data.tests.length, "test") + " on " + plural(seeds.size, "packing")),
+      h("li", {}, m.grains + " grains, " + (m.contact === "lobatto3" ? "three-point" : "one-point") + " contacts"),
+      h("li", {}, m.law + " law"),
+      h("li", {}, "plane " + m.plane),
+      h("li", {}, m.numerics + " numerics"),
+      h("li", {}, data.provenance.started.slice(0, 10)))));
+  if (!data.complete) {
+    page.append(h("p", {class: "notice"}, "This run is not complete: it is still going, or it ended early. The report holds the tests that were finished" +
+      (data.tests.some((t) => t.interrupted) ? " and one that was interrupted." : ".")));
+  }
+  page.append(h("p", {class: "soft small", style: "margin-top:16px"}, "Signs: " + data.signs + "."));
+}
+
+/** The range of the packings as a bar, the median as a dot, the laboratory as a mark. */
+function rangeBar(row) {
+  const values = [row.minimum, row.maximum, row.median, row.laboratory].filter((v) => v !== null);
+  if (row.minimum === null || row.maximum === null || !values.length) return "";
+  const low = Math.min(...values), high = Math.max(...values), span = high - low || 1;
+  const at = (v) => 6 + (88 * (v - low)) / span + "%";
+  return h("span", {class: "range", "aria-hidden": "true"},
+    h("i", {class: "bar", style: "left:" + at(row.minimum) + ";width:" + (88 * (row.maximum - row.minimum)) / span + "%"}),
+    row.laboratory === null ? null : h("i", {class: "lab", style: "left:" + at(row.laboratory)}),
+    row.median === null ? null : h("i", {class: "dot", style: "left:" + at(row.median)}));
+}
+
+function writeProperties() {
+  page.append(h("h2", {}, "Properties of the rock"));
+  if (!data.properties.length) { page.append(h("p", {class: "soft"}, "No property could be read yet.")); return; }
+  const compared = data.properties.some((p) => p.laboratory !== null);
+  page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + ". E and \u03bd hold for plane " +
+    data.model.plane + "."));
+  const head = [th("Property"), th("", true), th("Median", true), th("Range", true), th("Packings", true)];
+  if (compared) head.push(th("Laboratory", true), th("Difference", true));
+  head.push(th("Spread" + (compared ? " and laboratory" : "")));
+  page.append(table("", head, data.properties.map((p) => {
+    const cells = [td(p.label), td([p.symbol], true, "unit"),
+      td([show(p.median), p.unit ? h("span", {class: "unit"}, " " + p.unit.replace("deg", "\u00b0")) : ""], true, "strong"),
+      td(show(p.minimum) + " \u2013 " + show(p.maximum), true), td(String(p.packings), true)];
+    if (compared) {
+      const known = p.laboratory !== null && p.median !== null && p.laboratory !== 0;
+      const off = known ? (100 * (p.median - p.laboratory)) / p.laboratory : null;
+      cells.push(td(p.laboratory === null ? "" : show(p.laboratory), true),
+        td(known ? (off > 0 ? "+" : "") + off.toFixed(Math.abs(off) < 9.95 ? 1 : 0).replace("-", "\u2212") + " %" : "", true));
+    }
+    cells.push(td(rangeBar(p)));
+    return h("tr", {}, cells);
+  })));
+  page.append(h("p", {class: "soft small", style: "margin-top:8px"}, "Dot: median; grey bar: range over the packings" + (compared ? "; orange mark: laboratory." : ".")));
+}
+
+/** Buttons for one of several things. */
+function picker(label, names, chosen, choose) {
+  if (names.length < 2) return null;
+  const buttons = names.map((name, i) => h("button", {type: "button", "aria-pressed": String(i === chosen), onclick: () => {
+    buttons.forEach((b, k) => b.setAttribute("aria-pressed", String(k === i)));
+    choose(i);
+  }}, name));
+  return h("div", {class: "pick"}, label, h("div", {class: "buttons", role: "group"}, buttons));
+}
+function card(title) {
+  const body = h("div", {class: "card"}, h("h4", {}, title));
+  return body;
+}
+
+function stressSeries(tests, chosen) {
+  const series = tests.filter((t, i) => i !== chosen).map((t) => ({label: "packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "context", width: 1.3, quiet: true}));
+  if (series.length) series[0] = Object.assign({}, series[0], {quiet: false, label: "other packings"});
+  const t = tests[chosen];
+  series.push({label: "tensile cracks", x: t.history.strain, y: t.history.tensile, color: "tensile", width: 1.5, right: true, step: true},
+    {label: "shear cracks", x: t.history.strain, y: t.history.shear, color: "shear", width: 1.5, right: true, step: true},
+    {label: "stress, packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "ink", width: 2.2});
+  return series;
+}
+
+function strainSeries(test) {
+  const history = test.history;
+  const volumetric = history.gauge.map((v, i) => (v === null || history.lateral[i] === null ? null : v + history.lateral[i]));
+  const series = [
+    {label: "axial", x: history.gauge, y: history.stress, color: "ink", width: 2},
+    {label: "lateral", x: history.lateral, y: history.stress, color: "#009e73", width: 2},
+    {label: "volumetric", x: volumetric, y: history.stress, color: "#cc79a7", width: 2},
+  ];
+  const [low, high] = extent(series.map((s) => s.x));
+  const level = (name, value, color, left) => {
+    if (value === null) return;
+    series.push({label: name, x: [left ? low : high, left ? high : low], y: [value, value], color, width: 1, dash: true, quiet: true, note: name, noteSide: left ? "left" : "right"});
+  };
+  const initiation = Object.entries(test.sigma_ci).filter(([, v]) => v !== null);
+  if (initiation.length) level("\u03c3ci " + show(median(initiation.map(([, v]) => v))) + " (median of " + plural(initiation.length, "method") + ")", median(initiation.map(([, v]) => v)), "soft", true);
+  level("\u03c3cd " + show(test.sigma_cd), test.sigma_cd, "soft", false);
+  return series;
+}
+
+function energySeries(test) {
+  const y = test.history;
+  const line = (label, key, color, width, dash) => ({label, x: y.strain, y: y[key], color, width, dash});
+  return [line("supplied", "supplied", "ink", 2.4), line("elastic, grains", "grains", "#56b4e9", 1.8), line("elastic, contacts", "contacts", "#009e73", 1.8),
+    line("fracture", "fracture", "#d55e00", 1.8), line("friction", "friction", "#e69f00", 1.8), line("damping", "damping", "#cc79a7", 1.8),
+    line("kinetic", "kinetic", "#999999", 1.8, true)];
+}
+
+function hasGauges(test) { return test.history.lateral.some((v) => v !== null && v !== 0); }
+
+function writeTests() {
+  page.append(h("h2", {}, "Tests"),
+    h("p", {class: "soft"}, "Strains in 10\u207b\u00b3, stresses in MPa, compression positive. Cracks are contact points whose bond broke, counted for the chosen packing."));
+  for (const [title, tests] of groupTests()) {
+    const peaks = tests.map((t) => t.peak).filter((p) => p !== null);
+    const summary = peaks.length ? "Strength " + show(median(peaks)) + " MPa" + (peaks.length > 1 ? ", median of " + peaks.length + " packings (" + show(Math.min(...peaks)) + " to " + show(Math.max(...peaks)) + ")" : "") + "." : "";
+    const open = tests.filter((t) => !t.peak_reached).length;
+    page.append(h("h3", {}, title), h("p", {class: "soft"}, summary + (open ? " The peak was not reached in " + plural(open, "test") + "." : "")));
+    const strainLabel = tests[0].kind === "brazilian" ? "Approach of the plates / diameter (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
+    const stressLabel = tests[0].kind === "brazilian" ? "2P / (\u03c0Dt) (MPa)" : "Axial stress (MPa)";
+    const updates = [];
+    page.append(picker("Packing (seed)", tests.map((t) => String(t.seed)), 0, (i) => updates.forEach((update) => update(i))) || "");
+    const grid = h("div", {class: "grid"});
+    page.append(grid);
+    const first = card("Stress and cracks"), second = card("Axial, lateral and volumetric strain, from the gauges"), third = card("Energy balance");
+    grid.append(first);
+    const a = new XYChart(first, {x: strainLabel, y: stressLabel, right: "Cracks", series: stressSeries(tests, 0)});
+    updates.push((i) => a.set(stressSeries(tests, i)));
+    if (tests.some(hasGauges)) {
+      grid.append(second);
+      const b = new XYChart(second, {x: "Strain in the middle of the specimen (10\u207b\u00b3)", y: stressLabel, series: strainSeries(tests[0])});
+      updates.push((i) => b.set(strainSeries(tests[i])));
+    }
+    grid.append(third);
+    const c = new XYChart(third, {x: strainLabel, y: "Energy (J)", series: energySeries(tests[0])});
+    updates.push((i) => c.set(energySeries(tests[i])));
+    grid.append(testFacts(tests, updates));
+  }
+}
+
+function testFacts(tests, updates) {
+  const body = h("dl", {}), facts = h("div", {class: "card"}, h("h4", {}, "The chosen test in numbers"), body);
+  const fill = (i) => {
+    const t = tests[i], rows = [];
+    const add = (name, value) => rows.push(h("dt", {}, name), h("dd", {}, value));
+    add("Packing", "seed " + t.seed);
+    add("Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)"));
+    if (t.E !== null) add("E, secant at 50 %", show(t.E) + " GPa");
+    if (t.nu !== null) add("Poisson's ratio", show(t.nu));
+    add("First crack", show(t.first_crack) + " MPa");
+    for (const [method, value] of Object.entries(t.sigma_ci)) if (value !== null) add("\u03c3ci, " + method, show(value) + " MPa" + (t.peak ? " (" + show(value / t.peak, 2) + " of the peak)" : ""));
+    if (t.sigma_cd !== null) add("\u03c3cd", show(t.sigma_cd) + " MPa" + (t.peak ? " (" + show(t.sigma_cd / t.peak, 2) + " of the peak)" : ""));
+    add("Cracks at the end", t.tensile + " tensile, " + t.shear + " shear");
+    add("Ended because", t.stop_reason || "\u2013");
+    add("Quasi-static", h("span", {}, h("span", {class: "grade " + t.grade}, t.grade), " " + t.verdict));
+    add("Cost", t.steps.toLocaleString("en") + " steps, " + show(t.wall_s) + " s");
+    body.replaceChildren(...rows);
+  };
+  fill(0);
+  updates.push(fill);
+  return facts;
+}
+
+function envelopeSeries() {
+  const series = [], fits = data.envelope.fits, seeds = (kind) => data.tests.filter((t) => t.kind === kind && t.peak !== null && t.peak_reached);
+  const uniaxial = seeds("uniaxial-compression"), biaxial = seeds("biaxial"), tension = seeds("direct-tension"), brazilian = seeds("brazilian");
+  const lab = data.laboratory, reach = Math.max(...biaxial.map((t) => t.sigma3), ...uniaxial.map(() => 2), 1) * 1.12;
+  const line = (c, degrees) => {
+    const s = Math.sin((degrees * Math.PI) / 180), n = (1 + s) / (1 - s), ucs = 2 * c * Math.sqrt(n);
+    return {x: [0, reach], y: [ucs, ucs + n * reach]};
+  };
+  const c = median(fits.map((f) => f.cohesion)), phi = median(fits.map((f) => f.friction_angle)), mi = median(fits.map((f) => f.mi)), sci = median(fits.map((f) => f.hoek_brown_UCS));
+  if (lab.cohesion_MPa && lab.friction_angle_deg) {
+    series.push(Object.assign({label: "laboratory, Mohr-Coulomb c = " + show(lab.cohesion_MPa) + " MPa, \u03c6 = " + show(lab.friction_angle_deg) + "\u00b0", color: "shear", width: 1.6, dash: true}, line(lab.cohesion_MPa, lab.friction_angle_deg)));
+  }
+  if (c !== null && phi !== null) series.push(Object.assign({label: "Mohr-Coulomb, medians c = " + show(c) + " MPa, \u03c6 = " + show(phi) + "\u00b0", color: "ink", width: 2}, line(c, phi)));
+  if (mi !== null && sci !== null && mi > 0) {
+    const x = [...Array(61).keys()].map((i) => -sci / mi + (i / 60) * (reach + sci / mi));
+    series.push({label: "Hoek-Brown, medians mi = " + show(mi) + ", \u03c3ci = " + show(sci) + " MPa", color: "#009e73", width: 1.6, x, y: x.map((s) => s + sci * Math.sqrt(Math.max(0, (mi * s) / sci + 1)))});
+  }
+  const marks = (label, tests, x, y, color, mark) => { if (tests.length) series.push({label, x: tests.map(x), y: tests.map(y), color, mark, size: 4}); };
+  marks("biaxial", biaxial, (t) => t.sigma3, (t) => t.peak, "ink", "dot");
+  marks("UCS", uniaxial, () => 0, (t) => t.peak, "tensile", "dot");
+  marks("direct tension (\u03c3\u2081 = 0)", tension, (t) => -t.peak, () => 0, "#cc79a7", "square");
+  marks("Brazilian (\u03c3\u2081 = 3 BTS at the centre)", brazilian, (t) => -t.peak, (t) => 3 * t.peak, "#cc79a7", "diamond");
+  if (lab.UCS_MPa) series.push({label: "laboratory UCS", x: [0], y: [lab.UCS_MPa], color: "shear", mark: "ring", size: 5});
+  if (lab.BTS_MPa) series.push({label: "laboratory BTS", x: [-lab.BTS_MPa], y: [3 * lab.BTS_MPa], color: "shear", mark: "diamond", size: 4.5});
+  return series;
+}
+
+function writeEnvelope() {
+  if (!data.envelope.fits.length && !data.tests.some((t) => t.kind === "biaxial")) return;
+  page.append(h("h2", {}, "Strength envelope"));
+  if (data.envelope.method) page.append(h("p", {class: "soft"}, data.envelope.method));
+  const grid = h("div", {class: "grid"}), chart = card("Strength of each test");
+  page.append(grid);
+  grid.append(chart);
+  new XYChart(chart, {x: "Minor principal stress \u03c3\u2083 (MPa, compression positive)", y: "Major principal stress \u03c3\u2081 (MPa)", height: 380, series: envelopeSeries()});
+  if (!data.envelope.fits.length) return;
+  const fits = card("Fits, one for each packing");
+  grid.append(fits);
+  fits.append(table("evidence", [th("Seed", true), th("c (MPa)", true), th("\u03c6 (\u00b0)", true), th("UCS fitted (MPa)", true), th("UCS measured (MPa)", true), th("mi", true), th("\u03c3ci Hoek-Brown (MPa)", true)],
+    data.envelope.fits.map((f) => h("tr", {}, td(String(f.seed), true), td(show(f.cohesion), true), td(show(f.friction_angle), true), td(show(f.UCS_fitted), true), td(show(f.UCS_measured), true), td(show(f.mi), true), td(show(f.hoek_brown_UCS), true)))),
+    h("p", {class: "soft small"}, "Mohr-Coulomb: \u03c3\u2081 = 2c\u221aN + N\u03c3\u2083 with N = (1 + sin \u03c6)/(1 \u2212 sin \u03c6). Hoek-Brown, intact rock: \u03c3\u2081 = \u03c3\u2083 + \u03c3ci (mi \u03c3\u2083/\u03c3ci + 1)^\u00bd."));
+}
+
+function writePattern() {
+  if (!data.fields.length) return;
+  page.append(h("h2", {}, "Failure pattern"), h("p", {class: "soft"},
+    "One packing of each kind of test. Drag to move, buttons or Ctrl + wheel to zoom, double click to fit. The full fields of every test are in the .h5 and .pvd files."));
+  const canvas = h("canvas", {tabindex: "0", role: "img", "aria-label": "Failure pattern"}), readout = h("div", {class: "readout"}), stage = h("div", {class: "stage"}, canvas);
+  const left = h("div", {class: "card"}), right = h("div", {}), box = h("div", {class: "viewer"}, left, right);
+  const moment = h("div", {class: "small"}), slider = h("input", {type: "range", min: 0, value: 0, step: 1, "aria-label": "Moment of the test"});
+  const bar = h("canvas", {}), low = h("span", {}), high = h("span", {}), scale = h("div", {class: "scale"}), crackKey = h("div", {class: "legend"});
+  const rosette = h("canvas", {}), rosetteCard = h("div", {class: "card rosette"}, h("h4", {}, "Crack rosette"), h("div", {class: "soft small"}, "Direction of the cracks at the moment shown, weighted by length"), h("div", {}, rosette));
+  const curveCard = h("div", {class: "card", style: "margin:14px 0"}, h("h4", {}, "Moments on the curve")), settings = h("div", {class: "card"});
+  let curve = null, playing = null, current = 0, specimen = null;
+  const cache = [];
+
+  const viewer = new Viewer(canvas, readout, () => showMoment());
+  const go = (n) => { viewer.snapshot = n; slider.value = n; showMoment(); viewer.draw(); };
+  slider.addEventListener("input", () => go(Number(slider.value)));
+  const play = h("button", {type: "button", onclick: () => {
+    if (playing) { clearInterval(playing); playing = null; play.textContent = "Play"; return; }
+    play.textContent = "Stop";
+    if (viewer.snapshot >= specimen.meta.snapshots.length - 1) go(0);
+    playing = setInterval(() => {
+      if (viewer.snapshot >= specimen.meta.snapshots.length - 1) play.click();
+      else go(viewer.snapshot + 1);
+    }, 700);
+  }}, "Play");
+  const choice = (label, entries, set) => [h("label", {}, label), h("select", {"aria-label": label, onchange: (e) => { set(e.target.value); showScale(); viewer.draw(); }}, entries.map(([value, text]) => h("option", {value}, text)))];
+  settings.append(h("div", {class: "controls"},
+    choice("Colour of the grains", Object.entries(fieldKinds).map(([k, v]) => [k, v.label]), (v) => { viewer.field = v; }),
+    choice("Colour of the cracks", [["mode", "mode: tensile or shear"], ["time", "time: axial strain at the break"], ["plain", "plain"], ["none", "no cracks"]], (v) => { viewer.cracks = v; }),
+    choice("Displacements", [["1", "as they are"], ["0", "undeformed"], ["5", "5 times"], ["20", "20 times"], ["100", "100 times"]], (v) => { viewer.magnify = Number(v); })),
+    scale, crackKey);
+
+  function showScale() {
+    const kind = fieldKinds[viewer.field];
+    scale.replaceChildren();
+    if (kind.scale) {
+      const [from, to] = viewer.limits(), colors = palette(kind.scale);
+      bar.width = 256; bar.height = 1;
+      const ctx = bar.getContext("2d"), image = ctx.createImageData(256, 1);
+      new Uint32Array(image.data.buffer).set(colors);
+      ctx.putImageData(image, 0, 0);
+      low.textContent = show(from);
+      high.textContent = show(to) + " " + kind.unit;
+      scale.append(low, bar, high, h("span", {}, kind.label + (kind.around ? "; tension violet, compression orange" : "")));
+    }
+    const key = (color, text) => h("span", {}, h("b", {style: "border-color:" + color}), text);
+    crackKey.replaceChildren();
+    if (viewer.cracks === "mode") crackKey.append(key("var(--tensile)", "tensile crack"), key("var(--shear)", "shear crack"));
+    if (viewer.cracks === "time") {
+      const [first, last] = viewer.crackTimes(), colors = palette("viridis");
+      crackKey.append(key(css(colors[0]), "first crack, strain " + show(first) + "\u00b710\u207b\u00b3"), key(css(colors[128]), "midway"), key(css(colors[255]), "last crack, " + show(last) + "\u00b710\u207b\u00b3"));
+    }
+  }
+  function showMoment() {
+    const n = viewer.snapshot, s = specimen.meta.snapshots[n], test = data.tests[specimen.meta.test];
+    let tensile = 0;
+    for (let c = 0; c < s.cracks; ++c) tensile += specimen.parts.crack_mode[c] === 0 ? 1 : 0;
+    moment.replaceChildren(h("strong", {}, s.label.replaceAll("-", " ")), " (" + (n + 1) + " of " + specimen.meta.snapshots.length + ")  \u00b7  strain " + show(s.strain) + "\u00b710\u207b\u00b3  \u00b7  stress " + show(s.stress) + " MPa  \u00b7  " +
+      tensile + " tensile, " + (s.cracks - tensile) + " shear cracks");
+    drawRosette(rosette, specimen, n);
+    const all = specimen.meta.snapshots;
+    const series = [{label: "stress", x: test.history.strain, y: test.history.stress, color: "context", width: 1.8},
+      {label: "moments kept", x: all.map((k) => k.strain), y: all.map((k) => k.stress), color: "soft", mark: "dot", size: 3},
+      {label: "shown", x: [s.strain], y: [s.stress], color: "shear", mark: "ring", size: 5}];
+    if (curve) curve.set(series);
+    else curve = new XYChart(curveCard, {x: test.kind === "brazilian" ? "Approach / diameter (10\u207b\u00b3)" : "Axial strain (10\u207b\u00b3)", y: "Stress (MPa)", height: 190, series});
+  }
+  async function open(i) {
+    current = i;
+    if (playing) play.click();
+    cache[i] ||= readFields(data.fields[i], document.getElementById("fields-" + i)).then((parts) => new Specimen(data.fields[i], parts));
+    const ready = await cache[i];
+    if (current !== i) return;
+    specimen = ready;
+    slider.max = specimen.meta.snapshots.length - 1;
+    viewer.show(specimen);
+    slider.value = viewer.snapshot;
+    showScale();
+  }
+
+  const names = data.fields.map((f) => { const t = data.tests[f.test]; return titleOf(t) + ", seed " + t.seed; });
+  page.append(picker("Test", names, 0, open) || h("p", {class: "small"}, names[0]), box);
+  stage.append(h("div", {class: "zoom"}, h("button", {type: "button", "aria-label": "Zoom in", onclick: () => viewer.zoom(1.5)}, "+"),
+    h("button", {type: "button", "aria-label": "Zoom out", onclick: () => viewer.zoom(1 / 1.5)}, "\u2212"), h("button", {type: "button", onclick: () => viewer.reset()}, "Fit")));
+  left.append(moment, h("div", {class: "slider"}, play, slider), stage, readout);
+  right.append(settings, curveCard, rosetteCard);
+  redraw.push(() => { if (specimen) { viewer.draw(); drawRosette(rosette, specimen, viewer.snapshot); } });
+  if (typeof DecompressionStream === "undefined") left.replaceChildren(h("p", {}, "This view needs a browser of 2023 or later. The same fields are in the .pvd files."));
+  else open(0);
+}
+
+function writeEvidence() {
+  page.append(h("h2", {}, "Evidence that the tests are quasi-static"), h("p", {class: "soft"},
+    "From half of the peak to the peak. Grade A: the strength is shown to about 0.5 %; B: to about 2 %; C: not shown. R* is the sum of the unbalanced forces over the platen force. " +
+    "Damping is a numerical aid: compare what it dissipates with what fracture dissipates."));
+  const percent = (v) => (v === null ? "\u2013" : show(100 * v, 2) + " %");
+  const speedAtPeak = (t) => {
+    const y = t.history;
+    let at = -1;
+    y.stress.forEach((s, i) => { if (s !== null && (at < 0 || Math.abs(s) > Math.abs(y.stress[at]))) at = i; });
+    return at < 0 || y.speed[at] === null ? "\u2013" : show(y.speed[at], 2) + (t.numerics === "dynamic" ? " m/s" : " m/step");
+  };
+  const confirmed = data.tests.some((t) => t.change_at_third !== null);
+  page.append(table("evidence",
+    [th("Test"), th("Seed", true), th("Strength (MPa)", true), th("Grade"), th("R* mean", true), th("R* at peak", true), th("Platens differ by", true, "largest difference of the two reactions over their mean"),
+      th("Kinetic / strain energy", true), th("Damping / fracture", true), th("Energy residual", true), th("Platen speed at peak", true), confirmed ? th("Peak at a third of the rate", true) : null, th("In words")],
+    data.tests.map((t) => h("tr", {}, td(titleOf(t)), td(String(t.seed), true), td(show(t.peak), true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
+      td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(percent(t.imbalance_max), true), td(percent(t.kinetic_over_strain), true), td(percent(t.damping_over_fracture), true),
+      td(percent(t.energy_residual), true), td(speedAtPeak(t), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null, td(t.verdict)))));
+}
+
+function writeProvenance() {
+  const p = data.provenance, list = h("dl", {});
+  const add = (name, value) => list.append(h("dt", {}, name), h("dd", {}, value));
+  page.append(h("h2", {}, "Specimens and provenance"));
+  if (data.specimens.length) {
+    page.append(table("evidence", [th("Specimen"), th("Shape"), th("Thickness (mm)", true), th("Grains", true), th("Contacts", true), th("Nodes", true), th("Triangles", true), th("Merged edges", true), th("Width / largest grain", true)],
+      data.specimens.map((s) => h("tr", {}, td("for " + s.for), td(s.shape.replace(" x ", " \u00d7 ")), td(show(s.thickness), true), ...["grains", "contacts", "nodes", "triangles", "merged_edges"].map((k) => td(s[k].toLocaleString("en"), true)), td(show(s.width_over_largest_grain), true)))));
+    for (const warning of new Set(data.specimens.flatMap((s) => s.warnings))) page.append(h("p", {class: "notice"}, warning));
+  }
+  add("Program", "Feldspar " + p.version + ", commit " + p.commit);
+  add("Started", p.started.replace("T", " ").replace("Z", " UTC"));
+  add("Command", p.command_line);
+  add("Machine", p.machine + "; " + plural(p.threads, "thread"));
+  add("Compiler", p.compiler);
+  add("Job file", data.job.file);
+  add("Seeds", data.job.seeds.join(", "));
+  page.append(list, h("details", {}, h("summary", {}, "The job with every default written out"), h("pre", {}, data.job.resolved)));
+}
+
+setTheme();
+writeHeader();
+writeProperties();
+writeTests();
+writePattern();
+writeEnvelope();
+writeEvidence();
+writeProvenance();
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { setTheme(); redrawAll(); });
+addEventListener("beforeprint", () => { setTheme("light"); redrawAll(); });
+addEventListener("afterprint", () => { setTheme(); redrawAll(); });

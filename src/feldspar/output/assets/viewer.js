@@ -1,0 +1,396 @@
+// The failure pattern: triangles drawn into a buffer of triangle numbers, then coloured; cracks as lines over it. And the
+// rosette of crack directions.
+"use strict";
+
+const stops = {   // colours that stay in order in grey and for the colour-blind
+  viridis: ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"],
+  earth: ["#f6f1e7", "#e8d3ae", "#d4a373", "#a9714b", "#6f4a3a", "#3b2a2e"],
+  cividis: ["#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"],
+  puor: ["#542788", "#8073ac", "#b2abd2", "#d8daeb", "#f7f7f7", "#fee0b6", "#fdb863", "#e08214", "#b35806"],
+};
+
+function rgb(hex) { return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16)); }
+
+/** 256 colours as packed pixels. */
+function palette(name) {
+  const list = stops[name].map(rgb), table = new Uint32Array(256);
+  for (let i = 0; i < 256; ++i) {
+    const at = (i / 255) * (list.length - 1), k = Math.min(Math.floor(at), list.length - 2), t = at - k;
+    const [r, g, b] = [0, 1, 2].map((c) => Math.round(list[k][c] + t * (list[k + 1][c] - list[k][c])));
+    table[i] = (255 << 24) | (b << 16) | (g << 8) | r;
+  }
+  return table;
+}
+
+function css(pixel) { return "rgb(" + (pixel & 255) + "," + ((pixel >> 8) & 255) + "," + ((pixel >> 16) & 255) + ")"; }
+
+/** The parts of a block (layout: report_fields.cpp). */
+async function readFields(meta, element) {
+  const packed = Uint8Array.from(atob(element.textContent), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const buffer = await new Response(stream).arrayBuffer();
+  const types = {float32: Float32Array, int32: Int32Array, uint16: Uint16Array, int16: Int16Array, uint8: Uint8Array};
+  const parts = {};
+  for (const [name, part] of Object.entries(meta.parts)) parts[name] = new types[part.type](buffer, part.at, part.count);
+  return parts;
+}
+
+class Specimen {
+  constructor(meta, parts) {
+    Object.assign(this, {meta, parts});
+    const count = parts.corners.length / 3;
+    this.corners = new Int32Array(parts.corners.length);
+    this.grain = new Int32Array(count);
+    for (let g = 0; g + 1 < parts.triangle_begin.length; ++g) {
+      for (let t = parts.triangle_begin[g]; t < parts.triangle_begin[g + 1]; ++t) {
+        this.grain[t] = g;
+        for (let k = 0; k < 3; ++k) this.corners[3 * t + k] = parts.node_begin[g] + parts.corners[3 * t + k];
+      }
+    }
+    let [x0, x1, y0, y1] = [Infinity, -Infinity, Infinity, -Infinity];
+    for (let n = 0; n < parts.nodes.length; n += 2) {
+      x0 = Math.min(x0, parts.nodes[n]); x1 = Math.max(x1, parts.nodes[n]);
+      y0 = Math.min(y0, parts.nodes[n + 1]); y1 = Math.max(y1, parts.nodes[n + 1]);
+    }
+    Object.assign(this, {x0, x1, y0, y1});
+    this.moves = [];
+  }
+
+  /** Displacement of each node at snapshot n, mm: all x, then all y. */
+  displacement(n) {
+    if (!this.moves[n]) {
+      const steps = this.parts["u" + n], scale = this.meta.snapshots[n].scale, nodes = steps.length / 2;
+      const u = new Float32Array(steps.length);
+      for (let axis = 0; axis < 2; ++axis) {
+        let sum = 0;
+        for (let i = 0; i < nodes; ++i) {
+          sum = ((sum + steps[axis * nodes + i]) << 16) >> 16;   // 16-bit, as it was written
+          u[axis * nodes + i] = sum * scale;
+        }
+      }
+      this.moves[n] = u;
+    }
+    return this.moves[n];
+  }
+
+  /** Positions at snapshot n with displacements times `magnify`, mm: x, y of each node. */
+  positions(n, magnify) {
+    const u = this.displacement(n), nodes = u.length / 2, p = new Float32Array(2 * nodes);
+    for (let i = 0; i < nodes; ++i) {
+      p[2 * i] = this.parts.nodes[2 * i] + magnify * u[i];
+      p[2 * i + 1] = this.parts.nodes[2 * i + 1] + magnify * u[nodes + i];
+    }
+    return p;
+  }
+
+  /** Ends of crack c, midway between its faces, mm. */
+  crack(c, positions) {
+    const {crack_ends: ends, crack_nodes: faces, nodes} = this.parts, out = [0, 0, 0, 0];
+    for (let end = 0; end < 2; ++end) {
+      const x = ends[4 * c + 2 * end], y = ends[4 * c + 2 * end + 1];
+      let found = 0;
+      for (let side = 0; side < 2; ++side) {
+        const a = faces[4 * c + 2 * side], b = faces[4 * c + 2 * side + 1];
+        if (a < 0 || b < 0) continue;
+        const ex = nodes[2 * b] - nodes[2 * a], ey = nodes[2 * b + 1] - nodes[2 * a + 1];
+        const t = Math.min(1, Math.max(0, ((x - nodes[2 * a]) * ex + (y - nodes[2 * a + 1]) * ey) / (ex * ex + ey * ey || 1)));
+        out[2 * end] += positions[2 * a] + t * (positions[2 * b] - positions[2 * a]);
+        out[2 * end + 1] += positions[2 * a + 1] + t * (positions[2 * b + 1] - positions[2 * a + 1]);
+        ++found;
+      }
+      if (found) { out[2 * end] /= found; out[2 * end + 1] /= found; }
+      else { out[2 * end] = x; out[2 * end + 1] = y; }
+    }
+    return out;
+  }
+}
+
+/** Fills `ids` (width x height) with the number of the triangle at each pixel's centre, -1 where there is none. */
+function rasterise(ids, width, height, px, py, corners) {
+  ids.fill(-1);
+  for (let t = 0; t < corners.length / 3; ++t) {
+    const a = corners[3 * t], b = corners[3 * t + 1], c = corners[3 * t + 2];
+    const xs = [px[a], px[b], px[c]], ys = [py[a], py[b], py[c]];
+    const top = Math.max(0, Math.ceil(Math.min(ys[0], ys[1], ys[2]) - 0.5)), bottom = Math.min(height - 1, Math.floor(Math.max(ys[0], ys[1], ys[2]) - 0.5));
+    for (let row = top; row <= bottom; ++row) {
+      const y = row + 0.5;
+      let from = Infinity, to = -Infinity;
+      for (let k = 0; k < 3; ++k) {
+        const x0 = xs[k], y0 = ys[k], x1 = xs[(k + 1) % 3], y1 = ys[(k + 1) % 3];
+        if ((y0 <= y) === (y1 <= y)) continue;
+        const x = x0 + ((y - y0) / (y1 - y0)) * (x1 - x0);
+        if (x < from) from = x;
+        if (x > to) to = x;
+      }
+      const first = Math.max(0, Math.ceil(from - 0.5)), last = Math.min(width - 1, Math.floor(to - 0.5));
+      for (let column = first; column <= last; ++column) ids[row * width + column] = t;
+    }
+  }
+}
+
+const fieldKinds = {
+  grain: {label: "grains", scale: null},
+  damage: {label: "damage of the grain edges", scale: "earth", unit: ""},
+  sigma1: {label: "major principal stress \u03c3\u2081", scale: "cividis", unit: "MPa"},
+  sigma3: {label: "minor principal stress \u03c3\u2083", scale: "puor", unit: "MPa", around: true},
+};
+
+class Viewer {
+  /** onSnapshot(n) is called when another moment is shown. */
+  constructor(canvas, readout, onSnapshot) {
+    Object.assign(this, {canvas, readout, onSnapshot, field: "grain", cracks: "mode", magnify: 1, snapshot: 0, specimen: null, ids: null});
+    canvas.addEventListener("pointerdown", (e) => { this.drag = [e.offsetX, e.offsetY]; canvas.setPointerCapture(e.pointerId); });
+    canvas.addEventListener("pointerup", () => { this.drag = null; });
+    canvas.addEventListener("pointermove", (e) => this.move(e));
+    canvas.addEventListener("pointerleave", () => { readout.textContent = ""; });
+    canvas.addEventListener("dblclick", () => this.reset());
+    canvas.addEventListener("wheel", (e) => {
+      if (!e.ctrlKey && !e.metaKey && !e.shiftKey) return;   // the plain wheel scrolls the page
+      e.preventDefault();
+      this.zoom(Math.exp(-(e.deltaY || e.deltaX) * 0.0025), e.offsetX, e.offsetY);
+    }, {passive: false});
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+  }
+
+  show(specimen) {
+    this.specimen = specimen;
+    this.snapshot = Math.max(0, specimen.meta.snapshots.length - 1);
+    this.resize();
+    this.reset();
+    this.onSnapshot(this.snapshot);
+  }
+
+  resize() {
+    if (!this.specimen) return;
+    const dpr = Math.min(devicePixelRatio, 2), css = this.canvas.parentElement.clientWidth;
+    const {x0, x1, y0, y1} = this.specimen;
+    const high = Math.round(Math.min(Math.max(css * 1.08 * (y1 - y0) / (x1 - x0), 260), 640));
+    if (this.cssWidth === css && this.cssHeight === high && this.ids) return;
+    const first = !this.ids;
+    Object.assign(this, {cssWidth: css, cssHeight: high, dpr});
+    this.canvas.style.height = high + "px";
+    this.canvas.width = Math.max(1, Math.round(css * dpr));
+    this.canvas.height = Math.round(high * dpr);
+    this.ids = new Int32Array(this.canvas.width * this.canvas.height);
+    if (first || this.fitted) this.reset();
+    else this.draw();
+  }
+
+  reset() {
+    if (!this.specimen || !this.ids) return;
+    const {x0, x1, y0, y1} = this.specimen;
+    this.fitted = true;
+    this.scale = 0.93 * Math.min(this.canvas.width / (x1 - x0), this.canvas.height / (y1 - y0));   // pixels a mm
+    this.cx = (x0 + x1) / 2;
+    this.cy = (y0 + y1) / 2;
+    this.draw();
+  }
+
+  zoom(factor, atX = this.cssWidth / 2, atY = this.cssHeight / 2) {
+    const dx = (atX * this.dpr - this.canvas.width / 2) / this.scale, dy = -(atY * this.dpr - this.canvas.height / 2) / this.scale;
+    this.scale *= factor;
+    this.cx += dx - dx / factor;
+    this.cy += dy - dy / factor;
+    this.fitted = false;
+    this.draw();
+  }
+
+  move(e) {
+    if (this.drag) {
+      this.cx -= ((e.offsetX - this.drag[0]) * this.dpr) / this.scale;
+      this.cy += ((e.offsetY - this.drag[1]) * this.dpr) / this.scale;
+      this.drag = [e.offsetX, e.offsetY];
+      this.fitted = false;
+      this.draw();
+      return;
+    }
+    const t = this.ids ? this.ids[Math.floor(e.offsetY * this.dpr) * this.canvas.width + Math.floor(e.offsetX * this.dpr)] : -1;
+    if (t === undefined || t < 0) { this.readout.textContent = ""; return; }
+    const s = this.specimen, n = this.snapshot;
+    const value = (field) => { const [low, high] = s.meta[field]; return low + (s.parts[field + "_" + n][t] / 255) * (high - low); };
+    this.readout.textContent = "grain " + s.grain[t] + "  \u00b7  \u03c3\u2081 \u2248 " + show(value("sigma1")) + " MPa  \u00b7  \u03c3\u2083 \u2248 " +
+      show(value("sigma3")) + " MPa  \u00b7  damage " + show(s.parts["damage" + n][t] / 255, 2);
+  }
+
+  /** Limits of the field's colours: around zero for a field whose sign matters. */
+  limits() {
+    if (this.field === "damage") return [0, 1];
+    const [low, high] = this.specimen.meta[this.field];
+    if (!fieldKinds[this.field].around) return [low, high];
+    const reach = Math.max(Math.abs(low), Math.min(Math.abs(high), 3 * Math.abs(low))) || 1;
+    return [-reach, reach];
+  }
+
+  draw() {
+    if (!this.specimen || !this.ids || this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => { this.waiting = false; this.paint(); });
+  }
+
+  paint() {
+    const {canvas, specimen: s, snapshot: n} = this, ctx = canvas.getContext("2d"), width = canvas.width, height = canvas.height;
+    const p = s.positions(n, this.magnify), count = p.length / 2, px = new Float32Array(count), py = new Float32Array(count);
+    for (let i = 0; i < count; ++i) {
+      px[i] = width / 2 + (p[2 * i] - this.cx) * this.scale;
+      py[i] = height / 2 - (p[2 * i + 1] - this.cy) * this.scale;
+    }
+    rasterise(this.ids, width, height, px, py, s.corners);
+    const image = ctx.createImageData(width, height), pixels = new Uint32Array(image.data.buffer);
+    const colors = this.triangleColors();
+    for (let i = 0; i < pixels.length; ++i) if (this.ids[i] >= 0) pixels[i] = colors[this.ids[i]];
+    ctx.clearRect(0, 0, width, height);
+    ctx.putImageData(image, 0, 0);
+    this.paintGrainEdges(ctx, px, py);
+    this.paintCracks(ctx, p);
+    this.paintRuler(ctx);
+  }
+
+  triangleColors() {
+    const s = this.specimen, n = this.snapshot, count = s.grain.length, colors = new Uint32Array(count);
+    if (this.field === "grain") {
+      const [r, g, b] = rgb(theme.get("grain"));
+      for (let t = 0; t < count; ++t) {
+        const shade = 1 - 0.075 * (((s.grain[t] * 2654435761) >>> 0) / 4294967296);   // neighbours differ a little
+        colors[t] = (255 << 24) | (Math.round(b * shade) << 16) | (Math.round(g * shade) << 8) | Math.round(r * shade);
+      }
+      return colors;
+    }
+    const table = palette(fieldKinds[this.field].scale);
+    const levels = s.parts[this.field + (this.field === "damage" ? "" : "_") + n];
+    const [low, high] = this.field === "damage" ? [0, 1] : s.meta[this.field], [from, to] = this.limits();
+    for (let t = 0; t < count; ++t) {
+      const value = low + (levels[t] / 255) * (high - low);
+      colors[t] = table[Math.min(255, Math.max(0, Math.round((255 * (value - from)) / (to - from || 1))))];
+    }
+    return colors;
+  }
+
+  paintGrainEdges(ctx, px, py) {
+    const {node_begin: begin, vertex_count: corners} = this.specimen.parts;
+    ctx.beginPath();
+    for (let g = 0; g < corners.length; ++g) {
+      for (let k = 0; k <= corners[g]; ++k) {
+        const node = begin[g] + (k % corners[g]);
+        if (k === 0) ctx.moveTo(px[node], py[node]);
+        else ctx.lineTo(px[node], py[node]);
+      }
+    }
+    ctx.strokeStyle = theme.get("edge");
+    ctx.lineWidth = Math.min(1, 0.45 * this.dpr);
+    ctx.stroke();
+  }
+
+  paintCracks(ctx, positions) {
+    if (this.cracks === "none") return;
+    const s = this.specimen, {crack_mode: mode, crack_strain: strain} = s.parts, count = s.meta.snapshots[this.snapshot].cracks;
+    const groups = new Map();   // colour -> lines
+    const table = palette("viridis"), [first, last] = this.crackTimes();
+    for (let c = 0; c < count; ++c) {
+      let color = theme.get("ink");
+      if (this.cracks === "mode") color = mode[c] ? "shear" : "tensile";
+      else if (this.cracks === "time") color = css(table[Math.round((15 * (strain[c] - first)) / (last - first || 1)) * 17]);
+      if (!groups.has(color)) groups.set(color, []);
+      groups.get(color).push(s.crack(c, positions));
+    }
+    const line = Math.min(4.5, Math.max(1.5, 0.16 * this.scale / this.dpr)) * this.dpr;
+    const trace = (lines) => {
+      ctx.beginPath();
+      for (const [x0, y0, x1, y1] of lines) {
+        ctx.moveTo(ctx.canvas.width / 2 + (x0 - this.cx) * this.scale, ctx.canvas.height / 2 - (y0 - this.cy) * this.scale);
+        ctx.lineTo(ctx.canvas.width / 2 + (x1 - this.cx) * this.scale, ctx.canvas.height / 2 - (y1 - this.cy) * this.scale);
+      }
+      ctx.stroke();
+    };
+    ctx.lineCap = "round";
+    if (this.field !== "grain") {   // a halo keeps the lines readable on any colour
+      ctx.strokeStyle = theme.get("halo");
+      ctx.lineWidth = line + 2.2 * this.dpr;
+      for (const lines of groups.values()) trace(lines);
+    }
+    ctx.lineWidth = line;
+    for (const [color, lines] of groups) {
+      ctx.strokeStyle = /^[a-z]+$/.test(color) ? theme.get(color) : color;
+      trace(lines);
+    }
+  }
+
+  crackTimes() {
+    const {crack_strain: strain} = this.specimen.parts;
+    return strain.length ? [strain[0], strain[strain.length - 1]] : [0, 1];
+  }
+
+  /** A scale bar of a round length. */
+  paintRuler(ctx) {
+    const wanted = 90 * this.dpr / this.scale, power = 10 ** Math.floor(Math.log10(wanted));
+    const length = [5, 2, 1].map((k) => k * power).find((l) => l <= wanted) || power;
+    const x = 10 * this.dpr, y = ctx.canvas.height - 10 * this.dpr, to = x + length * this.scale;
+    ctx.strokeStyle = ctx.fillStyle = theme.get("ink");
+    ctx.lineWidth = 1.5 * this.dpr;
+    ctx.beginPath();
+    ctx.moveTo(x, y - 4 * this.dpr); ctx.lineTo(x, y); ctx.lineTo(to, y); ctx.lineTo(to, y - 4 * this.dpr);
+    ctx.stroke();
+    ctx.font = 12 * this.dpr + "px system-ui, sans-serif";
+    ctx.textAlign = "left";
+    ctx.fillText(show(length, 1) + " mm", x + 4 * this.dpr, y - 6 * this.dpr);
+  }
+}
+
+/** Directions of the cracks that exist at snapshot n, weighted by length, from the loading axis; both halves alike. */
+function drawRosette(canvas, specimen, n) {
+  const bins = 18, length = [new Float64Array(bins), new Float64Array(bins)];
+  const {crack_ends: ends, crack_mode: mode} = specimen.parts;
+  for (let c = 0; c < specimen.meta.snapshots[n].cracks; ++c) {
+    const dx = ends[4 * c + 2] - ends[4 * c], dy = ends[4 * c + 3] - ends[4 * c + 1];
+    const angle = (Math.atan2(dx, dy) + 2 * Math.PI) % Math.PI;   // clockwise from the loading axis, 0 ... pi
+    length[mode[c]][Math.min(bins - 1, Math.floor((angle / Math.PI) * bins))] += Math.hypot(dx, dy);
+  }
+  let longest = 0;
+  for (let b = 0; b < bins; ++b) longest = Math.max(longest, length[0][b] + length[1][b]);
+  const dpr = Math.min(devicePixelRatio, 2), size = Math.max(180, Math.min(330, canvas.parentElement.clientWidth));
+  canvas.width = canvas.height = Math.round(size * dpr);
+  canvas.style.height = size + "px";
+  canvas.style.width = size + "px";
+  const ctx = canvas.getContext("2d"), middle = canvas.width / 2, radius = middle - 30 * dpr;
+  ctx.clearRect(0, 0, canvas.width, canvas.height);
+  ctx.font = 11.5 * dpr + "px system-ui, sans-serif";
+  ctx.strokeStyle = theme.get("line");
+  ctx.lineWidth = dpr;
+  for (const share of [1 / 3, 2 / 3, 1]) {
+    ctx.beginPath();
+    ctx.arc(middle, middle, radius * share, 0, 2 * Math.PI);
+    ctx.stroke();
+  }
+  for (let d = 0; d < 180; d += 30) {
+    const a = (d * Math.PI) / 180;
+    ctx.beginPath();
+    ctx.moveTo(middle - radius * Math.sin(a), middle + radius * Math.cos(a));
+    ctx.lineTo(middle + radius * Math.sin(a), middle - radius * Math.cos(a));
+    ctx.stroke();
+  }
+  const wedge = (b, inner, outer, color) => {
+    if (outer <= inner) return;
+    for (const turn of [0, Math.PI]) {
+      const a0 = (b * Math.PI) / bins - Math.PI / 2 + turn, a1 = ((b + 1) * Math.PI) / bins - Math.PI / 2 + turn;
+      ctx.beginPath();
+      ctx.arc(middle, middle, outer * radius, a0, a1);
+      ctx.arc(middle, middle, inner * radius, a1, a0, true);
+      ctx.closePath();
+      ctx.fillStyle = color;
+      ctx.fill();
+      ctx.strokeStyle = theme.get("card");
+      ctx.lineWidth = 0.8 * dpr;
+      ctx.stroke();
+    }
+  };
+  if (longest > 0) {
+    for (let b = 0; b < bins; ++b) {
+      wedge(b, 0, length[0][b] / longest, theme.get("tensile"));
+      wedge(b, length[0][b] / longest, (length[0][b] + length[1][b]) / longest, theme.get("shear"));
+    }
+  }
+  ctx.fillStyle = theme.get("soft");
+  ctx.textAlign = "center";
+  ctx.fillText("0\u00b0 loading axis", middle, 15 * dpr);
+  ctx.fillText("90\u00b0", canvas.width - 14 * dpr, middle + 4 * dpr);
+  ctx.fillText(longest > 0 ? "outer ring: " + show(longest, 3) + " mm of cracks in 10\u00b0" : "no cracks yet", middle, canvas.height - 8 * dpr);
+}

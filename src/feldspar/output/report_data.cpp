@@ -1,0 +1,210 @@
+#include "feldspar/output/report_data.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/user_units.hpp"
+
+namespace feldspar {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_rows = 600;   ///< of a history in the report; the CSV has them all
+
+/// Row numbers that stay: evenly spread, with the first, the last and the peak.
+std::vector<std::size_t> kept_rows(const std::vector<HistoryRow>& history) {
+    std::vector<std::size_t> kept;
+    if (history.empty()) return kept;
+    const std::size_t stride = (history.size() + most_rows - 1) / most_rows;
+    const auto higher = [](const HistoryRow& a, const HistoryRow& b) { return std::abs(a.axial_stress_Pa) < std::abs(b.axial_stress_Pa); };
+    const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
+    for (std::size_t r = 0; r < history.size(); ++r) {
+        if (r % stride == 0 || r == peak || r + 1 == history.size()) kept.push_back(r);
+    }
+    return kept;
+}
+
+Json history_json(const std::vector<HistoryRow>& history) {
+    const std::vector<std::size_t> kept = kept_rows(history);
+    Json json = Json::object();
+    const auto column = [&](const char* name, auto value) {
+        Json list = Json::array();
+        for (const std::size_t r : kept) list.push_back(rounded(value(history[r])));
+        json[name] = list;
+    };
+    using Row = const HistoryRow&;
+    column("strain", [](Row r) { return r.axial_strain * 1e3; });   // strains in 10^-3
+    column("gauge", [](Row r) { return r.axial_strain_gauge * 1e3; });
+    column("lateral", [](Row r) { return r.lateral_strain_gauge * 1e3; });
+    column("stress", [](Row r) { return r.axial_stress_Pa * MPa; });
+    column("tensile", [](Row r) { return r.cracks_tensile; });
+    column("shear", [](Row r) { return r.cracks_shear; });
+    column("speed", [](Row r) { return r.platen_speed; });
+    column("supplied", [](Row r) { return r.energy.supplied(); });
+    column("grains", [](Row r) { return r.energy.elastic_grains; });
+    column("contacts", [](Row r) { return r.energy.elastic_contacts; });
+    column("fracture", [](Row r) { return r.energy.fracture; });
+    column("friction", [](Row r) { return r.energy.friction; });
+    column("damping", [](Row r) { return r.energy.damping; });
+    column("kinetic", [](Row r) { return r.energy.kinetic; });
+    return json;
+}
+
+Json test_json(const TestResult& result) {
+    const TestProperties& p = result.properties;
+    const QuasiStaticEvidence& e = result.evidence;
+    const auto tensile = std::ranges::count(result.cracks, CrackMode::tensile, &Crack::mode);
+    Json test;
+    test["stem"] = test_stem(result);
+    test["kind"] = name(result.test.kind);
+    test["seed"] = result.seed;
+    test["sigma3"] = rounded(result.test.sigma3_Pa * MPa);
+    test["numerics"] = name(result.numerics.kind);
+    test["peak"] = rounded(p.peak_stress_Pa * MPa);
+    test["peak_reached"] = p.peak_reached;
+    test["first_crack"] = rounded(p.first_crack_Pa * MPa);
+    test["E"] = rounded(p.E_secant_Pa * GPa);
+    test["nu"] = rounded(p.nu);
+    test["sigma_ci"] = {{"crack count", rounded(p.sigma_ci_crack_count_Pa * MPa)},
+                        {"crack volumetric strain", rounded(p.sigma_ci_crack_volume_Pa * MPa)},
+                        {"lateral strain", rounded(p.sigma_ci_lateral_strain_Pa * MPa)}};
+    test["sigma_cd"] = rounded(p.sigma_cd_Pa * MPa);
+    test["tensile"] = tensile;
+    test["shear"] = static_cast<std::ptrdiff_t>(result.cracks.size()) - tensile;
+    test["steps"] = result.steps;
+    test["wall_s"] = rounded(result.wall_s);
+    test["residual_mean"] = rounded(e.residual_mean);
+    test["residual_at_peak"] = rounded(e.residual_at_peak);
+    test["imbalance_max"] = rounded(e.imbalance_max);
+    test["kinetic_over_strain"] = rounded(e.kinetic_over_strain);
+    test["damping_over_fracture"] = rounded(e.damping_over_fracture);
+    test["energy_residual"] = rounded(result.energy_residual);
+    test["grade"] = std::string(1, e.grade);
+    test["verdict"] = e.verdict;
+    test["change_at_third"] = e.confirmed ? rounded(e.peak_change_at_third) : Json(nullptr);
+    test["stop_reason"] = result.stop_reason;
+    test["interrupted"] = result.interrupted;
+    test["history"] = history_json(result.history);
+    return test;
+}
+
+/// The laboratory's numbers in user units, with the ratios that follow from them.
+std::vector<std::pair<std::string, double>> laboratory(const Job& job) {
+    std::vector<std::pair<std::string, double>> values;
+    const auto find = [&](const char* key) {
+        const auto place = job.laboratory.find(key);
+        return place == job.laboratory.end() ? std::nan("") : place->second;
+    };
+    for (const auto& [key, value] : job.laboratory) values.emplace_back(property_of_laboratory(key), laboratory_in_user_units(key, value));
+    const auto ratio = [&](const char* property, double over, double under) {
+        if (std::isfinite(over) && under > 0.0) values.emplace_back(property, over / under);
+    };
+    ratio("UCS_over_BTS", find("UCS"), find("BTS"));
+    ratio("UCS_over_DTS", find("UCS"), find("DTS"));
+    ratio("BTS_over_DTS", find("BTS"), find("DTS"));
+    return values;
+}
+
+Json properties_json(const Job& job, const PropertySummary& properties) {
+    std::vector<std::pair<UserQuantity, const PropertyStatistics*>> ordered;
+    for (const auto& [key, statistics] : properties.values) ordered.emplace_back(user_quantity(key), &statistics);
+    std::ranges::stable_sort(ordered, {}, [](const auto& entry) { return entry.first.rank; });
+    const auto measured = laboratory(job);
+    Json rows = Json::array();
+    for (const auto& [quantity, statistics] : ordered) {
+        Json row = {{"name", quantity.name},
+                    {"label", quantity.label},
+                    {"symbol", quantity.symbol},
+                    {"unit", quantity.unit},
+                    {"median", rounded(statistics->median * quantity.factor)},
+                    {"minimum", rounded(statistics->minimum * quantity.factor)},
+                    {"maximum", rounded(statistics->maximum * quantity.factor)},
+                    {"packings", statistics->seeds.size()},
+                    {"laboratory", nullptr}};
+        for (const auto& [property, value] : measured) {
+            if (user_quantity(property).name == quantity.name) row["laboratory"] = rounded(value);
+        }
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+Json envelope_json(const PropertySummary& properties) {
+    Json fits = Json::array();
+    for (const EnvelopeFit& fit : properties.fits) {
+        Json points = Json::array();
+        for (std::size_t i = 0; i < std::min(fit.sigma1_Pa.size(), fit.sigma3_Pa.size()); ++i) {
+            points.push_back({rounded(fit.sigma3_Pa[i] * MPa), rounded(fit.sigma1_Pa[i] * MPa)});
+        }
+        fits.push_back({{"seed", fit.seed},
+                        {"cohesion", rounded(fit.cohesion_Pa * MPa)},
+                        {"friction_angle", rounded(fit.friction_angle_deg)},
+                        {"UCS_fitted", rounded(fit.UCS_fitted_Pa * MPa)},
+                        {"UCS_measured", rounded(fit.UCS_measured_Pa * MPa)},
+                        {"mi", rounded(fit.hoek_brown_mi)},
+                        {"hoek_brown_UCS", rounded(fit.hoek_brown_UCS_Pa * MPa)},
+                        {"points", points}});
+    }
+    return {{"method", properties.envelope_method}, {"fits", fits}};
+}
+
+Json specimens_json(std::span<const TestResult> results) {
+    Json list = Json::array();
+    for (const bool brazilian : {false, true}) {
+        const auto found = std::ranges::find_if(results, [&](const TestResult& r) { return r.specimen && (r.test.kind == TestKind::brazilian) == brazilian; });
+        if (found == results.end()) continue;
+        const Specimen& specimen = *found->specimen;
+        const OutlineSpec& outline = specimen.spec.outline;
+        std::string shape = fmt::format("polygon with {} corners", outline.vertices_m.size());
+        if (outline.shape == Shape::rectangle) shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
+        if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
+        list.push_back({{"for", brazilian ? "Brazilian test" : "compression and tension"},
+                        {"shape", shape},
+                        {"thickness", rounded(specimen.spec.thickness_m * 1e3)},
+                        {"grains", specimen.quality.grains},
+                        {"contacts", specimen.quality.contacts},
+                        {"nodes", specimen.quality.nodes},
+                        {"triangles", specimen.quality.triangles},
+                        {"merged_edges", specimen.quality.merged_edges},
+                        {"width_over_largest_grain", rounded(specimen.quality.width_over_largest_grain)},
+                        {"warnings", specimen.quality.warnings}});
+    }
+    return list;
+}
+
+}  // namespace
+
+Json rounded(double value) {
+    if (!std::isfinite(value)) return nullptr;
+    if (value == std::trunc(value) && std::abs(value) < 1e9) return static_cast<long long>(value);
+    return std::strtod(fmt::format("{:.5e}", value).c_str(), nullptr);
+}
+
+Json report_data(const Job& job, std::span<const TestResult> results, const PropertySummary& properties, const Provenance& provenance,
+                 bool complete) {
+    Json data;
+    data["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}, {"seeds", job.seeds}};
+    data["complete"] = complete;
+    data["signs"] = sign_convention;
+    data["model"] = {{"grains", name(job.model.kind)}, {"contact", name(job.model.contact)}, {"plane", name(job.model.plane)},
+                     {"law", name(job.contact.law)},   {"numerics", name(job.numerics.kind)}};
+    data["specimens"] = specimens_json(results);
+    data["properties"] = properties_json(job, properties);
+    data["laboratory"] = Json::object();
+    for (const auto& [property, value] : laboratory(job)) data["laboratory"][user_quantity(property).name] = rounded(value);
+    data["envelope"] = envelope_json(properties);
+    data["tests"] = Json::array();
+    for (const TestResult& result : results) data["tests"].push_back(test_json(result));
+    data["provenance"] = {{"version", provenance.version},   {"commit", provenance.commit},   {"machine", provenance.machine},
+                          {"compiler", provenance.compiler}, {"started", provenance.started}, {"threads", provenance.threads},
+                          {"command_line", provenance.command_line}};
+    return data;
+}
+
+}  // namespace feldspar

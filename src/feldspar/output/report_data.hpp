@@ -1,0 +1,35 @@
+// What the report's page is told, as JSON: the C++ side writes data only, the page in assets/ lays it out.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "feldspar/output/results.hpp"
+
+namespace feldspar {
+
+/// Everything but the fields: job, properties, envelope, tests with thinned histories, provenance. User units, compression
+/// positive, null where a value is not defined.
+nlohmann::ordered_json report_data(const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
+                                   const Provenance& provenance, bool complete);
+
+/// Fields of one test for the viewer of the failure pattern.
+struct ReportFields {
+    nlohmann::ordered_json meta;   ///< what lies where in the block, ranges, snapshots
+    std::string block;             ///< zlib-compressed, base64
+};
+
+/// The fields of the first test of each kind (and sigma_3) that fit into `budget_B` characters. A test that does not fit as a
+/// whole keeps its first crack, peak and end; one that does not fit then either is left out.
+std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B);
+
+/// A row's rounded value: six digits are more than a screen shows.
+nlohmann::ordered_json rounded(double value);
+
+std::string base64(std::span<const std::uint8_t> bytes);
+
+}  // namespace feldspar

@@ -1,0 +1,245 @@
+// The fields that the report's viewer draws, made small: bytes and 16-bit steps instead of doubles, then zlib and base64.
+//
+// Layout of a block, little-endian, every part starting at a multiple of 8 (its offset and type are in the meta data):
+//   nodes            float32  x, y of each node (mm)
+//   node_begin       int32    grains + 1
+//   triangle_begin   int32    grains + 1
+//   vertex_count     int32    grains: the first so many nodes of a grain are its outline
+//   corners          uint16   three a triangle, counted from the grain's first node
+//   crack_ends       float32  x, y of both ends (mm)
+//   crack_nodes      int32    two on face a, two on face b; -1 unknown
+//   crack_strain     float32  axial strain at the break, 10^-3
+//   crack_mode       uint8    0 tensile, 1 shear
+// and for each snapshot n:
+//   u<n>             int16    all x, then all y, each as the difference from the node before; times `scale` (mm)
+//   damage<n>        uint8    0 ... 255 for 0 ... 1
+//   sigma1_<n>, sigma3_<n>  uint8  principal stresses: 0 ... 255 between the test's limits
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include <zlib.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/output/crack_geometry.hpp"
+#include "feldspar/output/report_data.hpp"
+#include "feldspar/output/user_units.hpp"
+
+namespace feldspar {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Collects the parts of a block and where they lie.
+class Block {
+public:
+    template <class Number>
+    void add(const std::string& name, const char* type, const std::vector<Number>& values) {
+        bytes_.resize((bytes_.size() + 7) / 8 * 8);
+        parts_[name] = {{"type", type}, {"at", bytes_.size()}, {"count", values.size()}};
+        const std::size_t at = bytes_.size();
+        bytes_.resize(at + values.size() * sizeof(Number));
+        if (!values.empty()) std::memcpy(bytes_.data() + at, values.data(), values.size() * sizeof(Number));
+    }
+    const Json& parts() const { return parts_; }
+
+    std::string packed() const {
+        uLongf size = compressBound(bytes_.size());
+        std::vector<std::uint8_t> packed(size);
+        if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 9) != Z_OK) throw OutputError("zlib could not compress the report's fields");
+        return base64({packed.data(), size});
+    }
+
+private:
+    std::vector<std::uint8_t> bytes_;
+    Json parts_ = Json::object();
+};
+
+/// A stress field's range without its extremes: single triangles at crack tips would wash out the rest.
+struct Limits {
+    double low = 0.0, high = 0.0;
+    std::uint8_t level(double value) const {
+        const double share = high > low ? (value - low) / (high - low) : 0.0;
+        return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0)));
+    }
+};
+
+Limits limits_of(std::vector<double> values) {
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });
+    if (values.empty()) return {};
+    const auto quantile = [&](double q) {
+        const auto place = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+        std::ranges::nth_element(values, place);
+        return *place;
+    };
+    return {quantile(0.005), quantile(0.995)};
+}
+
+struct Principal {
+    std::vector<double> sigma1_MPa, sigma3_MPa;
+};
+
+Principal principal(const Snapshot& snapshot) {
+    Principal p;
+    for (std::size_t t = 0; t < snapshot.stress_xx_Pa.size(); ++t) {
+        const double mean = 0.5 * (snapshot.stress_xx_Pa[t] + snapshot.stress_yy_Pa[t]) * MPa;
+        const double radius = std::hypot(0.5 * (snapshot.stress_xx_Pa[t] - snapshot.stress_yy_Pa[t]), snapshot.stress_xy_Pa[t]) * MPa;
+        p.sigma1_MPa.push_back(mean + radius);
+        p.sigma3_MPa.push_back(mean - radius);
+    }
+    return p;
+}
+
+void add_mesh(Block& block, const GrainMesh& mesh) {
+    std::vector<float> nodes;
+    for (const Vec2 node : mesh.nodes) nodes.insert(nodes.end(), {static_cast<float>(node.x * 1e3), static_cast<float>(node.y * 1e3)});
+    std::vector<std::uint16_t> corners;
+    for (std::size_t g = 0; g + 1 < mesh.triangle_begin.size(); ++g) {
+        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) {
+            for (const int node : mesh.triangles[static_cast<std::size_t>(t)]) corners.push_back(static_cast<std::uint16_t>(node - mesh.node_begin[g]));
+        }
+    }
+    block.add("nodes", "float32", nodes);
+    block.add("node_begin", "int32", mesh.node_begin);
+    block.add("triangle_begin", "int32", mesh.triangle_begin);
+    block.add("vertex_count", "int32", mesh.vertex_count);
+    block.add("corners", "uint16", corners);
+}
+
+void add_cracks(Block& block, const TestResult& result) {
+    std::vector<float> ends, strain;
+    std::vector<int> nodes;
+    std::vector<std::uint8_t> mode;
+    const auto faces = find_crack_faces(*result.specimen, result.cracks);
+    for (std::size_t c = 0; c < result.cracks.size(); ++c) {
+        const Crack& crack = result.cracks[c];
+        for (const double x : {crack.from.x, crack.from.y, crack.to.x, crack.to.y}) ends.push_back(static_cast<float>(x * 1e3));
+        nodes.insert(nodes.end(), {faces[c].a.node_0, faces[c].a.node_1, faces[c].b.node_0, faces[c].b.node_1});
+        strain.push_back(static_cast<float>(crack.axial_strain * 1e3));
+        mode.push_back(static_cast<std::uint8_t>(crack.mode));
+    }
+    block.add("crack_ends", "float32", ends);
+    block.add("crack_nodes", "int32", nodes);
+    block.add("crack_strain", "float32", strain);
+    block.add("crack_mode", "uint8", mode);
+}
+
+/// Adds the displacement as 16-bit differences; gives the step in mm.
+double add_displacement(Block& block, const std::string& part, const std::vector<Vec2>& displacement_m) {
+    double largest = 0.0;
+    for (const Vec2 u : displacement_m) largest = std::max({largest, std::abs(u.x), std::abs(u.y)});
+    const double scale = largest > 0.0 && std::isfinite(largest) ? largest / 32767.0 : 1.0;
+    std::vector<std::int16_t> steps;
+    steps.reserve(2 * displacement_m.size());
+    for (const bool y : {false, true}) {
+        std::int16_t before = 0;
+        for (const Vec2 u : displacement_m) {
+            const double value = (y ? u.y : u.x) / scale;
+            const auto now = static_cast<std::int16_t>(std::lround(std::isfinite(value) ? value : 0.0));
+            steps.push_back(static_cast<std::int16_t>(static_cast<std::uint16_t>(now) - static_cast<std::uint16_t>(before)));   // wraps, and so does the viewer
+            before = now;
+        }
+    }
+    block.add(part, "int16", steps);
+    return scale * 1e3;
+}
+
+ReportFields fields_of(const TestResult& result, std::size_t test, const std::vector<std::size_t>& chosen) {
+    Block block;
+    add_mesh(block, result.specimen->mesh);
+    add_cracks(block, result);
+    std::vector<Principal> stresses;
+    std::vector<double> all_1, all_3;
+    for (const std::size_t n : chosen) {
+        stresses.push_back(principal(result.snapshots[n]));
+        all_1.insert(all_1.end(), stresses.back().sigma1_MPa.begin(), stresses.back().sigma1_MPa.end());
+        all_3.insert(all_3.end(), stresses.back().sigma3_MPa.begin(), stresses.back().sigma3_MPa.end());
+    }
+    const Limits limits_1 = limits_of(std::move(all_1));
+    const Limits limits_3 = limits_of(std::move(all_3));
+    const auto levels = [](const std::vector<double>& values, const Limits& limits) {
+        std::vector<std::uint8_t> list;
+        list.reserve(values.size());
+        for (const double value : values) list.push_back(limits.level(value));
+        return list;
+    };
+    Json snapshots = Json::array();
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Snapshot& snapshot = result.snapshots[chosen[i]];
+        const std::string n = std::to_string(i);
+        const double scale = add_displacement(block, "u" + n, snapshot.displacement_m);
+        std::vector<std::uint8_t> damage;
+        for (const float d : snapshot.damage) damage.push_back(static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(d, 0.0F, 1.0F))));
+        block.add("damage" + n, "uint8", damage);
+        block.add("sigma1_" + n, "uint8", levels(stresses[i].sigma1_MPa, limits_1));
+        block.add("sigma3_" + n, "uint8", levels(stresses[i].sigma3_MPa, limits_3));
+        snapshots.push_back({{"label", snapshot.label},
+                             {"strain", rounded(snapshot.axial_strain * 1e3)},
+                             {"stress", rounded(snapshot.axial_stress_Pa * MPa)},
+                             {"cracks", std::clamp(snapshot.cracks, 0, static_cast<int>(result.cracks.size()))},
+                             {"scale", scale}});
+    }
+    ReportFields fields;
+    fields.meta = {{"test", test},
+                   {"sigma1", {rounded(limits_1.low), rounded(limits_1.high)}},
+                   {"sigma3", {rounded(limits_3.low), rounded(limits_3.high)}},
+                   {"snapshots", snapshots},
+                   {"parts", block.parts()}};
+    fields.block = block.packed();
+    return fields;
+}
+
+/// Fields of another size than the mesh would be drawn wrongly.
+bool can_be_drawn(const TestResult& result) {
+    if (!result.specimen || result.snapshots.empty()) return false;
+    const GrainMesh& mesh = result.specimen->mesh;
+    return std::ranges::all_of(result.snapshots, [&](const Snapshot& s) {
+        return s.displacement_m.size() == mesh.nodes.size() && s.stress_xx_Pa.size() == mesh.triangles.size() && s.damage.size() == mesh.triangles.size();
+    });
+}
+
+}  // namespace
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+    constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < count ? bytes[i + k] : 0U);
+        for (std::size_t k = 0; k < 4; ++k) text += k <= count ? letters[group >> (18 - 6 * k) & 63U] : '=';
+    }
+    return text;
+}
+
+std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B) {
+    std::vector<ReportFields> list;
+    std::vector<std::pair<TestKind, double>> seen;
+    for (std::size_t r = 0; r < results.size(); ++r) {
+        const TestResult& result = results[r];
+        const std::pair group(result.test.kind, result.test.sigma3_Pa);
+        if (!can_be_drawn(result) || std::ranges::find(seen, group) != seen.end()) continue;
+        seen.push_back(group);
+        std::vector<std::size_t> all, few;
+        for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
+            all.push_back(n);
+            const std::string& label = result.snapshots[n].label;
+            if (label == "first-crack" || label == "peak" || label == "end") few.push_back(n);
+        }
+        for (const auto& chosen : {all, few}) {
+            if (chosen.empty()) continue;
+            ReportFields fields = fields_of(result, r, chosen);
+            if (fields.block.size() > budget_B) continue;
+            budget_B -= fields.block.size();
+            list.push_back(std::move(fields));
+            break;
+        }
+    }
+    return list;
+}
+
+}  // namespace feldspar

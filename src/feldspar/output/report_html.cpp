@@ -1,0 +1,87 @@
+// report.html: one file with its data, styles and scripts inside; it opens from disk and asks the network for nothing.
+#include <string>
+
+#include <fmt/format.h>
+
+#include "feldspar/output/report_assets.hpp"
+#include "feldspar/output/report_data.hpp"
+#include "feldspar/output/results.hpp"
+
+namespace feldspar {
+
+namespace {
+
+constexpr std::size_t largest_report_B = 14'000'000;   ///< more is slow to open and to send
+
+std::string escaped(const std::string& text) {
+    std::string html;
+    for (const char letter : text) {
+        switch (letter) {
+            case '&': html += "&amp;"; break;
+            case '<': html += "&lt;"; break;
+            case '>': html += "&gt;"; break;
+            case '"': html += "&quot;"; break;
+            case '\'': html += "&#39;"; break;
+            default: html += letter;
+        }
+    }
+    return html;
+}
+
+/// JSON that may stand inside a script element: a '<' can only be in a string there, and as \u003c it ends no element.
+std::string script_json(const nlohmann::ordered_json& json) {
+    const std::string text = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    std::string safe;
+    safe.reserve(text.size());
+    for (const char letter : text) {
+        if (letter == '<') safe += "\\u003c";
+        else safe += letter;
+    }
+    return safe;
+}
+
+/// Replaces each {{mark}} of the page once, in the order of the page, so that nothing inserted is searched for marks.
+class Page {
+public:
+    explicit Page(std::string page) : page_(std::move(page)) {}
+    void fill(const std::string& mark, const std::string& text) {
+        const std::string wanted = "{{" + mark + "}}";
+        const std::size_t found = page_.find(wanted, from_);
+        if (found == std::string::npos) return;
+        page_.replace(found, wanted.size(), text);
+        from_ = found + text.size();
+    }
+    const std::string& text() const { return page_; }
+
+private:
+    std::string page_;
+    std::size_t from_ = 0;
+};
+
+}  // namespace
+
+void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
+                  const Provenance& provenance, bool complete) {
+    nlohmann::ordered_json data = report_data(job, results, properties, provenance, complete);
+    data["fields"] = nlohmann::ordered_json::array();
+    const std::size_t used = script_json(data).size();
+    const auto fields = report_fields(results, used < largest_report_B ? largest_report_B - used : 0);
+    std::string blocks;
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+        data["fields"].push_back(fields[f].meta);
+        blocks += fmt::format("<script type=\"text/plain\" id=\"fields-{}\">{}</script>\n", f, fields[f].block);
+    }
+    Page page(asset_report_html);
+    page.fill("title", escaped(job.name));
+    page.fill("uplot_css", asset_uPlot_min_css);
+    page.fill("css", asset_report_css);
+    page.fill("data", script_json(data));
+    page.fill("fields", blocks);
+    page.fill("uplot_js", asset_uPlot_iife_min_js);
+    page.fill("charts_js", asset_charts_js);
+    page.fill("viewer_js", asset_viewer_js);
+    page.fill("report_js", asset_report_js);
+    directory.write_text("report.html", page.text());
+}
+
+}  // namespace feldspar
