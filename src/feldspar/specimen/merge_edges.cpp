@@ -1,6 +1,7 @@
 #include "feldspar/specimen/merge_edges.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <queue>
@@ -98,7 +99,8 @@ private:
         return result;
     }
 
-    /// Three vertices or more, each once, and every triangle from the centroid to an edge with a positive area.
+    /// Three vertices or more, each once, and the centroid well to the left of every edge: by 1 % of the root of the area.
+    /// Edges of no length, which wait for their own merging, do not count.
     bool sound(const Face& face) const {
         if (face.vertices.size() < 3) return false;
         std::vector<Vec2> corners;
@@ -110,7 +112,8 @@ private:
         if (area <= 0.0) return false;
         const Vec2 centre = centroid(corners);
         for (std::size_t k = 0; k < corners.size(); ++k) {
-            if (0.5 * cross(corners[k] - centre, corners[(k + 1) % corners.size()] - centre) <= 1e-6 * area) return false;
+            const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+            if (cross(a - centre, b - centre) < 0.01 * norm(b - a) * std::sqrt(area) - 1e-12 * area) return false;
         }
         return true;
     }

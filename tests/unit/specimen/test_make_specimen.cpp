@@ -1,0 +1,121 @@
+// Whole specimens: the counts of the published ones, determinism, the report, and what is refused.
+#include <cmath>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/base/error.hpp"
+#include "sample_specimens.hpp"
+
+namespace feldspar {
+namespace {
+
+/// Bits, not values: -0.0 and 0.0 differ.
+bool same_bits(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec2)) == 0;
+}
+
+class PublishedSpecimen : public testing::TestWithParam<std::uint64_t> {};
+
+TEST_P(PublishedSpecimen, RectangleHasThePublishedCounts) {
+    const Specimen s = make_specimen(rectangle(), GetParam());
+    EXPECT_EQ(s.quality.grains, 1630);
+    EXPECT_NEAR(s.quality.contacts, 4627, 0.02 * 4627);
+    EXPECT_NEAR(s.quality.nodes, 18842, 0.02 * 18842);
+    EXPECT_NEAR(s.quality.triangles, 25003, 0.02 * 25003);
+    EXPECT_LT(s.quality.area_error, 1e-9);
+    EXPECT_TRUE(s.quality.warnings.empty()) << s.quality.warnings.front();
+}
+
+TEST_P(PublishedSpecimen, DiscHasThePublishedCounts) {
+    const Specimen s = make_specimen(disc(), GetParam());
+    EXPECT_EQ(s.quality.grains, 640);
+    EXPECT_NEAR(s.quality.contacts, 1805, 0.02 * 1805);
+    EXPECT_NEAR(s.quality.nodes, 7376, 0.02 * 7376);
+    EXPECT_NEAR(s.quality.triangles, 9784, 0.02 * 9784);
+    EXPECT_LT(s.quality.area_error, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, PublishedSpecimen, testing::Values(1, 2, 3, 4, 5));
+
+TEST(MakeSpecimen, SameSeedSameBits) {
+    for (const SpecimenSpec& spec : {rectangle(0.04, 0.04), disc(0.04), ell()}) {
+        const Specimen a = make_specimen(spec, 7), b = make_specimen(spec, 7), c = make_specimen(spec, 8);
+        EXPECT_TRUE(same_bits(a.packing.centres, b.packing.centres));
+        EXPECT_TRUE(same_bits(a.cells.vertices, b.cells.vertices));
+        EXPECT_TRUE(same_bits(a.mesh.nodes, b.mesh.nodes));
+        EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
+        EXPECT_FALSE(same_bits(a.mesh.nodes, c.mesh.nodes));
+    }
+}
+
+TEST(MakeSpecimen, GrainCountFollowsThePorosity) {
+    EXPECT_EQ(grain_count(rectangle()), 1630);
+    EXPECT_EQ(grain_count(disc()), 640);
+    SpecimenSpec loose = rectangle();
+    loose.porosity = 0.2;
+    EXPECT_EQ(grain_count(loose), std::lround(0.8 * 0.08 * 0.16 / (0.25 * 3.14159265358979 * 9e-6)));
+}
+
+TEST(MakeSpecimen, DiscsOfAMixtureFillTheAreaThatThePorosityLeaves) {
+    SpecimenSpec spec = rectangle();
+    spec.grain_sizes.kind = GrainSizeKind::sieve;
+    spec.grain_sizes.sieve = {{0.002, 0.0}, {0.003, 0.4}, {0.005, 1.0}};
+    const Specimen s = make_specimen(spec, 1);
+    double area = 0.0;
+    for (const double r : s.packing.radii_m) area += 3.14159265358979 * r * r;
+    EXPECT_NEAR(area / s.outline.area_m2, 0.9, 0.03);
+}
+
+TEST(MakeSpecimen, ReportCountsWhatIsThere) {
+    const Specimen s = make_specimen(rectangle(0.04, 0.06), 1);
+    int interior = 0, edges = 0;
+    for (const Cell& cell : s.cells.cells) {
+        for (const int n : cell.neighbours) {
+            interior += n >= 0 ? 1 : 0;
+            ++edges;
+        }
+    }
+    EXPECT_EQ(2 * s.quality.contacts, interior);
+    EXPECT_NEAR(s.quality.vertices_per_grain, static_cast<double>(edges) / s.quality.grains, 1e-12);
+    EXPECT_EQ(s.quality.nodes, std::ssize(s.mesh.nodes));
+    EXPECT_EQ(s.quality.triangles, std::ssize(s.mesh.triangles));
+    EXPECT_NEAR(s.quality.mean_diameter_m, 0.003, 1e-4);
+    EXPECT_NEAR(s.quality.width_over_largest_grain, 10.0, 0.3);
+    EXPECT_GT(s.quality.smallest_triangle_m2, 0.0);
+    EXPECT_GT(s.quality.smallest_triangle_height_m, 0.0);
+}
+
+TEST(MakeSpecimen, NarrowSpecimenIsWarnedAbout) {
+    const Specimen s = make_specimen(rectangle(0.02, 0.04), 1);
+    ASSERT_FALSE(s.quality.warnings.empty());
+    EXPECT_NE(s.quality.warnings.front().find("largest grain"), std::string::npos);
+}
+
+TEST(MakeSpecimen, ImpossibleSpecsAreRefused) {
+    const auto refused = [](SpecimenSpec spec) { EXPECT_THROW(make_specimen(spec, 1), InputError); };
+    SpecimenSpec spec = rectangle();
+    spec.porosity = 1.0;
+    refused(spec);
+    spec = rectangle();
+    spec.porosity = -0.1;
+    refused(spec);
+    spec = rectangle();
+    spec.merge_length_m = -1e-4;
+    refused(spec);
+    spec = rectangle();
+    spec.triangles_per_grain = -1;
+    refused(spec);
+    spec = rectangle();
+    spec.thickness_m = 0.0;
+    refused(spec);
+    spec = rectangle();
+    spec.grain_sizes.minimum_m = 1e-9;  // some 10^15 grains
+    spec.grain_sizes.maximum_m = 1e-9;
+    refused(spec);
+    refused(polygon({{0, 0}, {0.08, 0.08}, {0.08, 0}, {0, 0.08}}));
+    refused(rectangle(0.002, 0.002));
+}
+
+}  // namespace
+}  // namespace feldspar

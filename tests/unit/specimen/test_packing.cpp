@@ -1,0 +1,116 @@
+// The relaxed packing: criterion, balance of forces, everybody inside.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/specimen/outline.hpp"
+#include "feldspar/specimen/pack_discs.hpp"
+#include "sample_specimens.hpp"
+
+namespace feldspar {
+namespace {
+
+/// Mean unbalanced / mean contact force, by all pairs and independent of the code under test. Convex outlines.
+double residual_of(const Packing& packing, const Outline& outline) {
+    std::vector<Vec2> force(packing.centres.size());
+    double sum = 0.0;
+    int touching = 0;
+    const auto wall = [&](std::size_t i, Vec2 inward, double gap) {
+        if (gap >= 0.0) return;
+        force[i] += -gap * inward;
+        sum -= gap;
+        ++touching;
+    };
+    for (std::size_t i = 0; i < force.size(); ++i) {
+        const Vec2 c = packing.centres[i];
+        for (std::size_t j = 0; j < i; ++j) {
+            const Vec2 apart = c - packing.centres[j];
+            const double overlap = packing.radii_m[i] + packing.radii_m[j] - norm(apart);
+            if (overlap <= 0.0) continue;
+            force[i] += overlap / norm(apart) * apart;
+            force[j] -= overlap / norm(apart) * apart;
+            sum += overlap;
+            ++touching;
+        }
+        if (outline.is_disc) wall(i, (-1.0 / norm(c)) * c, outline.radius_m - norm(c) - packing.radii_m[i]);
+        for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
+            const Vec2 a = outline.vertices[k], b = outline.vertices[(k + 1) % outline.vertices.size()];
+            const Vec2 along = (1.0 / norm(b - a)) * (b - a);
+            wall(i, rot90(along), cross(along, c - a) - packing.radii_m[i]);
+        }
+    }
+    double unbalanced = 0.0;
+    for (const Vec2 f : force) unbalanced += norm(f);
+    return (unbalanced / static_cast<double>(force.size())) / (sum / touching);
+}
+
+class RelaxedPacking : public testing::TestWithParam<SpecimenSpec> {};
+
+TEST_P(RelaxedPacking, MeetsTheCriterionInside) {
+    const Specimen s = make_specimen(GetParam(), 1);
+    EXPECT_LE(s.packing.residual, RelaxationCriterion{}.residual);
+    EXPECT_NEAR(residual_of(s.packing, s.outline), s.packing.residual, 1e-6);
+    EXPECT_GT(s.packing.overlap_mean, 0.01);
+    EXPECT_LT(s.packing.overlap_mean, 0.08);
+    EXPECT_LT(s.packing.overlap_max, 0.3);
+    for (const Vec2 c : s.packing.centres) EXPECT_TRUE(contains(s.outline, c));
+}
+
+INSTANTIATE_TEST_SUITE_P(Outlines, RelaxedPacking, testing::Values(rectangle(), disc(), triangle()));
+
+TEST(Packing, OverlapIsSpreadEvenly) {
+    // Before relaxation the upper half holds as many discs as the lower half only by chance; afterwards the pressure is even.
+    const Specimen s = make_specimen(rectangle(), 1);
+    double area[2] = {0.0, 0.0};
+    for (std::size_t i = 0; i < s.packing.centres.size(); ++i) {
+        area[s.packing.centres[i].y > 0.08 ? 1 : 0] += s.packing.radii_m[i] * s.packing.radii_m[i];
+    }
+    EXPECT_NEAR(area[0] / area[1], 1.0, 0.02);
+}
+
+TEST(Packing, TwoDiscsInABoxComeToRestSideBySide) {
+    const Outline outline = make_outline(rectangle(0.004, 0.002).outline);
+    Packing packing;
+    packing.radii_m = {0.0011, 0.0011};
+    packing.centres = {{0.0015, 0.001}, {0.0023, 0.001}};
+    relax_discs(packing, outline, {.residual = 1e-9});
+    // Each overlaps its neighbour and its wall equally: 2 (r + r) - 0.004 = 0.0004 over three contacts of one stiffness.
+    EXPECT_NEAR(packing.centres[0].x, 0.0011 - 0.0004 / 3.0, 1e-9);
+    EXPECT_NEAR(packing.centres[1].x, 0.0029 + 0.0004 / 3.0, 1e-9);
+    EXPECT_NEAR(packing.centres[0].y, 0.001, 1e-9);
+}
+
+TEST(Packing, LoosePackingEndsWithoutOverlap) {
+    SpecimenSpec spec = rectangle(0.03, 0.03);
+    spec.porosity = 0.4;
+    const Specimen s = make_specimen(spec, 1);
+    EXPECT_LE(s.packing.overlap_mean, RelaxationCriterion{}.loose_overlap);
+    EXPECT_NEAR(s.quality.area_error, 0.0, 1e-9);
+}
+
+TEST(Packing, RelaxationThatDoesNotArriveIsANumericalError) {
+    Specimen s = make_specimen(rectangle(0.03, 0.03), 1);
+    for (double& r : s.packing.radii_m) r *= 1.1;
+    EXPECT_THROW(relax_discs(s.packing, s.outline, {.residual = 1e-12, .loose_overlap = 0.0, .most_steps = 20}), NumericalError);
+}
+
+TEST(Packing, WideMixtureIsPacked) {
+    SpecimenSpec spec = rectangle(0.03, 0.03);
+    spec.grain_sizes.kind = GrainSizeKind::sieve;
+    spec.grain_sizes.sieve = {{0.0005, 0.0}, {0.005, 1.0}};
+    const Specimen s = make_specimen(spec, 1);
+    EXPECT_LE(s.packing.residual, RelaxationCriterion{}.residual);
+    const auto [least, largest] = std::minmax_element(s.packing.radii_m.begin(), s.packing.radii_m.end());
+    EXPECT_GT(*largest / *least, 4.0);
+}
+
+TEST(Packing, GrainsThatFindNoRoomAreRefused) {
+    EXPECT_THROW(make_specimen(rectangle(0.003, 0.5), 1), InputError);  // narrower than the largest grain
+    EXPECT_THROW(make_specimen(rectangle(0.001, 0.001), 1), InputError);
+    EXPECT_THROW(make_specimen(polygon({{0, 0}, {0.1, 0.1}, {0.1, 0.1007}}), 1), InputError);  // a needle along a diagonal
+}
+
+}  // namespace
+}  // namespace feldspar

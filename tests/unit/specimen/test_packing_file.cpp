@@ -1,0 +1,112 @@
+// A packing on disk: the same bits back, and every kind of damage found with its line.
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/specimen/outline.hpp"
+#include "sample_specimens.hpp"
+
+namespace feldspar {
+namespace {
+
+class PackingFile : public testing::Test {
+protected:
+    void SetUp() override {
+        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+        file_ = std::filesystem::temp_directory_path() / (std::string("feldspar_packing_") + info->name() + ".txt");
+    }
+    void TearDown() override { std::filesystem::remove(file_); }
+
+    std::string text() const {
+        std::ifstream stream(file_);
+        std::ostringstream text;
+        text << stream.rdbuf();
+        return text.str();
+    }
+    void write(const std::string& text) const { std::ofstream(file_) << text; }
+
+    /// The line that the error names; 0 if there was none or it was another error.
+    int line_of_error(const Outline& outline) const {
+        try {
+            load_packing(file_, outline);
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.place().file, file_.string());
+            return error.place().line;
+        }
+        return 0;
+    }
+
+    std::filesystem::path file_;
+};
+
+TEST_F(PackingFile, ComesBackWithTheSameBits) {
+    for (const SpecimenSpec& spec : {rectangle(0.03, 0.03), disc(0.03), ell()}) {
+        const Specimen made = make_specimen(spec, 1);
+        save_packing(made, file_);
+        SpecimenSpec from_file = spec;
+        from_file.packing_file = file_;
+        const Specimen loaded = make_specimen(from_file, 99);  // the seed plays no part
+        ASSERT_EQ(loaded.packing.centres.size(), made.packing.centres.size());
+        EXPECT_EQ(std::memcmp(loaded.packing.centres.data(), made.packing.centres.data(), made.packing.centres.size() * sizeof(Vec2)), 0);
+        EXPECT_EQ(loaded.packing.radii_m, made.packing.radii_m);
+        EXPECT_EQ(loaded.packing.residual, made.packing.residual);
+        EXPECT_EQ(loaded.packing.overlap_mean, made.packing.overlap_mean);
+        EXPECT_EQ(loaded.mesh.nodes, made.mesh.nodes);
+        EXPECT_EQ(loaded.mesh.triangles, made.mesh.triangles);
+    }
+}
+
+TEST_F(PackingFile, DamageIsFoundInItsLine) {
+    const Specimen made = make_specimen(rectangle(0.02, 0.02), 1);
+    save_packing(made, file_);
+    const std::string good = text();
+    const auto with_line = [&](int number, const std::string& line) {
+        std::istringstream in(good);
+        std::string result, old;
+        for (int k = 1; std::getline(in, old); ++k) result += (k == number ? line : old) + "\n";
+        return result;
+    };
+    // 1 title, 2 seed, 3 polygon 4, 4-7 vertices, 8 relaxation, 9 discs n, 10 ... discs, end
+    const std::vector<std::pair<int, std::string>> damages = {
+        {1, "something else"},     {2, "sead 1"},           {3, "polygon four"},      {5, "0.02 x"},
+        {6, "0.02 0.03"},          {8, "relaxation 1 2 3"}, {9, "discs -1"},          {9, "discs 2.5"},
+        {12, "0.01 0.01"},         {12, "0.01 nan 0.001"},  {12, "0.01 0.01 0.001 1"}, {12, "0.05 0.01 0.001"},
+        {12, "0.01 0.01 -0.001"},  {12, ""}};
+    for (const auto& [line, replacement] : damages) {
+        write(with_line(line, replacement));
+        EXPECT_EQ(line_of_error(made.outline), line) << replacement;
+    }
+    write(good);
+    EXPECT_EQ(line_of_error(made.outline), 0);
+}
+
+TEST_F(PackingFile, CutShortOrMissingIsRefused) {
+    const Specimen made = make_specimen(rectangle(0.02, 0.02), 1);
+    EXPECT_THROW(load_packing(file_, made.outline), InputError);
+    save_packing(made, file_);
+    const std::string good = text();
+    for (std::size_t length = 0; length < good.size() - 4; length += 37) {
+        write(good.substr(0, length));
+        EXPECT_THROW(load_packing(file_, made.outline), InputError) << length << " characters";
+    }
+}
+
+TEST_F(PackingFile, AnotherOutlineIsRefused) {
+    const Specimen made = make_specimen(rectangle(0.02, 0.02), 1);
+    save_packing(made, file_);
+    EXPECT_THROW(load_packing(file_, make_outline(rectangle(0.02, 0.03).outline)), InputError);
+    EXPECT_THROW(load_packing(file_, make_outline(disc(0.02).outline)), InputError);
+    EXPECT_THROW(load_packing(file_, make_outline(ell().outline)), InputError);
+}
+
+TEST_F(PackingFile, PlaceThatCannotBeWrittenIsAnOutputError) {
+    const Specimen made = make_specimen(rectangle(0.02, 0.02), 1);
+    EXPECT_THROW(save_packing(made, file_ / "no" / "such" / "folder"), OutputError);
+}
+
+}  // namespace
+}  // namespace feldspar
