@@ -4,6 +4,16 @@
 #include <cmath>
 
 namespace feldspar {
+namespace {
+
+// How much a block of steps may change the speed. An event's waves take a hundred steps to be damped whatever the speed does, so
+// falling faster than this only throws away what has to be climbed again.
+constexpr double kMostSlowing = 0.85;
+constexpr double kMostHastening = 1.06;
+constexpr double kBlend = 0.5;   // of the newly observed loading mode
+
+}  // namespace
+
 
 double residual_target(const NumericsSpec& numerics, TestKind kind) {
     if (numerics.residual_target) return *numerics.residual_target;
@@ -12,13 +22,45 @@ double residual_target(const NumericsSpec& numerics, TestKind kind) {
     return kind == TestKind::brazilian ? 1e-2 * std::pow(relative, 0.7925) : 5e-3 * std::sqrt(relative);
 }
 
-double RateControl::next(double speed, double unbalanced_N, double platen_force_N, double platen_travel_m) {
+double expected_strength(const ContactMaterial& contact, const TestSpec& test) {
+    if (test.kind == TestKind::direct_tension || test.kind == TestKind::brazilian) return contact.sigma_nt_Pa;
+    const double root_N = contact.mu + std::sqrt(1.0 + contact.mu * contact.mu);
+    return 2.0 * contact.tau_Pa * root_N + root_N * root_N * test.sigma3_Pa;
+}
+
+double RateControl::next(double speed, double unbalanced_N, double platen_force_N, double platen_travel_m, bool past_peak) {
     largest_force_N_ = std::max(largest_force_N_, platen_force_N);
-    const double force = std::max(platen_force_N, 0.5 * largest_force_N_);
-    const double residual = unbalanced_N / force;
-    const double factor = residual > 0.0 ? std::clamp(std::sqrt(target_ / residual), 0.7, 1.06) : 1.06;
-    const double slowest = 6e-9 * height_m_, fastest = std::max(slowest, 0.4 * platen_travel_m / travel_time_);
+    const double now = residual(unbalanced_N, platen_force_N);
+    const double factor = now > 0.0 ? std::clamp(std::sqrt(target_ / now), kMostSlowing, kMostHastening) : kMostHastening;
+    const double slowest = (past_peak ? 6e-8 : 6e-9) * height_m_, fastest = std::max(slowest, 0.4 * platen_travel_m / travel_time_);
     return std::clamp(speed * factor, slowest, fastest);
+}
+
+double RateControl::residual(double unbalanced_N, double platen_force_N) const {
+    return unbalanced_N / std::max(platen_force_N, 0.5 * largest_force_N_);
+}
+
+void LoadingModeUpdate::begin(const Assembly& body, long long step, double platen_travel_m) {
+    start_step_ = step;
+    start_travel_m_ = platen_travel_m;
+    largest_residual_ = 0.0;
+    start_displacement_m_ = body.nodes.displacement;
+}
+
+void LoadingModeUpdate::observe(Assembly& body, long long step, double platen_travel_m, double residual) {
+    if (start_step_ < 0) return begin(body, step, platen_travel_m);
+    largest_residual_ = std::max(largest_residual_, residual);
+    if (static_cast<double>(step - start_step_) < window_) return;
+    if (largest_residual_ <= quiet_ && platen_travel_m > start_travel_m_) {
+        const double per_travel = 1.0 / (platen_travel_m - start_travel_m_);
+        Nodes& nodes = body.nodes;
+        for (int n = 0; n < nodes.count(); ++n) {
+            const Vec2 mean = per_travel * (nodes.displacement[n] - start_displacement_m_[n]);
+            if (nodes.inverse_mass[n].x != 0.0) nodes.loading_mode[n].x += kBlend * (mean.x - nodes.loading_mode[n].x);
+            if (nodes.inverse_mass[n].y != 0.0) nodes.loading_mode[n].y += kBlend * (mean.y - nodes.loading_mode[n].y);
+        }
+    }
+    begin(body, step, platen_travel_m);
 }
 
 }  // namespace feldspar
