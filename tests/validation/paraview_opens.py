@@ -35,7 +35,13 @@ def parts(reader):
     """The two grids of the present time: triangles and lines."""
     from paraview import servermanager
     data = servermanager.Fetch(reader)
-    return data.GetBlock(0), data.GetBlock(1)
+
+    def grid(block):   # ParaView wraps each part once more
+        while block is not None and block.IsA("vtkMultiBlockDataSet"):
+            block = block.GetBlock(0) if block.GetNumberOfBlocks() else None
+        return block
+
+    return grid(data.GetBlock(0)), grid(data.GetBlock(1))
 
 
 def check(pvd, pictures):
@@ -48,11 +54,12 @@ def check(pvd, pictures):
         found.append(f"{pvd.name}: {len(times)} times instead of {written}")
     if any(b <= a for a, b in zip(times, times[1:])):
         found.append(f"{pvd.name}: times do not grow")
-    cracks_before = 0
+    cracks_before, triangles = 0, 0
     for time in times:
         reader.UpdatePipeline(time)
         grains, cracks = parts(reader)
-        if grains.GetNumberOfCells() == 0 or grains.GetCellType(0) != 5:
+        triangles = grains.GetNumberOfCells()
+        if triangles == 0 or grains.GetCellType(0) != 5:
             found.append(f"{pvd.name}: no triangles at {time}")
         for name in GRAIN_ARRAYS:
             if not grains.GetCellData().GetArray(name):
@@ -70,8 +77,9 @@ def check(pvd, pictures):
             modes = cracks.GetCellData().GetArray("mode").GetRange()
             if modes[0] < 0 or modes[1] > 1:
                 found.append(f"{pvd.name}: crack modes {modes}")
-    render(reader, times, pictures / (pvd.stem + "-paraview.png"))
-    print(f"{pvd.name}: {len(times)} times, {grains.GetNumberOfCells()} triangles, {cracks_before} cracks at the end")
+    if times:
+        render(reader, times, pictures / (pvd.stem + "-paraview.png"))
+    print(f"{pvd.name}: {len(times)} times, {triangles} triangles, {cracks_before} cracks at the end")
     simple.Delete(reader)
     return found
 
@@ -80,25 +88,28 @@ def render(reader, times, file):
     """Grains by major principal stress and cracks by mode at the last time."""
     from paraview import simple
     view = simple.CreateRenderView(ViewSize=[900, 1000], Background=[1, 1, 1], UseColorPaletteForBackground=0, OrientationAxesVisibility=0)
+    view.CameraParallelProjection = 1
     warped = simple.WarpByVector(Input=reader, Vectors=["POINTS", "displacement_m"], ScaleFactor=1.0)
+    warped.UpdatePipeline(times[-1])
+    view.ViewTime = times[-1]
     grains = simple.ExtractBlock(Input=warped, Selectors=["/Root/Block0"])
     cracks = simple.ExtractBlock(Input=warped, Selectors=["/Root/Block1"])
     shown = simple.Show(grains, view)
     simple.ColorBy(shown, ("CELLS", "sigma_1_MPa"))
+    simple.GetColorTransferFunction("sigma_1_MPa").ApplyPreset("Grayscale", True)
     shown.RescaleTransferFunctionToDataRange(False, True)
+    bar = simple.GetScalarBar(simple.GetColorTransferFunction("sigma_1_MPa"), view)
+    bar.TitleColor = bar.LabelColor = [0, 0, 0]
     shown.SetScalarBarVisibility(view, True)
-    if times:
-        view.ViewTime = times[-1]
     lines = simple.Show(cracks, view)
     simple.ColorBy(lines, ("CELLS", "mode"))
-    colours = simple.GetColorTransferFunction("mode")
-    colours.RGBPoints = [0.0, 0.0, 0.45, 0.70, 1.0, 0.84, 0.37, 0.0]
+    simple.GetColorTransferFunction("mode").RGBPoints = [0.0, 0.0, 0.45, 0.70, 1.0, 0.84, 0.37, 0.0]
     lines.LineWidth = 3.0
     simple.ResetCamera(view)
-    view.CameraParallelProjection = 1
     simple.Render(view)
     simple.SaveScreenshot(str(file), view)
-    simple.Delete(view)
+    for proxy in (cracks, grains, warped, view):
+        simple.Delete(proxy)
 
 
 def main():

@@ -186,6 +186,7 @@ class XYChart {
       if (s.note && s.x.length) {
         ctx.font = 11.5 * dpr + "px system-ui, sans-serif";
         ctx.fillStyle = color;
+        ctx.textBaseline = "alphabetic";
         ctx.textAlign = s.noteSide || "left";
         ctx.fillText(s.note, u.valToPos(s.x[0], "x", true) + (s.noteSide === "right" ? -4 : 4) * dpr, u.valToPos(s.y[0], scale, true) - 4 * dpr);
       }

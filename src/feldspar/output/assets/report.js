@@ -16,7 +16,7 @@ function redrawAll() {
 }
 
 function titleOf(test) {
-  return (kindNames[test.kind] || test.kind) + (test.kind === "biaxial" ? " at \u03c3\u2083 = " + show(test.sigma3, 3) + " MPa" : "");
+  return (kindNames[test.kind] || test.kind) + (test.kind === "biaxial" ? " at \u03c3\u2083 = " + Number(test.sigma3.toPrecision(4)) + " MPa" : "");
 }
 function median(values) {
   const list = values.filter((v) => v !== null && Number.isFinite(v)).sort((a, b) => a - b);
@@ -112,13 +112,11 @@ function card(title) {
 }
 
 function stressSeries(tests, chosen) {
-  const series = tests.filter((t, i) => i !== chosen).map((t) => ({label: "packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "context", width: 1.3, quiet: true}));
-  if (series.length) series[0] = Object.assign({}, series[0], {quiet: false, label: "other packings"});
-  const t = tests[chosen];
-  series.push({label: "tensile cracks", x: t.history.strain, y: t.history.tensile, color: "tensile", width: 1.5, right: true, step: true},
-    {label: "shear cracks", x: t.history.strain, y: t.history.shear, color: "shear", width: 1.5, right: true, step: true},
-    {label: "stress, packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "ink", width: 2.2});
-  return series;
+  const t = tests[chosen], others = tests.filter((other) => other !== t);
+  return [...others.map((o, i) => ({label: i ? "packing " + o.seed : "other packings", x: o.history.strain, y: o.history.stress, color: "context", width: 1.3, quiet: i > 0})),
+    {label: "packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "ink", width: 2.2},
+    {label: "its tensile cracks", x: t.history.strain, y: t.history.tensile, color: "tensile", width: 1.5, right: true, step: true},
+    {label: "shear cracks", x: t.history.strain, y: t.history.shear, color: "shear", width: 1.5, right: true, step: true}];
 }
 
 function strainSeries(test) {
@@ -130,8 +128,10 @@ function strainSeries(test) {
     {label: "volumetric", x: volumetric, y: history.stress, color: "#cc79a7", width: 2},
   ];
   const [low, high] = extent(series.map((s) => s.x));
-  const level = (name, value, color, left) => {
-    if (value === null) return;
+  const sign = test.kind === "direct-tension" ? -1 : 1;   // strengths are magnitudes, the curve of a tension test is negative
+  const level = (name, magnitude, color, left) => {
+    if (magnitude === null) return;
+    const value = sign * magnitude;
     series.push({label: name, x: [left ? low : high, left ? high : low], y: [value, value], color, width: 1, dash: true, quiet: true, note: name, noteSide: left ? "left" : "right"});
   };
   const initiation = Object.entries(test.sigma_ci).filter(([, v]) => v !== null);
@@ -217,7 +217,7 @@ function envelopeSeries() {
   }
   if (c !== null && phi !== null) series.push(Object.assign({label: "Mohr-Coulomb, medians c = " + show(c) + " MPa, \u03c6 = " + show(phi) + "\u00b0", color: "ink", width: 2}, line(c, phi)));
   if (mi !== null && sci !== null && mi > 0) {
-    const x = [...Array(61).keys()].map((i) => -sci / mi + (i / 60) * (reach + sci / mi));
+    const x = [...Array(61).keys()].map((i) => -sci / mi + (i / 60) ** 2 * (reach + sci / mi));   // denser where it is steep
     series.push({label: "Hoek-Brown, medians mi = " + show(mi) + ", \u03c3ci = " + show(sci) + " MPa", color: "#009e73", width: 1.6, x, y: x.map((s) => s + sci * Math.sqrt(Math.max(0, (mi * s) / sci + 1)))});
   }
   const marks = (label, tests, x, y, color, mark) => { if (tests.length) series.push({label, x: tests.map(x), y: tests.map(y), color, mark, size: 4}); };
@@ -234,14 +234,14 @@ function writeEnvelope() {
   if (!data.envelope.fits.length && !data.tests.some((t) => t.kind === "biaxial")) return;
   page.append(h("h2", {}, "Strength envelope"));
   if (data.envelope.method) page.append(h("p", {class: "soft"}, data.envelope.method));
-  const grid = h("div", {class: "grid"}), chart = card("Strength of each test");
+  const grid = h("div", {class: "grid", style: "align-items:start"}), chart = card("Strength of each test");
   page.append(grid);
   grid.append(chart);
   new XYChart(chart, {x: "Minor principal stress \u03c3\u2083 (MPa, compression positive)", y: "Major principal stress \u03c3\u2081 (MPa)", height: 380, series: envelopeSeries()});
   if (!data.envelope.fits.length) return;
   const fits = card("Fits, one for each packing");
   grid.append(fits);
-  fits.append(table("evidence", [th("Seed", true), th("c (MPa)", true), th("\u03c6 (\u00b0)", true), th("UCS fitted (MPa)", true), th("UCS measured (MPa)", true), th("mi", true), th("\u03c3ci Hoek-Brown (MPa)", true)],
+  fits.append(table("evidence", [th("Seed", true), th(["c", h("br"), "MPa"], true), th(["\u03c6", h("br"), "\u00b0"], true), th(["UCS fitted", h("br"), "MPa"], true), th(["UCS measured", h("br"), "MPa"], true), th("mi", true), th(["\u03c3ci H-B", h("br"), "MPa"], true)],
     data.envelope.fits.map((f) => h("tr", {}, td(String(f.seed), true), td(show(f.cohesion), true), td(show(f.friction_angle), true), td(show(f.UCS_fitted), true), td(show(f.UCS_measured), true), td(show(f.mi), true), td(show(f.hoek_brown_UCS), true)))),
     h("p", {class: "soft small"}, "Mohr-Coulomb: \u03c3\u2081 = 2c\u221aN + N\u03c3\u2083 with N = (1 + sin \u03c6)/(1 \u2212 sin \u03c6). Hoek-Brown, intact rock: \u03c3\u2081 = \u03c3\u2083 + \u03c3ci (mi \u03c3\u2083/\u03c3ci + 1)^\u00bd."));
 }
@@ -326,11 +326,11 @@ function writePattern() {
     showScale();
   }
 
-  const names = data.fields.map((f) => { const t = data.tests[f.test]; return titleOf(t) + ", seed " + t.seed; });
-  page.append(picker("Test", names, 0, open) || h("p", {class: "small"}, names[0]), box);
-  stage.append(h("div", {class: "zoom"}, h("button", {type: "button", "aria-label": "Zoom in", onclick: () => viewer.zoom(1.5)}, "+"),
-    h("button", {type: "button", "aria-label": "Zoom out", onclick: () => viewer.zoom(1 / 1.5)}, "\u2212"), h("button", {type: "button", onclick: () => viewer.reset()}, "Fit")));
-  left.append(moment, h("div", {class: "slider"}, play, slider), stage, readout);
+  const names = data.fields.map((f) => { const t = data.tests[f.test]; return titleOf(t).replace(" compression at \u03c3\u2083 =", ",") + " \u00b7 seed " + t.seed; });
+  page.append(picker("", names, 0, open) || h("p", {class: "small"}, names[0]), box);
+  const zoom = h("div", {class: "zoom"}, h("button", {type: "button", "aria-label": "Zoom in", onclick: () => viewer.zoom(1.5)}, "+"),
+    h("button", {type: "button", "aria-label": "Zoom out", onclick: () => viewer.zoom(1 / 1.5)}, "\u2212"), h("button", {type: "button", onclick: () => viewer.reset()}, "Fit"));
+  left.append(moment, h("div", {class: "slider"}, play, slider, zoom), stage, readout);
   right.append(settings, curveCard, rosetteCard);
   redraw.push(() => { if (specimen) { viewer.draw(); drawRosette(rosette, specimen, viewer.snapshot); } });
   if (typeof DecompressionStream === "undefined") left.replaceChildren(h("p", {}, "This view needs a browser of 2023 or later. The same fields are in the .pvd files."));
@@ -350,11 +350,22 @@ function writeEvidence() {
   };
   const confirmed = data.tests.some((t) => t.change_at_third !== null);
   page.append(table("evidence",
-    [th("Test"), th("Seed", true), th("Strength (MPa)", true), th("Grade"), th("R* mean", true), th("R* at peak", true), th("Platens differ by", true, "largest difference of the two reactions over their mean"),
-      th("Kinetic / strain energy", true), th("Damping / fracture", true), th("Energy residual", true), th("Platen speed at peak", true), confirmed ? th("Peak at a third of the rate", true) : null, th("In words")],
-    data.tests.map((t) => h("tr", {}, td(titleOf(t)), td(String(t.seed), true), td(show(t.peak), true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
-      td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(percent(t.imbalance_max), true), td(percent(t.kinetic_over_strain), true), td(percent(t.damping_over_fracture), true),
-      td(percent(t.energy_residual), true), td(speedAtPeak(t), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null, td(t.verdict)))));
+    [th("Test"), th("Seed", true), th("Strength", true), th("Grade"), th(["R*", h("br"), "mean"], true), th(["R* at", h("br"), "peak"], true), th(["Platens", h("br"), "differ by"], true, "largest difference of the two reactions over their mean"),
+      th(["Kinetic /", h("br"), "strain energy"], true), th(["Damping /", h("br"), "fracture"], true), th(["Energy", h("br"), "residual"], true), th(["Platen speed", h("br"), "at peak"], true), confirmed ? th(["Peak at a", h("br"), "third of the rate"], true) : null],
+    data.tests.map((t, i) => h("tr", {}, td(i && titleOf(t) === titleOf(data.tests[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
+      td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(percent(t.imbalance_max), true), td(show(t.kinetic_over_strain, 2), true), td(percent(t.damping_over_fracture), true),
+      td(percent(t.energy_residual), true), td(speedAtPeak(t), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null))));
+  // the verdicts in words, each once
+  const verdicts = new Map();
+  for (const t of data.tests) {
+    const key = t.grade + "|" + t.verdict;
+    if (!verdicts.has(key)) verdicts.set(key, []);
+    verdicts.get(key).push(t);
+  }
+  const names = (tests) => [...new Set(tests.map(titleOf))].map((title) => title + ", seed" + (tests.filter((t) => titleOf(t) === title).length > 1 ? "s " : " ") + tests.filter((t) => titleOf(t) === title).map((t) => t.seed).join(", ")).join("; ");
+  for (const tests of [...verdicts.values()].sort((a, b) => (a[0].grade < b[0].grade ? -1 : 1))) {
+    page.append(h("p", {class: "verdict"}, h("span", {class: "grade " + tests[0].grade}, tests[0].grade), " " + tests[0].verdict + " ", h("span", {class: "soft small"}, "(" + names(tests) + ")")));
+  }
 }
 
 function writeProvenance() {

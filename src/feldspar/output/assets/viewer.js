@@ -164,7 +164,7 @@ class Viewer {
     if (!this.specimen) return;
     const dpr = Math.min(devicePixelRatio, 2), css = this.canvas.parentElement.clientWidth;
     const {x0, x1, y0, y1} = this.specimen;
-    const high = Math.round(Math.min(Math.max(css * 1.08 * (y1 - y0) / (x1 - x0), 260), 640));
+    const high = Math.round(Math.min(Math.max(css * 1.08 * (y1 - y0) / (x1 - x0), 260), 720));
     if (this.cssWidth === css && this.cssHeight === high && this.ids) return;
     const first = !this.ids;
     Object.assign(this, {cssWidth: css, cssHeight: high, dpr});
@@ -389,6 +389,7 @@ function drawRosette(canvas, specimen, n) {
     }
   }
   ctx.fillStyle = theme.get("soft");
+  ctx.textBaseline = "alphabetic";
   ctx.textAlign = "center";
   ctx.fillText("0\u00b0 loading axis", middle, 15 * dpr);
   ctx.fillText("90\u00b0", canvas.width - 14 * dpr, middle + 4 * dpr);

@@ -1,0 +1,165 @@
+// report.html: its data can be read, its text is escaped, it asks nobody for anything.
+#include <cstring>
+#include <regex>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <zlib.h>
+
+#include "feldspar/output/report_data.hpp"
+#include "feldspar/output/results.hpp"
+#include "scratch_directory.hpp"
+#include "synthetic_result.hpp"
+
+namespace feldspar {
+namespace {
+
+using namespace testing;
+using nlohmann::json;
+
+std::string between(const std::string& text, const std::string& from, const std::string& to) {
+    const std::size_t begin = text.find(from);
+    if (begin == std::string::npos) return {};
+    return text.substr(begin + from.size(), text.find(to, begin + from.size()) - begin - from.size());
+}
+
+std::vector<std::uint8_t> from_base64(const std::string& text) {
+    const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::vector<std::uint8_t> bytes;
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (const char letter : text) {
+        if (letter == '=') break;
+        bits = bits << 6 | static_cast<std::uint32_t>(letters.find(letter));
+        count += 6;
+        if (count >= 8) bytes.push_back(static_cast<std::uint8_t>(bits >> (count -= 8)));
+    }
+    return bytes;
+}
+
+class Report : public ::testing::Test {
+protected:
+    ScratchDirectory scratch;
+    RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
+    Job job = make_job();
+    std::vector<TestResult> results = {make_result(), make_result(TestKind::uniaxial_compression, 4), make_result(TestKind::brazilian)};
+
+    std::string page(bool complete = true) {
+        write_report(directory, job, results, make_properties(), make_provenance(), complete);
+        return read_file(directory.path() / "report.html");
+    }
+};
+
+TEST_F(Report, HoldsDataThatReadsBack) {
+    const json data = json::parse(between(page(), "id=\"data\">", "</script>"));
+    EXPECT_EQ(data["job"]["name"], "augig");
+    ASSERT_EQ(data["tests"].size(), 3U);
+    EXPECT_EQ(data["tests"][0]["history"]["stress"].size(), results[0].history.size());
+    EXPECT_NEAR(data["tests"][0]["history"]["strain"].back().get<double>(), 5.0, 1e-9);   // 10^-3
+    EXPECT_TRUE(data["tests"][2]["nu"].is_null());
+    EXPECT_EQ(data["properties"][0]["name"], "E_GPa");
+    EXPECT_NEAR(data["properties"][0]["laboratory"].get<double>(), 25.8, 1e-9);
+    EXPECT_EQ(data["fields"].size(), 2U);   // one packing a kind
+    EXPECT_EQ(data["fields"][1]["test"], 2);
+}
+
+TEST_F(Report, EscapesEverythingThatAUserCanWrite) {
+    job.name = "</title><script>alert(1)</script> & \"quoted\" {{data}}";
+    job.text = "name = '</script><!--<script>'\n";
+    results[0].evidence.verdict = "</script><script>alert(2)</script>";
+    const std::string html = page();
+    EXPECT_EQ(html.find("alert(1)</script>"), std::string::npos);
+    EXPECT_EQ(html.find("alert(2)</script>"), std::string::npos);
+    EXPECT_EQ(html.find("<!--<script>"), std::string::npos);
+    EXPECT_NE(html.find("<title>&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;quoted&quot; {{data}} - Feldspar"), std::string::npos);
+    const json data = json::parse(between(html, "id=\"data\">", "</script>"));
+    EXPECT_EQ(data["job"]["name"], job.name);
+    EXPECT_EQ(data["job"]["resolved"], job.text);
+}
+
+TEST_F(Report, ANameThatIsNoUnicodeDoesNotLoseTheReport) {
+    job.name = "caf\xe9";
+    EXPECT_NO_THROW(json::parse(between(page(), "id=\"data\">", "</script>")));
+}
+
+TEST_F(Report, AsksTheNetworkForNothing) {
+    const std::string html = page();
+    EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)\\s*=\\s*[\"']?\\s*(https?:)?//", std::regex::icase)));
+    EXPECT_EQ(html.find("@import"), std::string::npos);
+    EXPECT_EQ(html.find("url("), std::string::npos);
+    EXPECT_EQ(html.find("fetch("), std::string::npos);
+    EXPECT_EQ(html.find("XMLHttpRequest"), std::string::npos);
+    EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+    for (const char* mark : {"{{uplot_css}}", "{{css}}", "{{data}}", "{{fields}}", "{{uplot_js}}", "{{charts_js}}", "{{viewer_js}}", "{{report_js}}"}) {
+        EXPECT_EQ(html.find(mark), std::string::npos) << mark;
+    }
+}
+
+TEST_F(Report, OfNoResultsIsWhole) {
+    results.clear();
+    const json data = json::parse(between(page(false), "id=\"data\">", "</script>"));
+    EXPECT_EQ(data["complete"], false);
+    EXPECT_TRUE(data["fields"].empty());
+}
+
+/// One part of a block of fields.
+template <class Number>
+std::vector<Number> part(const ReportFields& fields, const std::string& name) {
+    const std::vector<std::uint8_t> packed = from_base64(fields.block);
+    std::vector<std::uint8_t> bytes(1 << 20);
+    uLongf size = bytes.size();
+    EXPECT_EQ(uncompress(bytes.data(), &size, packed.data(), packed.size()), Z_OK);
+    const auto& place = fields.meta["parts"][name];
+    std::vector<Number> values(place["count"].get<std::size_t>());
+    std::memcpy(values.data(), bytes.data() + place["at"].get<std::size_t>(), values.size() * sizeof(Number));
+    return values;
+}
+
+TEST(ReportFields, ReadBackWithinAStep) {
+    const std::vector<TestResult> results = {make_result()};
+    const auto list = report_fields(results, 1 << 20);
+    ASSERT_EQ(list.size(), 1U);
+    const ReportFields& fields = list[0];
+    const GrainMesh& mesh = results[0].specimen->mesh;
+    EXPECT_EQ(part<float>(fields, "nodes").size(), 2 * mesh.nodes.size());
+    EXPECT_EQ(part<std::uint16_t>(fields, "corners")[3 * 5 + 2], 4);   // the centre of grain 1, counted from its first node
+    EXPECT_EQ(part<std::uint8_t>(fields, "crack_mode"), (std::vector<std::uint8_t>{0, 1}));
+    EXPECT_EQ(part<std::int32_t>(fields, "crack_nodes")[0], 1);   // the right edge of grain 0
+    const double scale = fields.meta["snapshots"][1]["scale"].get<double>();
+    const auto steps = part<std::int16_t>(fields, "u1");
+    std::int16_t sum = 0;
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+        sum = static_cast<std::int16_t>(sum + steps[n]);
+        EXPECT_NEAR(sum * scale, results[0].snapshots[1].displacement_m[n].x * 1e3, scale);
+    }
+    EXPECT_EQ(part<std::uint8_t>(fields, "damage1")[1], 255);
+    const auto levels = part<std::uint8_t>(fields, "sigma1_2");
+    EXPECT_EQ(levels.size(), mesh.triangles.size());
+}
+
+TEST(ReportFields, StayWithinTheBudget) {
+    const std::vector<TestResult> results = {make_result(TestKind::uniaxial_compression, 1, 12, 12), make_result(TestKind::brazilian, 1, 12, 12)};
+    const auto all = report_fields(results, 1 << 20);
+    ASSERT_EQ(all.size(), 2U);
+    EXPECT_EQ(all[0].meta["snapshots"].size(), 3U);
+    const std::size_t one = all[0].block.size();
+    const auto tight = report_fields(results, one - 1);   // the first loses its start; little is left for the second
+    ASSERT_GE(tight.size(), 1U);
+    EXPECT_EQ(tight[0].meta["snapshots"].size(), 2U);
+    std::size_t total = 0;
+    for (const ReportFields& fields : tight) total += fields.block.size();
+    EXPECT_LT(total, one);
+    EXPECT_TRUE(report_fields(results, 10).empty());
+}
+
+TEST(Base64, MatchesItsDefinition) {
+    const auto encode = [](const std::string& text) { return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); };
+    EXPECT_EQ(encode(""), "");
+    EXPECT_EQ(encode("f"), "Zg==");
+    EXPECT_EQ(encode("fo"), "Zm8=");
+    EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
+}
+
+}  // namespace
+}  // namespace feldspar
