@@ -34,12 +34,18 @@ public:
     /// The specimen of the run, made on the first call.
     std::shared_ptr<const Specimen> get(const PlannedRun& run);
 
+    /// True if get() would not have to make it.
+    bool made(const PlannedRun& run) const;
+
     /// "packing-s3" or "packing-disc-s3": the stem of the file of the run's packing.
     static std::string packing_stem(const PlannedRun& run);
 
 private:
+    using Key = std::pair<bool, std::uint64_t>;  // (disc of the Brazilian test?, seed)
+    static Key key_of(const PlannedRun& run) { return {run.test->kind == TestKind::brazilian, run.seed}; }
+
     const Job* job_;
-    std::map<std::pair<bool, std::uint64_t>, std::shared_ptr<const Specimen>> made_;  // (disc of the Brazilian test?, seed)
+    std::map<Key, std::shared_ptr<const Specimen>> made_;
 };
 
 /// What run_test() and preview_test() ask for.

@@ -22,7 +22,7 @@ std::string line_of(const std::string& label, const TestProgress& p) {
     std::string line = fmt::format("{}: {}, stress {:.2f} MPa, strain {:.4f} %, {} cracks", label, p.stage, p.axial_stress_Pa / 1e6,
                                    100.0 * p.axial_strain, p.cracks);
     if (p.steps_per_second > 0.0) line += fmt::format(", {} steps at {:.0f}/s", p.step, p.steps_per_second);
-    if (p.seconds_left >= 0.0 && std::isfinite(p.seconds_left)) line += fmt::format(", about {} left", duration_text(p.seconds_left));
+    if (p.step > 0 && p.seconds_left >= 0.0 && std::isfinite(p.seconds_left)) line += fmt::format(", about {} left", duration_text(p.seconds_left));
     return line;
 }
 

@@ -56,12 +56,12 @@ public:
 
     /// Makes every specimen and judges every setting of the user's, so that a mistake shows before there is a directory.
     void prepare() {
-        for (std::size_t i = 0; i < runs_.size(); ++i) {
+        for (const PlannedRun& run : runs_) {
             if (stop_requested()) throw Interrupted();
-            progress_.busy(fmt::format("preparing {}/{}: specimen of {}, seed {}", i + 1, runs_.size(), title(*runs_[i].test), runs_[i].seed));
-            const std::shared_ptr<const Specimen> specimen = specimens_.get(runs_[i]);
+            if (!specimens_.made(run)) progress_.busy(fmt::format("making {}", Specimens::packing_stem(run)));
+            const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
             const bool own_setting = job_.numerics.kind != NumericsKind::adaptive || job_.numerics.mass_factor;
-            if (own_setting) (void)preview_test(setup_of(job_, runs_[i], specimen), control_);
+            if (own_setting) (void)preview_test(setup_of(job_, run, specimen), control_);
         }
         progress_.clear();
         for (const PlannedRun& run : runs_)
@@ -89,7 +89,7 @@ public:
             }
         }
         progress_.clear();
-        interrupted_ = stop_requested();
+        interrupted_ = results_.size() < runs_.size() || (!results_.empty() && results_.back().interrupted);
         write_overview(!interrupted_);
     }
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <sstream>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -45,12 +48,36 @@ std::string number(double value) {
     return size >= 99.95 ? fmt::format("{:.1f}", value) : size >= 9.995 ? fmt::format("{:.2f}", value) : fmt::format("{:.3f}", value);
 }
 
-std::string words_of(char grade) {
-    switch (grade) {
-        case 'A': return "A";
-        case 'B': return "B";
-        default: return "C!";
+// Words broken into lines of about a hundred characters, each behind the indent.
+std::string wrapped(const std::string& text, const std::string& indent) {
+    constexpr std::size_t longest = 110;
+    std::string result, line;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (!line.empty() && indent.size() + line.size() + 1 + word.size() > longest) {
+            result += indent + line + "\n";
+            line.clear();
+        }
+        line += (line.empty() ? "" : " ") + word;
     }
+    return result + indent + line + "\n";
+}
+
+// A property as a row: strengths under confinement carry their sigma_3 in their name and come last, by sigma_3.
+struct Entry {
+    UserQuantity quantity;
+    std::string property;
+    double sigma3_MPa = 0.0;
+};
+
+Entry entry_of(const std::string& property) {
+    Entry entry{user_quantity(property), property};
+    constexpr std::string_view confined = "sigma1_at_sigma3_";
+    if (property.starts_with(confined)) {
+        entry.sigma3_MPa = std::strtod(property.c_str() + confined.size(), nullptr);
+        entry.quantity.label = fmt::format("Strength at sigma_3 = {:g} MPa", entry.sigma3_MPa);
+    }
+    return entry;
 }
 
 std::string cracks_text(const TestResult& result) {
@@ -70,13 +97,15 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
     std::map<std::string, std::string> laboratory_name;  // of a property
     for (const auto& [key, value] : job.laboratory) laboratory_name[property_of_laboratory(key)] = key;
 
-    std::vector<std::pair<UserQuantity, std::string>> order;
-    for (const auto& [property, statistics] : properties.values) order.emplace_back(user_quantity(property), property);
-    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first.rank < b.first.rank; });
+    std::vector<Entry> order;
+    for (const auto& [property, statistics] : properties.values) order.push_back(entry_of(property));
+    std::stable_sort(order.begin(), order.end(), [](const Entry& a, const Entry& b) {
+        return std::pair(a.quantity.rank, a.sigma3_MPa) < std::pair(b.quantity.rank, b.sigma3_MPa);
+    });
     if (order.empty()) return "No property could be read: no test reached its peak.\n";
 
     std::vector<Row> rows{{"Property", "unit", "median", "minimum", "maximum", "n", "laboratory", "deviation"}};
-    for (const auto& [quantity, property] : order) {
+    for (const auto& [quantity, property, sigma3] : order) {
         const PropertyStatistics& s = properties.values.at(property);
         Row row{quantity.label, quantity.unit, number(s.median * quantity.factor), number(s.minimum * quantity.factor),
                 number(s.maximum * quantity.factor), std::to_string(s.seeds.size()), "", ""};
@@ -89,7 +118,7 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
     }
     std::string text = aligned(rows, 2);
     text += fmt::format("median, minimum, maximum over n packings; plane {}; strengths are positive magnitudes\n", name(job.model.plane));
-    if (!properties.envelope_method.empty()) text += properties.envelope_method + "\n";
+    if (!properties.envelope_method.empty()) text += wrapped(properties.envelope_method, "");
     return text;
 }
 
@@ -98,18 +127,20 @@ std::string test_table(std::span<const TestResult> results) {
     std::vector<Row> rows{{"Test", "seed", "peak MPa", "cracks t + s", "steps", "time", "energy residual", "quasi-static"}};
     for (const TestResult& r : results)
         rows.push_back({title(r.test), std::to_string(r.seed), peak_text(r), cracks_text(r), std::to_string(r.steps), duration_text(r.wall_s),
-                        fmt::format("{:.3f} %", 100.0 * r.energy_residual), words_of(r.evidence.grade)});
+                        fmt::format("{:.3f} %", 100.0 * r.energy_residual), std::string(1, r.evidence.grade)});
     std::string text = aligned(rows, 1);
-    text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n\n";
-    text += "Verdicts\n";
-    for (const TestResult& r : results)
-        text += fmt::format("  {}, seed {}: {}{}\n", title(r.test), r.seed, r.evidence.verdict, r.interrupted ? " (interrupted)" : "");
+    text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n";
+    text += "quasi-static: A to about 0.5 %, B to about 2 %, C not shown\n";
+    for (const TestResult& r : results) {
+        text += fmt::format("\n{}, seed {}{}\n", title(r.test), r.seed, r.interrupted ? " (interrupted)" : "");
+        text += wrapped(r.evidence.verdict, "  ");
+    }
     return text;
 }
 
 std::string test_line(const TestResult& r) {
     return fmt::format("peak {} MPa, {} cracks, {} steps in {}, quasi-static {} ({})", peak_text(r), r.cracks.size(), r.steps,
-                       duration_text(r.wall_s), words_of(r.evidence.grade), r.stop_reason.empty() ? "ended" : r.stop_reason);
+                       duration_text(r.wall_s), r.evidence.grade, r.stop_reason.empty() ? "ended" : r.stop_reason);
 }
 
 }  // namespace feldspar
