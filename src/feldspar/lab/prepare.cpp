@@ -13,7 +13,7 @@
 namespace feldspar {
 namespace {
 
-constexpr double kTolerance = 1e-4;         // mean |F| / mean |contact force| of the relaxed body
+constexpr double kTolerance = 1e-5;         // mean |F| / mean |contact force| of the relaxed body
 constexpr double kBelowDamage = 0.98;       // of the first damage: where the elastic phase ends
 constexpr long long kMaximumSteps = 20000;
 
