@@ -18,12 +18,21 @@ std::size_t terminal_columns() {
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
 }
 
-std::string line_of(const std::string& label, const TestProgress& p) {
-    std::string line = fmt::format("{}: {}, stress {:.2f} MPa, strain {:.4f} %, {} cracks", label, p.stage, p.axial_stress_Pa / 1e6,
-                                   100.0 * p.axial_strain, p.cracks);
-    if (p.steps_per_second > 0.0) line += fmt::format(", {} steps at {:.0f}/s", p.step, p.steps_per_second);
-    if (p.step > 0 && p.seconds_left >= 0.0 && std::isfinite(p.seconds_left)) line += fmt::format(", about {} left", duration_text(p.seconds_left));
-    return line;
+std::string rate_and_rest(const TestProgress& p) {
+    std::string text;
+    if (p.steps_per_second > 0.0) text += fmt::format(", {:.0f} steps/s", p.steps_per_second);
+    if (p.step > 0 && p.seconds_left >= 0.0 && std::isfinite(p.seconds_left)) text += fmt::format(", about {} left", duration_text(p.seconds_left));
+    return text;
+}
+
+// The rewritten line is cut at the terminal's width, so what changes comes first and the test's name last.
+std::string short_line(int number, int count, const std::string& label, const TestProgress& p) {
+    return fmt::format("{}/{} {}: {:.1f} MPa, {} cracks{}  [{}]", number, count, p.stage, p.axial_stress_Pa / 1e6, p.cracks, rate_and_rest(p), label);
+}
+
+std::string long_line(int number, int count, const std::string& label, const TestProgress& p) {
+    return fmt::format("{}/{} {}: {}, stress {:.2f} MPa, strain {:.4f} %, {} cracks, step {}{}", number, count, label, p.stage, p.axial_stress_Pa / 1e6,
+                       100.0 * p.axial_strain, p.cracks, p.step, rate_and_rest(p));
 }
 
 }  // namespace
@@ -63,16 +72,15 @@ void Progress::busy(const std::string& what) {
     last_line_ = std::chrono::steady_clock::now();
 }
 
-void Progress::report(const std::string& label, const TestProgress& progress) {
-    const std::string line = line_of(label, progress);
+void Progress::report(int number, int count, const std::string& label, const TestProgress& progress) {
     if (terminal_) {
-        rewrite(line);
+        rewrite(short_line(number, count, label, progress));
         return;
     }
     const auto now = std::chrono::steady_clock::now();
     const bool news = label != last_label_ || progress.stage != last_stage_;
     if (!news && now - last_line_ < plain_line_interval) return;
-    note(line);
+    note(long_line(number, count, label, progress));
     last_label_ = label;
     last_stage_ = progress.stage;
     last_line_ = now;

@@ -21,8 +21,8 @@ public:
     /// What is being done now, for work that does not report by itself.
     void busy(const std::string& what);
 
-    /// A running test reports. `label` is "3/21 biaxial at 4 MPa, seed 1".
-    void report(const std::string& label, const TestProgress& progress);
+    /// Test `number` of `count` reports; its `label` is "biaxial at 4 MPa, seed 1".
+    void report(int number, int count, const std::string& label, const TestProgress& progress);
 
     /// Takes the rewritten line away.
     void clear();

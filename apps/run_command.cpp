@@ -36,7 +36,7 @@ void check_space(const std::optional<std::string>& out, const Job& job, const st
     fs::path place = fs::absolute(out ? fs::path(*out) : fs::path("results"), error);
     while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();
     const fs::space_info space = fs::space(place, error);
-    if (error) return;  // a file system that does not tell is not full
+    if (error || space.capacity == 0) return;  // a file system that does not tell is not full
     const double wanted = expected_bytes(job, runs);
     if (static_cast<double>(space.available) < wanted)
         throw InputError({{}, 0, 0, "--out"}, fmt::format("the results need about {:.0f} MB, but the disk of '{}' has only {:.0f} MB free", wanted / 1e6, place.string(), static_cast<double>(space.available) / 1e6),
@@ -107,16 +107,17 @@ public:
 private:
     void run_one(std::size_t i) {
         const PlannedRun& run = runs_[i];
-        const std::string label = fmt::format("{}/{} {}, seed {}", i + 1, runs_.size(), title(*run.test), run.seed);
+        const std::string label = fmt::format("{}, seed {}", title(*run.test), run.seed);
+        const int number = static_cast<int>(i) + 1, count = static_cast<int>(runs_.size());
         const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
         const std::string packing = Specimens::packing_stem(run) + ".txt";
         if (std::find(packings_.begin(), packings_.end(), packing) == packings_.end()) {
             directory_->write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
             packings_.push_back(packing);
         }
-        control_.progress = [&](const TestProgress& state) { progress_.report(label, state); };
+        control_.progress = [&](const TestProgress& state) { progress_.report(number, count, label, state); };
         TestResult result = run_test(setup_of(job_, run, specimen), control_);
-        progress_.note(fmt::format("{}: {}", label, test_line(result)));
+        progress_.note(fmt::format("{}/{} {}: {}", number, count, label, test_line(result)));
         if (result.history.empty()) return;  // interrupted before the first row
         results_.push_back(std::move(result));
         write_history_csv(*directory_, results_.back(), provenance_);

@@ -34,6 +34,7 @@ std::string read_name(const TableReader& root, const std::filesystem::path& file
 
 std::string read_text(const std::filesystem::path& file) {
     const std::string shown_name = file.string();
+    if (file.empty()) throw InputError({}, "no job file is named");
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) throw InputError({shown_name, 0, 0, {}}, "is a directory, not a job file");
     errno = 0;

@@ -244,6 +244,37 @@ TEST(JobTemplate, EveryKindIsAJob) {
     EXPECT_THROW(job_template("triaxial"), InputError);
 }
 
+TEST(Examples, AreJobs) {
+    int found = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples")) {
+        if (entry.path().extension() != ".toml") continue;
+        SCOPED_TRACE(entry.path().filename().string());
+        ++found;
+        Job job;
+        ASSERT_NO_THROW(job = read_job(entry.path()));
+        expect_round_trip(job.text);
+    }
+    EXPECT_GE(found, 2);
+}
+
+TEST(Examples, TheAugigGraniteIsTable7) {
+    const std::filesystem::path folder = std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples/augig";
+    for (const char* file : {"job.toml", "short.toml"}) {
+        const Job job = read_job(folder / file);
+        EXPECT_EQ(job.contact.sigma_nt_Pa, 8.5e6);
+        EXPECT_EQ(job.contact.tau_Pa, 29.75e6);
+        EXPECT_EQ(job.contact.mu, 0.40);
+        EXPECT_EQ(job.contact.Gfn_J_m2, 20.0);
+        EXPECT_EQ(job.contact.Gfs_J_m2, 800.0);
+        EXPECT_EQ(job.contact.Kn_Pa_m, 18e13);
+        EXPECT_EQ(job.contact.eta, 0.28);
+        EXPECT_EQ(job.laboratory.at("UCS"), 122.1e6);
+    }
+    EXPECT_EQ(read_job(folder / "job.toml").seeds.size(), 5u);
+    EXPECT_EQ(read_job(folder / "job.toml").tests.size(), 5u);
+    EXPECT_EQ(read_job(folder / "short.toml").tests.size(), 3u);
+}
+
 TEST(JobTemplate, TheCommentedDefaultsAreTheDefaults) {
     // every line that begins "# key = value" is switched on, save those that show alternatives
     const std::string text = job_template("laboratory");
