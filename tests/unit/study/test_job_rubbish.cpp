@@ -29,7 +29,7 @@ TEST(JobRubbish, EveryBeginningOfAJob) {
 
 TEST(JobRubbish, RandomEdits) {
     std::mt19937_64 random(3);
-    const std::string bytes = std::string("[]{}=\"'#,.-+_\n\r\t 0129eExnaif\\\0\xff\xC2\xB0%mMPG", 42);
+    const std::string bytes = std::string("[]{}=\"'#,.-+_\n\r\t 0129eExnaif\\\xff\xC2\xB0%mMPG") + '\0';
     for (int i = 0; i < 3000; ++i) {
         std::string text = sample_job;
         for (std::uint64_t edits = 1 + random() % 4; edits > 0; --edits) {
