@@ -1,8 +1,8 @@
 #include "campaign.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace feldspar {
 

@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdio>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "campaign.hpp"
 #include "commands.hpp"
@@ -21,14 +21,18 @@ void print_specimen(const char* what, const Specimen& specimen) {
     fmt::print("  vertices per grain    {:.2f}\n", q.vertices_per_grain);
     fmt::print("  merged edges          {}\n", q.merged_edges);
     fmt::print("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
-    fmt::print("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2, 1e3 * q.smallest_triangle_height_m);
-    fmt::print("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean, 100.0 * q.overlap_max);
+    fmt::print("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2,
+               1e3 * q.smallest_triangle_height_m);
+    fmt::print("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
+               100.0 * q.overlap_max);
     fmt::print("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
     fmt::print("  area error            {:.1e}\n", q.area_error);
     for (const std::string& warning : q.warnings) fmt::print("  warning: {}\n", warning);
 }
 
-std::string memory_text(double bytes) { return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9); }
+std::string memory_text(double bytes) {
+    return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
+}
 
 }  // namespace
 
@@ -47,7 +51,8 @@ ExitCode check_command(const JobOptions& options) {
         ++count[run.test];
         example.emplace(run.test, run);
     }
-    fmt::print("Job {} is sound: {} runs of {} tests, {} thread{}\n\n", job.name, runs.size(), job.tests.size(), threads, threads == 1 ? "" : "s");
+    fmt::print("Job {} is sound: {} runs of {} tests, {} thread{}\n\n", job.name, runs.size(), job.tests.size(), threads,
+               threads == 1 ? "" : "s");
 
     double total_s = 0.0;
     std::string tests;
@@ -68,11 +73,14 @@ ExitCode check_command(const JobOptions& options) {
         tests += fmt::format("{} x {}\n", count.at(&test), title(test));
         tests += fmt::format("  contact points        {}\n", preview.contact_points);
         tests += fmt::format("  memory                {}\n", memory_text(preview.memory_bytes));
-        tests += fmt::format("  stability             (omega dt)^2 = {:.3f}, limit {:.3f}\n", preview.omega2, preview.omega2_limit);
+        tests +=
+            fmt::format("  stability             (omega dt)^2 = {:.3f}, limit {:.3f}\n", preview.omega2, preview.omega2_limit);
         tests += fmt::format("  stable time step      {:.3e} s with real masses\n", preview.stable_time_step_s);
-        tests += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps, duration_text(preview.expected_seconds));
+        tests += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps,
+                             duration_text(preview.expected_seconds));
     }
-    fmt::print("\n{}\nExpected time of the whole job: about {}. Nothing was run, no file was written.\n", tests, duration_text(total_s));
+    fmt::print("\n{}\nExpected time of the whole job: about {}. Nothing was run, no file was written.\n", tests,
+               duration_text(total_s));
     return ExitCode::success;
 }
 

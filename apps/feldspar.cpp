@@ -1,12 +1,11 @@
 // The program `feldspar`: reads the command line, calls a command, and turns what it throws into a message and an exit code.
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>
 #include <limits>
 #include <new>
-
-#include <fmt/format.h>
 
 #include "commands.hpp"
 #include "feldspar/output/results.hpp"
@@ -93,7 +92,9 @@ int run_program(int argc, char** argv) {
     std::string kind;
     std::optional<std::string> file;
     CLI::App* new_app = app.add_subcommand("new", "print a commented job to start from");
-    new_app->add_option("kind", kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")->required()->type_name("KIND");
+    new_app->add_option("kind", kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")
+        ->required()
+        ->type_name("KIND");
     new_app->add_option("--out", file, "write it to this new file instead")->type_name("FILE");
 
     try {

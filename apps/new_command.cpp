@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-
-#include <fmt/format.h>
 
 #include "commands.hpp"
 #include "feldspar/study/job_template.hpp"
@@ -20,7 +20,10 @@ ExitCode new_command(const std::string& kind, const std::optional<std::string>& 
     std::FILE* file = std::fopen(out->c_str(), "wx");  // x: never an existing file
     if (file == nullptr) {
         const bool exists = errno == EEXIST;
-        throw InputError({{}, 0, 0, "--out"}, fmt::format("'{}' {}", *out, exists ? "exists already and is not overwritten" : fmt::format("cannot be made: {}", std::strerror(errno))),
+        throw InputError({{}, 0, 0, "--out"},
+                         fmt::format("'{}' {}", *out,
+                                     exists ? "exists already and is not overwritten"
+                                            : fmt::format("cannot be made: {}", std::strerror(errno))),
                          "the name of a new file in a directory that exists");
     }
     bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();

@@ -1,12 +1,11 @@
 #include "progress.hpp"
 
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
-
-#include <fmt/format.h>
 
 namespace feldspar {
 namespace {
@@ -21,18 +20,20 @@ std::size_t terminal_columns() {
 std::string rate_and_rest(const TestProgress& p) {
     std::string text;
     if (p.steps_per_second > 0.0) text += fmt::format(", {:.0f} steps/s", p.steps_per_second);
-    if (p.step > 0 && p.seconds_left >= 0.0 && std::isfinite(p.seconds_left)) text += fmt::format(", about {} left", duration_text(p.seconds_left));
+    if (p.step > 0 && p.seconds_left >= 0.0 && std::isfinite(p.seconds_left))
+        text += fmt::format(", about {} left", duration_text(p.seconds_left));
     return text;
 }
 
 // The rewritten line is cut at the terminal's width, so what changes comes first and the test's name last.
 std::string short_line(int number, int count, const std::string& label, const TestProgress& p) {
-    return fmt::format("{}/{} {}: {:.1f} MPa, {} cracks{}  [{}]", number, count, p.stage, p.axial_stress_Pa / 1e6, p.cracks, rate_and_rest(p), label);
+    return fmt::format("{}/{} {}: {:.1f} MPa, {} cracks{}  [{}]", number, count, p.stage, p.axial_stress_Pa / 1e6, p.cracks,
+                       rate_and_rest(p), label);
 }
 
 std::string long_line(int number, int count, const std::string& label, const TestProgress& p) {
-    return fmt::format("{}/{} {}: {}, stress {:.2f} MPa, strain {:.4f} %, {} cracks, step {}{}", number, count, label, p.stage, p.axial_stress_Pa / 1e6,
-                       100.0 * p.axial_strain, p.cracks, p.step, rate_and_rest(p));
+    return fmt::format("{}/{} {}: {}, stress {:.2f} MPa, strain {:.4f} %, {} cracks, step {}{}", number, count, label, p.stage,
+                       p.axial_stress_Pa / 1e6, 100.0 * p.axial_strain, p.cracks, p.step, rate_and_rest(p));
 }
 
 }  // namespace
@@ -67,8 +68,10 @@ void Progress::note(const std::string& line) {
 }
 
 void Progress::busy(const std::string& what) {
-    if (terminal_) rewrite(what);
-    else note(what);
+    if (terminal_)
+        rewrite(what);
+    else
+        note(what);
     last_line_ = std::chrono::steady_clock::now();
 }
 

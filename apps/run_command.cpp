@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sys/statvfs.h>
 
 #include <algorithm>
@@ -5,8 +6,6 @@
 #include <filesystem>
 #include <optional>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "campaign.hpp"
 #include "commands.hpp"
@@ -39,7 +38,9 @@ void check_space(const std::optional<std::string>& out, const Job& job, const st
     if (error || space.capacity == 0) return;  // a file system that does not tell is not full
     const double wanted = expected_bytes(job, runs);
     if (static_cast<double>(space.available) < wanted)
-        throw InputError({{}, 0, 0, "--out"}, fmt::format("the results need about {:.0f} MB, but the disk of '{}' has only {:.0f} MB free", wanted / 1e6, place.string(), static_cast<double>(space.available) / 1e6),
+        throw InputError({{}, 0, 0, "--out"},
+                         fmt::format("the results need about {:.0f} MB, but the disk of '{}' has only {:.0f} MB free",
+                                     wanted / 1e6, place.string(), static_cast<double>(space.available) / 1e6),
                          "a directory on a disk with more space, or fewer snapshots");
 }
 
@@ -171,7 +172,9 @@ Job job_with_options(const JobOptions& options) {
 int thread_count(const Job& job) {
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     if (job.threads == 0) return cores;
-    if (job.threads > cores) fmt::print(stderr, "warning: {} threads on {} core{} will wait for each other\n", job.threads, cores, cores == 1 ? "" : "s");
+    if (job.threads > cores)
+        fmt::print(stderr, "warning: {} threads on {} core{} will wait for each other\n", job.threads, cores,
+                   cores == 1 ? "" : "s");
     return job.threads;
 }
 
@@ -184,7 +187,8 @@ ExitCode run_command(const RunOptions& options) {
     try {
         campaign.run();
     } catch (const std::exception&) {
-        fmt::print(stderr, "the files of {} finished test{} are in {}\n", campaign.finished(), campaign.finished() == 1 ? "" : "s", campaign.place()->string());
+        fmt::print(stderr, "the files of {} finished test{} are in {}\n", campaign.finished(),
+                   campaign.finished() == 1 ? "" : "s", campaign.place()->string());
         throw;
     }
     campaign.print_results();

@@ -1,5 +1,7 @@
 #include "tables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -7,8 +9,6 @@
 #include <sstream>
 #include <string_view>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "campaign.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -45,7 +45,9 @@ std::string aligned(const std::vector<Row>& rows, std::size_t left) {
 std::string number(double value) {
     if (!std::isfinite(value)) return "-";
     const double size = std::abs(value);
-    return size >= 99.95 ? fmt::format("{:.1f}", value) : size >= 9.995 ? fmt::format("{:.2f}", value) : fmt::format("{:.3f}", value);
+    return size >= 99.95   ? fmt::format("{:.1f}", value)
+           : size >= 9.995 ? fmt::format("{:.2f}", value)
+                           : fmt::format("{:.3f}", value);
 }
 
 // Words broken into lines of about a hundred characters, each behind the indent.
@@ -81,7 +83,8 @@ Entry entry_of(const std::string& property) {
 }
 
 std::string cracks_text(const TestResult& result) {
-    const auto tensile = std::count_if(result.cracks.begin(), result.cracks.end(), [](const Crack& c) { return c.mode == CrackMode::tensile; });
+    const auto tensile =
+        std::count_if(result.cracks.begin(), result.cracks.end(), [](const Crack& c) { return c.mode == CrackMode::tensile; });
     return fmt::format("{} + {}", tensile, static_cast<long long>(result.cracks.size()) - tensile);
 }
 
@@ -107,8 +110,14 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
     std::vector<Row> rows{{"Property", "unit", "median", "minimum", "maximum", "n", "laboratory", "deviation"}};
     for (const auto& [quantity, property, sigma3] : order) {
         const PropertyStatistics& s = properties.values.at(property);
-        Row row{quantity.label, quantity.unit, number(s.median * quantity.factor), number(s.minimum * quantity.factor),
-                number(s.maximum * quantity.factor), std::to_string(s.seeds.size()), "", ""};
+        Row row{quantity.label,
+                quantity.unit,
+                number(s.median * quantity.factor),
+                number(s.minimum * quantity.factor),
+                number(s.maximum * quantity.factor),
+                std::to_string(s.seeds.size()),
+                "",
+                ""};
         if (const auto found = laboratory_name.find(property); found != laboratory_name.end()) {
             const double measured = laboratory_in_user_units(found->second, job.laboratory.at(found->second));
             row[6] = number(measured);
@@ -117,7 +126,8 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
         rows.push_back(std::move(row));
     }
     std::string text = aligned(rows, 2);
-    text += fmt::format("median, minimum, maximum over n packings; plane {}; strengths are positive magnitudes\n", name(job.model.plane));
+    text += fmt::format("median, minimum, maximum over n packings; plane {}; strengths are positive magnitudes\n",
+                        name(job.model.plane));
     if (!properties.envelope_method.empty()) text += wrapped(properties.envelope_method, "");
     return text;
 }
@@ -126,8 +136,9 @@ std::string test_table(std::span<const TestResult> results) {
     if (results.empty()) return "No test ran.\n";
     std::vector<Row> rows{{"Test", "seed", "peak MPa", "cracks t + s", "steps", "time", "energy residual", "quasi-static"}};
     for (const TestResult& r : results)
-        rows.push_back({title(r.test), std::to_string(r.seed), peak_text(r), cracks_text(r), std::to_string(r.steps), duration_text(r.wall_s),
-                        fmt::format("{:.3f} %", 100.0 * r.energy_residual), std::string(1, r.evidence.grade)});
+        rows.push_back({title(r.test), std::to_string(r.seed), peak_text(r), cracks_text(r), std::to_string(r.steps),
+                        duration_text(r.wall_s), fmt::format("{:.3f} %", 100.0 * r.energy_residual),
+                        std::string(1, r.evidence.grade)});
     std::string text = aligned(rows, 1);
     text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n";
     text += "quasi-static: A to about 0.5 %, B to about 2 %, C not shown\n";

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -18,8 +19,6 @@
 #include <string>
 #include <thread>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 namespace feldspar::testing_program {
 
@@ -53,7 +52,8 @@ public:
     /// Everything in it, by relative path.
     std::set<std::string> entries() const {
         std::set<std::string> names;
-        for (const auto& entry : fs::recursive_directory_iterator(path_)) names.insert(fs::relative(entry.path(), path_).generic_string());
+        for (const auto& entry : fs::recursive_directory_iterator(path_))
+            names.insert(fs::relative(entry.path(), path_).generic_string());
         return names;
     }
 
@@ -62,7 +62,7 @@ private:
 };
 
 struct Outcome {
-    int code = -1;     ///< exit code; 128 + signal when a signal ended it
+    int code = -1;  ///< exit code; 128 + signal when a signal ended it
     std::string out;
     std::string err;
 };
@@ -103,7 +103,8 @@ public:
         for (int i = 0; i < 24000; ++i) {
             if (condition()) return true;
             siginfo_t info{};
-            if (waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child_) return condition();
+            if (waitid(P_PID, static_cast<id_t>(child_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child_)
+                return condition();
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
         return false;
@@ -115,7 +116,8 @@ public:
         int status = 0;
         waitpid(child_, &status, 0);
         child_ = -1;
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(outputs_ / "out"), read_text(outputs_ / "err")};
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(outputs_ / "out"),
+                read_text(outputs_ / "err")};
     }
 
 private:
@@ -123,12 +125,14 @@ private:
     pid_t child_ = -1;
 };
 
-inline Outcome run_program(const fs::path& directory, std::vector<std::string> arguments, const std::function<void()>& in_child = {}) {
+inline Outcome run_program(const fs::path& directory, std::vector<std::string> arguments,
+                           const std::function<void()>& in_child = {}) {
     return Program(directory, std::move(arguments), in_child).finish();
 }
 
 /// A specimen of some forty grains, which breaks within a second.
-inline std::string small_job(const std::string& tests = "[[test]]\nkind = \"uniaxial-compression\"\n", const std::string& seeds = "[1]",
+inline std::string small_job(const std::string& tests = "[[test]]\nkind = \"uniaxial-compression\"\n",
+                             const std::string& seeds = "[1]",
                              const std::string& numerics = "kind = \"adaptive\"\naccuracy = \"10 %\"\n") {
     return R"([specimen]
 shape = "rectangle"
@@ -150,7 +154,8 @@ mu = 0.40
 Gfn = "20 N/m"
 Gfs = "800 N/m"
 [numerics]
-)" + numerics + tests + "[run]\nseeds = " + seeds + "\nthreads = 1\n";
+)" + numerics +
+           tests + "[run]\nseeds = " + seeds + "\nthreads = 1\n";
 }
 
 /// The text with `from` replaced by `to`, once.

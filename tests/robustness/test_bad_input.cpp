@@ -16,23 +16,37 @@ std::vector<BadJob> bad_jobs() {
     return {
         {"syntax error", "[", {"job.toml:1:", "syntax error"}},
         {"empty file", "", {"job.toml: missing keys: specimen, material, test"}},
-        {"binary file", std::string("\x7f" "ELF\x02\x01\0\0\xff", 9), {"job.toml:1:"}},
-        {"unknown key", edit("porosity", "porosty"), {"job.toml:8:1: specimen.grains.porosty: unknown key", "did you mean 'porosity'?"}},
+        {"binary file",
+         std::string("\x7f"
+                     "ELF\x02\x01\0\0\xff",
+                     9),
+         {"job.toml:1:"}},
+        {"unknown key",
+         edit("porosity", "porosty"),
+         {"job.toml:8:1: specimen.grains.porosty: unknown key", "did you mean 'porosity'?"}},
         {"missing unit", edit("\"40 mm\"", "40"), {"job.toml:3:9: specimen.width: 40 has no unit"}},
         {"wrong unit", edit("\"8.5 MPa\"", "\"8.5 mPa\""), {"sigma_nt", "did you mean 'MPa'?"}},
         {"wrong dimension", edit("\"25.8 GPa\"", "\"25.8 mm\""), {"material.grain.E: '25.8 mm' is a length, not a stress"}},
         {"negative size", edit("\"40 mm\"", "\"-40 mm\""), {"'-40 mm' is not allowed", "greater than zero"}},
         {"porosity above 1", edit("porosity = 0.10", "porosity = 1.1"), {"porosity: 1.1 is not allowed"}},
-        {"nu at 0.5 in plane strain", "model = { plane = \"strain\" }\n" + edit("nu = 0.23", "nu = 0.5"), {"material.grain.nu: 0.5 is not allowed", "plane strain"}},
+        {"nu at 0.5 in plane strain",
+         "model = { plane = \"strain\" }\n" + edit("nu = 0.23", "nu = 0.5"),
+         {"material.grain.nu: 0.5 is not allowed", "plane strain"}},
         {"grains larger than the specimen", edit("maximum = \"11 mm\"", "maximum = \"110 mm\""), {"do not fit", "40 mm"}},
         {"zero strength", edit("\"8.5 MPa\"", "\"0 MPa\""), {"sigma_nt", "greater than zero"}},
-        {"outline that crosses itself", edit("shape = \"rectangle\"\nwidth = \"40 mm\"\nheight = \"80 mm\"",
-                                             "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"40 mm\", \"80 mm\"], [\"40 mm\", \"0 mm\"], [\"0 mm\", \"80 mm\"]]\nedge_labels = [\"a\", \"right\", \"b\", \"left\"]"),
+        {"outline that crosses itself",
+         edit("shape = \"rectangle\"\nwidth = \"40 mm\"\nheight = \"80 mm\"",
+              "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"40 mm\", \"80 mm\"], [\"40 mm\", \"0 mm\"], [\"0 mm\", "
+              "\"80 mm\"]]\nedge_labels = [\"a\", \"right\", \"b\", \"left\"]"),
          {"specimen.vertices: the outline crosses or touches itself"}},
         {"rigid grains", "model = { kind = \"rigid\" }\n" + job, {"not available yet in this version"}},
         {"speed under adaptive", edit("accuracy = \"10 %\"", "speed = \"1e-9 m\""), {"numerics.speed", "finds its own speed"}},
-        {"unstable mass", edit("kind = \"adaptive\"\naccuracy = \"10 %\"", "kind = \"paper\"\nmass_factor = 0.3"), {"mass_factor"}},
-        {"unstable time step", edit("kind = \"adaptive\"\naccuracy = \"10 %\"", "kind = \"dynamic\"\nspeed = \"0.1 m/s\"\ntime_step = \"1 ms\""), {"time_step"}},
+        {"unstable mass",
+         edit("kind = \"adaptive\"\naccuracy = \"10 %\"", "kind = \"paper\"\nmass_factor = 0.3"),
+         {"mass_factor"}},
+        {"unstable time step",
+         edit("kind = \"adaptive\"\naccuracy = \"10 %\"", "kind = \"dynamic\"\nspeed = \"0.1 m/s\"\ntime_step = \"1 ms\""),
+         {"time_step"}},
     };
 }
 
@@ -43,10 +57,12 @@ void expect_refused(const std::string& command, const BadJob& bad) {
     const Outcome outcome = run_program(place.path(), {command, "job.toml"});
     EXPECT_EQ(outcome.code, 2) << outcome.err;
     std::size_t messages = 0;
-    for (std::size_t at = outcome.err.find("feldspar: "); at != std::string::npos; at = outcome.err.find("feldspar: ", at + 1)) ++messages;
+    for (std::size_t at = outcome.err.find("feldspar: "); at != std::string::npos; at = outcome.err.find("feldspar: ", at + 1))
+        ++messages;
     EXPECT_EQ(messages, 1u) << outcome.err;
     EXPECT_LT(outcome.err.size(), 1200u) << outcome.err;
-    for (const std::string& part : bad.parts) EXPECT_NE(outcome.err.find(part), std::string::npos) << "wanted: " << part << "\ngot: " << outcome.err;
+    for (const std::string& part : bad.parts)
+        EXPECT_NE(outcome.err.find(part), std::string::npos) << "wanted: " << part << "\ngot: " << outcome.err;
     EXPECT_EQ(place.entries(), (std::set<std::string>{"job.toml"}));
 }
 

@@ -22,11 +22,23 @@ TEST(CommandLine, HelpAndVersion) {
 TEST(CommandLine, RefusesWhatItDoesNotKnow) {
     const Workplace place;
     write_text(place / "job.toml", small_job());
-    const std::vector<std::vector<std::string>> cases{
-        {}, {"walk"}, {"run"}, {"check"}, {"new"}, {"new", "triaxial"}, {"run", "job.toml", "--fast"}, {"run", "job.toml", "--threads", "0"},
-        {"run", "job.toml", "--threads", "many"}, {"run", "job.toml", "--seed", "-1"}, {"run", "job.toml", "--seed", "1.5"},
-        {"run", "job.toml", "--seed", "1", "--seed", "1"}, {"run", "job.toml", "--seed"}, {"run", "job.toml", "--out"},
-        {"run", "job.toml", "--out", ""}, {"run", "job.toml", "other.toml"}, {"check", "job.toml", "--out", "x"}};
+    const std::vector<std::vector<std::string>> cases{{},
+                                                      {"walk"},
+                                                      {"run"},
+                                                      {"check"},
+                                                      {"new"},
+                                                      {"new", "triaxial"},
+                                                      {"run", "job.toml", "--fast"},
+                                                      {"run", "job.toml", "--threads", "0"},
+                                                      {"run", "job.toml", "--threads", "many"},
+                                                      {"run", "job.toml", "--seed", "-1"},
+                                                      {"run", "job.toml", "--seed", "1.5"},
+                                                      {"run", "job.toml", "--seed", "1", "--seed", "1"},
+                                                      {"run", "job.toml", "--seed"},
+                                                      {"run", "job.toml", "--out"},
+                                                      {"run", "job.toml", "--out", ""},
+                                                      {"run", "job.toml", "other.toml"},
+                                                      {"check", "job.toml", "--out", "x"}};
     for (const auto& arguments : cases) {
         std::string shown;
         for (const std::string& argument : arguments) shown += " '" + argument + "'";
@@ -53,14 +65,16 @@ TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {
     EXPECT_EQ(read_text(place / "mine.toml"), "mine\n");
     EXPECT_EQ(run_program(place.path(), {"new", "biaxial", "--out", "no/such/folder.toml"}).code, 2);
     // coarser grains, so that the check takes no time
-    write_text(place / "coarse.toml", replaced(read_text(place / "laboratory.toml"), "minimum = \"2 mm\", maximum = \"4 mm\"", "minimum = \"8 mm\", maximum = \"12 mm\""));
+    write_text(place / "coarse.toml", replaced(read_text(place / "laboratory.toml"), "minimum = \"2 mm\", maximum = \"4 mm\"",
+                                               "minimum = \"8 mm\", maximum = \"12 mm\""));
     const Outcome check = run_program(place.path(), {"check", "coarse.toml"});
     EXPECT_EQ(check.code, 0) << check.err;
 }
 
 TEST(CommandLine, CheckPrintsAndWritesNothing) {
     const Workplace place;
-    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"brazilian\"\n", "[1, 2]"));
+    write_text(place / "job.toml",
+               small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"brazilian\"\n", "[1, 2]"));
     const Outcome outcome = run_program(place.path(), {"check", "job.toml"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     for (const char* part : {"grains", "contacts", "triangles", "memory", "stable time step", "expected", "4 runs of 2 tests"})
@@ -70,14 +84,17 @@ TEST(CommandLine, CheckPrintsAndWritesNothing) {
 
 TEST(CommandLine, ARunLeavesItsResults) {
     const Workplace place;
-    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = \"4 MPa\"\nseeds = [2]\n[[test]]\nkind = \"brazilian\"\nseeds = [2]\n", "[1, 2]"));
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = "
+                                             "\"4 MPa\"\nseeds = [2]\n[[test]]\nkind = \"brazilian\"\nseeds = [2]\n",
+                                             "[1, 2]"));
     const Outcome outcome = run_program(place.path(), {"run", "job.toml"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("Uniaxial compressive strength"), std::string::npos) << outcome.out;
     EXPECT_NE(outcome.out.find("report.html"), std::string::npos) << outcome.out;
     const fs::path results = place / "results/job-1";
-    for (const char* file : {"job.toml", "job-resolved.toml", "summary.json", "report.html", "packing-s1.txt", "packing-s2.txt", "packing-disc-s2.txt",
-                             "history-uniaxial-compression-s1.csv", "history-uniaxial-compression-s2.csv", "history-biaxial-s2-p4.csv", "history-brazilian-s2.csv"})
+    for (const char* file : {"job.toml", "job-resolved.toml", "summary.json", "report.html", "packing-s1.txt", "packing-s2.txt",
+                             "packing-disc-s2.txt", "history-uniaxial-compression-s1.csv", "history-uniaxial-compression-s2.csv",
+                             "history-biaxial-s2-p4.csv", "history-brazilian-s2.csv"})
         EXPECT_TRUE(fs::exists(results / file)) << file;
     EXPECT_FALSE(fs::exists(results / "history-brazilian-s1.csv"));
     EXPECT_EQ(read_text(results / "job.toml"), read_text(place / "job.toml"));
@@ -87,7 +104,8 @@ TEST(CommandLine, ARunLeavesItsResults) {
     expect_no_half_files(results);
 
     // the resolved job gives the same bits, on two threads; so does a seed asked for on the command line
-    const Outcome again = run_program(place.path(), {"run", (results / "job-resolved.toml").string(), "--out", "again", "--threads", "2", "--seed", "2"});
+    const Outcome again = run_program(
+        place.path(), {"run", (results / "job-resolved.toml").string(), "--out", "again", "--threads", "2", "--seed", "2"});
     ASSERT_EQ(again.code, 0) << again.err;
     const auto numbers = [](const std::string& csv) {  // without the header, which says when and on how many threads
         std::string kept;
@@ -103,10 +121,12 @@ TEST(CommandLine, ARunLeavesItsResults) {
     EXPECT_FALSE(fs::exists(place / "again/history-uniaxial-compression-s1.csv"));
 
     // and so does the packing that was kept
-    write_text(place / "loaded.toml", replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[2]"), "thickness", "packing = \"results/job-1/packing-s2.txt\"\nthickness"));
+    write_text(place / "loaded.toml", replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[2]"), "thickness",
+                                               "packing = \"results/job-1/packing-s2.txt\"\nthickness"));
     const Outcome loaded = run_program(place.path(), {"run", "loaded.toml", "--out", "loaded"});
     ASSERT_EQ(loaded.code, 0) << loaded.err;
-    EXPECT_EQ(numbers(read_text(results / "history-uniaxial-compression-s2.csv")), numbers(read_text(place / "loaded/history-uniaxial-compression-s2.csv")));
+    EXPECT_EQ(numbers(read_text(results / "history-uniaxial-compression-s2.csv")),
+              numbers(read_text(place / "loaded/history-uniaxial-compression-s2.csv")));
 }
 
 TEST(CommandLine, AnExistingDirectoryIsRefused) {

@@ -22,7 +22,8 @@ TEST(Interruption, CtrlCDuringTheLoading) {
         const Workplace place;
         write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2]", slow));
         Program program(place.path(), {"run", "job.toml", "--out", "results"});
-        ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; })) << program.err_so_far();
+        ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; }))
+            << program.err_so_far();
         program.send(signal_number);
         expect_interrupted(program.finish(), place / "results");
         EXPECT_TRUE(fs::exists(place / "results/history-uniaxial-compression-s1.csv"));
@@ -31,7 +32,8 @@ TEST(Interruption, CtrlCDuringTheLoading) {
 
 TEST(Interruption, FinishedTestsAreKept) {
     const Workplace place;
-    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]"));
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n",
+                                             "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]"));
     Program program(place.path(), {"run", "job.toml", "--out", "results"});
     ASSERT_TRUE(program.wait_until([&] { return fs::exists(place / "results/summary.json"); })) << program.err_so_far();
     program.send(SIGINT);
@@ -47,13 +49,16 @@ TEST(Interruption, AtAnyMomentIsClean) {
     for (int delay_ms : {20, 60, 100, 150, 250}) {
         SCOPED_TRACE(delay_ms);
         const Workplace place;
-        write_text(place / "job.toml", replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", slow), "kind = \"paper\"\nspeed = \"1e-12 m\"", "accuracy = \"0.05 %\""));
+        write_text(place / "job.toml", replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", slow),
+                                                "kind = \"paper\"\nspeed = \"1e-12 m\"", "accuracy = \"0.05 %\""));
         Program program(place.path(), {"run", "job.toml", "--out", "results"});
         std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
         program.send(SIGINT);
         const Outcome outcome = program.finish();
-        if (fs::exists(place / "results")) expect_interrupted(outcome, place / "results");
-        else EXPECT_EQ(outcome.code, 130) << outcome.err;
+        if (fs::exists(place / "results"))
+            expect_interrupted(outcome, place / "results");
+        else
+            EXPECT_EQ(outcome.code, 130) << outcome.err;
     }
 }
 
@@ -61,7 +66,8 @@ TEST(Interruption, IgnoredHangUpsStayIgnored) {
     const Workplace place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", slow));
     Program program(place.path(), {"run", "job.toml", "--out", "results"}, [] { signal(SIGHUP, SIG_IGN); });
-    ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; })) << program.err_so_far();
+    ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; }))
+        << program.err_so_far();
     program.send(SIGHUP);
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     program.send(SIGINT);

@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstring>
-
 #include <nlohmann/json.hpp>
 
 #include "program.hpp"
@@ -12,7 +11,8 @@
 namespace feldspar::testing_program {
 namespace {
 
-const std::string many_seeds = "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30]";
+const std::string many_seeds =
+    "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30]";
 
 TEST(LostOutput, ADirectoryThatCannotBeMadeIsFoundBeforeTheRun) {
     const Workplace place;
@@ -90,7 +90,8 @@ public:
         const int file = open((place_ / "filler").c_str(), O_WRONLY | O_CREAT, 0600);
         const std::vector<char> block(1 << 16, 'x');
         for (std::size_t size = block.size(); size > 0; size /= 2)
-            while (write(file, block.data(), size) > 0) {}
+            while (write(file, block.data(), size) > 0) {
+            }
         close(file);
     }
 

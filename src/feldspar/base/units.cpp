@@ -43,9 +43,9 @@ const DimensionEntry& entry_of(Dimension dimension) { return dimension_table[sta
 // Symbols as they are rightly written. A symbol that is one of these but for the case of its letters is refused: udunits
 // would take some of them (mPa, Mm) for something a million or a thousand million times smaller or larger.
 constexpr std::array<std::string_view, 44> proper_symbols{
-    "m",   "mm",  "cm",  "dm",  "um",   "nm",   "km",  "in",  "ft",  "Pa",  "hPa", "kPa", "MPa",  "GPa", "TPa",
-    "bar", "kbar", "psi", "ksi", "g",   "kg",   "Mg",  "mg",  "t",   "N",   "mN",  "kN",  "MN",   "J",   "mJ",
-    "kJ",  "MJ",  "s",   "ms",  "us",   "ns",   "min", "h",   "rad", "deg", "degree", "degrees", "radian", "radians"};
+    "m",   "mm",   "cm",  "dm",  "um", "nm", "km",  "in", "ft",  "Pa",  "hPa",    "kPa",     "MPa",    "GPa",    "TPa",
+    "bar", "kbar", "psi", "ksi", "g",  "kg", "Mg",  "mg", "t",   "N",   "mN",     "kN",      "MN",     "J",      "mJ",
+    "kJ",  "MJ",   "s",   "ms",  "us", "ns", "min", "h",  "rad", "deg", "degree", "degrees", "radian", "radians"};
 
 bool same_but_for_case(std::string_view a, std::string_view b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char p, char q) {
@@ -83,7 +83,9 @@ bool is_symbol_byte(char c) {  // letters, %, and every byte of a non-ASCII char
 std::optional<std::vector<Symbol>> symbols_of(std::string_view unit) {
     std::vector<Symbol> symbols;
     std::size_t i = 0;
-    const auto skip_blanks = [&] { while (i < unit.size() && unit[i] == ' ') ++i; };
+    const auto skip_blanks = [&] {
+        while (i < unit.size() && unit[i] == ' ') ++i;
+    };
     const auto is_digit = [&](std::size_t k) { return k < unit.size() && std::isdigit(static_cast<unsigned char>(unit[k])); };
     for (;;) {
         skip_blanks();
@@ -91,8 +93,10 @@ std::optional<std::vector<Symbol>> symbols_of(std::string_view unit) {
         while (i < unit.size() && is_symbol_byte(unit[i])) ++i;
         if (i == begin) return std::nullopt;
         symbols.push_back({begin, i - begin});
-        if (unit.substr(i, 2) == "**") i += 2;
-        else if (i < unit.size() && unit[i] == '^') ++i;
+        if (unit.substr(i, 2) == "**")
+            i += 2;
+        else if (i < unit.size() && unit[i] == '^')
+            ++i;
         if (i < unit.size() && (unit[i] == '-' || unit[i] == '+')) {
             if (!is_digit(i + 1)) return std::nullopt;
             ++i;
@@ -100,8 +104,10 @@ std::optional<std::vector<Symbol>> symbols_of(std::string_view unit) {
         while (is_digit(i)) ++i;
         skip_blanks();
         if (i == unit.size()) return symbols;
-        if (unit[i] == '.' || unit[i] == '*' || unit[i] == '/') ++i;
-        else if (unit[i - 1] != ' ') return std::nullopt;
+        if (unit[i] == '.' || unit[i] == '*' || unit[i] == '/')
+            ++i;
+        else if (unit[i - 1] != ' ')
+            return std::nullopt;
     }
 }
 
@@ -123,7 +129,8 @@ public:
         if (cv_converter* converter = ut_get_converter(from, to); converter != nullptr) {
             const double one = cv_convert_double(converter, 1.0);
             // udunits also offers the reciprocal (1/Pa to Pa) and scales with an offset: only a plain factor is ours
-            const bool plain = cv_convert_double(converter, 0.0) == 0.0 && std::abs(cv_convert_double(converter, 2.0) - 2.0 * one) <= 1e-12 * one;
+            const bool plain = cv_convert_double(converter, 0.0) == 0.0 &&
+                               std::abs(cv_convert_double(converter, 2.0) - 2.0 * one) <= 1e-12 * one;
             if (plain) result = one;
             cv_free(converter);
         }
@@ -137,7 +144,8 @@ private:
         ut_set_error_message_handler(ut_ignore);
         system_ = ut_read_xml(nullptr);
         if (system_ == nullptr)
-            throw InputError({}, "the unit table of udunits2 (udunits2.xml) cannot be read", "its place in the variable UDUNITS2_XML_PATH");
+            throw InputError({}, "the unit table of udunits2 (udunits2.xml) cannot be read",
+                             "its place in the variable UDUNITS2_XML_PATH");
     }
     ut_system* system_ = nullptr;
     std::mutex mutex_;
@@ -181,7 +189,8 @@ void guard_symbols(std::string_view text, std::string_view unit, const std::vect
 }
 
 bool is_angle_symbol(std::string_view word) {
-    constexpr std::array<std::string_view, 9> names{"deg", "degree", "degrees", "\xC2\xB0", "arc_degree", "rad", "radian", "radians", "mrad"};
+    constexpr std::array<std::string_view, 9> names{"deg", "degree", "degrees", "\xC2\xB0", "arc_degree",
+                                                    "rad", "radian", "radians", "mrad"};
     return std::find(names.begin(), names.end(), word) != names.end();
 }
 
@@ -235,7 +244,8 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     }
 
     std::string unit(unit_text);
-    std::replace_if(unit.begin(), unit.end(), [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }, ' ');
+    std::replace_if(
+        unit.begin(), unit.end(), [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; }, ' ');
     if (dimension == Dimension::speed_per_step && unit.ends_with("step")) {  // "m/step": a step is a count, not a unit
         const std::string_view before = trimmed(std::string_view(unit).substr(0, unit.size() - 4));
         if (before.size() > 1 && before.back() == '/') unit = std::string(trimmed(before.substr(0, before.size() - 1)));
@@ -251,11 +261,17 @@ double parse_quantity(std::string_view text, Dimension dimension) {
         if (!UnitSystem::instance().factor(unit, dimension)) refuse(dimension, quoted(whole) + ": unknown unit '" + unit + "'");
         refuse_dimension(whole, unit, dimension);
     }
-    for (const Symbol& symbol : *symbols) {  // udunits takes angles and percent for pure numbers: "5 MPa %" would pass as a stress
+    for (const Symbol& symbol :
+         *symbols) {  // udunits takes angles and percent for pure numbers: "5 MPa %" would pass as a stress
         const std::string_view word = std::string_view(unit).substr(symbol.begin, symbol.length);
-        if (is_angle_symbol(word)) refuse(dimension, quoted(whole) + (symbols->size() == 1 ? " is an angle, not " : " has an angle in its unit and is not ") + std::string(describe(dimension)));
+        if (is_angle_symbol(word))
+            refuse(dimension, quoted(whole) +
+                                  (symbols->size() == 1 ? " is an angle, not " : " has an angle in its unit and is not ") +
+                                  std::string(describe(dimension)));
         if (word == "%" || word == "percent")
-            refuse(dimension, quoted(whole) + (symbols->size() == 1 ? " is a fraction, not " : " has a percentage in its unit and is not ") + std::string(describe(dimension)));
+            refuse(dimension, quoted(whole) +
+                                  (symbols->size() == 1 ? " is a fraction, not " : " has a percentage in its unit and is not ") +
+                                  std::string(describe(dimension)));
     }
 
     const std::optional<double> factor = UnitSystem::instance().factor(unit, dimension);

@@ -28,7 +28,8 @@ std::string read_name(const TableReader& root, const std::filesystem::path& file
     const std::string given = root.text("name");
     for (char c : given)
         if (!fits_file_name(c) || given.front() == '.' || given.size() > 100)
-            root.fail("name", shown(*root.find("name")) + " cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+            root.fail("name", shown(*root.find("name")) + " cannot name a directory",
+                      "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
     return given;
 }
 
@@ -39,7 +40,10 @@ std::string read_text(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(file, error)) throw InputError({shown_name, 0, 0, {}}, "is a directory, not a job file");
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError({shown_name, 0, 0, {}}, std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"), {}, "'feldspar new uniaxial-compression' prints a job to start from");
+    if (!stream)
+        throw InputError({shown_name, 0, 0, {}},
+                         std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"), {},
+                         "'feldspar new uniaxial-compression' prints a job to start from");
     std::string text(largest_file + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
@@ -86,9 +90,11 @@ Job parse_job(const std::string& text, const std::string& name) {
 
     if (!job.specimen.packing_file.empty()) {
         bool several = job.seeds.size() > 1;
-        for (const TestSpec& test : job.tests) several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
+        for (const TestSpec& test : job.tests)
+            several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
         if (several)
-            root.table("specimen", {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
+            root.table("specimen",
+                       {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
                 .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
     }
     return job;

@@ -62,7 +62,8 @@ accuracy = "0.5 %"                  # wanted of a strength: 0.05 % to 10 %; loos
 # maximum_steps = 2000000           # stop there with what there is (no limit unless given)
 )";
 
-constexpr const char* common_test = R"(# stop_fraction = 0.8               # the test ends when the stress has fallen to this fraction of the peak
+constexpr const char* common_test =
+    R"(# stop_fraction = 0.8               # the test ends when the stress has fallen to this fraction of the peak
 # maximum_strain = 0.05             # ... or at this axial strain
 # snapshots = 8                     # fields kept between the first crack and the end
 # seeds = [1, 2, 3]                 # the packings of this test, if not all of [run]
@@ -121,13 +122,16 @@ kind = "brazilian"                  # a disc pressed between two plates: gives t
 std::vector<std::string_view> job_template_kinds() { return {kinds.begin(), kinds.end()}; }
 
 std::string job_template(std::string_view kind) {
-    if (kind == "uniaxial-compression") return "# A uniaxial compression test.\n" + std::string(common_head) + uniaxial_test() + common_end;
+    if (kind == "uniaxial-compression")
+        return "# A uniaxial compression test.\n" + std::string(common_head) + uniaxial_test() + common_end;
     if (kind == "direct-tension") return "# A direct tension test.\n" + std::string(common_head) + tension_test() + common_end;
     if (kind == "brazilian") return "# A Brazilian test.\n" + std::string(common_head) + brazilian_test() + common_end;
     if (kind == "biaxial")  // the envelope needs the uniaxial point
-        return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" + std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
+        return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" +
+               std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
     if (kind == "laboratory")
-        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() + biaxial_test() + common_end;
+        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" +
+               std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() + biaxial_test() + common_end;
     throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(kinds), did_you_mean(kind, kinds));
 }
 

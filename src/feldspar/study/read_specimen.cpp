@@ -43,17 +43,26 @@ void read_polygon(const TableReader& table, OutlineSpec& outline) {
     if (!table.has("edge_labels")) return;
     for (const toml::node& label : table.array("edge_labels")) outline.edge_labels.push_back(table.text_of(label, "edge_labels"));
     if (outline.edge_labels.size() != outline.vertices_m.size())
-        table.fail("edge_labels", std::to_string(outline.edge_labels.size()) + " labels for " + std::to_string(outline.vertices_m.size()) + " edges",
-                   "one label an edge; edge i runs from vertex i to vertex i + 1");
+        table.fail(
+            "edge_labels",
+            std::to_string(outline.edge_labels.size()) + " labels for " + std::to_string(outline.vertices_m.size()) + " edges",
+            "one label an edge; edge i runs from vertex i to vertex i + 1");
 }
 
 OutlineSpec read_outline(const TableReader& table) {
     OutlineSpec outline;
-    outline.shape = table.choice<Shape>("shape", {{"rectangle", Shape::rectangle}, {"disc", Shape::disc}, {"polygon", Shape::polygon}});
+    outline.shape =
+        table.choice<Shape>("shape", {{"rectangle", Shape::rectangle}, {"disc", Shape::disc}, {"polygon", Shape::polygon}});
     switch (outline.shape) {
-        case Shape::rectangle: read_rectangle(table, outline); break;
-        case Shape::disc: read_disc(table, outline); break;
-        case Shape::polygon: read_polygon(table, outline); break;
+        case Shape::rectangle:
+            read_rectangle(table, outline);
+            break;
+        case Shape::disc:
+            read_disc(table, outline);
+            break;
+        case Shape::polygon:
+            read_polygon(table, outline);
+            break;
     }
     return outline;
 }
@@ -63,7 +72,8 @@ void read_sieve(const TableReader& table, GrainSizeSpec& sizes) {
     const std::string allowed = "points such as [\"2 mm\", \"0 %\"], both columns increasing from 0 % to 100 %";
     for (const toml::node& row : table.array("curve")) {
         const toml::array* pair = row.as_array();
-        if (pair == nullptr || pair->size() != 2) table.fail_at(row, "curve", shown(row) + " is not a point of a sieve curve", allowed);
+        if (pair == nullptr || pair->size() != 2)
+            table.fail_at(row, "curve", shown(row) + " is not a point of a sieve curve", allowed);
         const SievePoint point{table.quantity_of(*pair->get(0), "curve", Dimension::length, positive),
                                table.fraction_of(*pair->get(1), "curve", {0.0, 1.0, true, true, "from 0 % to 100 %"})};
         if (!sizes.sieve.empty() && point.diameter_m <= sizes.sieve.back().diameter_m)
@@ -78,11 +88,12 @@ void read_sieve(const TableReader& table, GrainSizeSpec& sizes) {
 }
 
 GrainSizeSpec read_grain_sizes(const TableReader& grains) {
-    const TableReader table = grains.table("diameter", {"distribution", "minimum", "maximum", "median", "log_standard_deviation", "curve"});
+    const TableReader table =
+        grains.table("diameter", {"distribution", "minimum", "maximum", "median", "log_standard_deviation", "curve"});
     GrainSizeSpec sizes;
-    sizes.kind = table.choice<GrainSizeKind>("distribution", {{"uniform", GrainSizeKind::uniform},
-                                                              {"log-normal", GrainSizeKind::log_normal},
-                                                              {"sieve", GrainSizeKind::sieve}});
+    sizes.kind = table.choice<GrainSizeKind>(
+        "distribution",
+        {{"uniform", GrainSizeKind::uniform}, {"log-normal", GrainSizeKind::log_normal}, {"sieve", GrainSizeKind::sieve}});
     if (sizes.kind == GrainSizeKind::sieve) {
         read_sieve(table, sizes);
         return sizes;
@@ -100,7 +111,8 @@ GrainSizeSpec read_grain_sizes(const TableReader& grains) {
         table.fail("maximum", shown(*table.find("maximum")) + " is less than the minimum, " + shown(*table.find("minimum")));
     if (sizes.kind == GrainSizeKind::log_normal) {
         sizes.median_m = table.quantity("median", Dimension::length, positive);
-        sizes.log_standard_deviation = table.number("log_standard_deviation", {0.0, 3.0, false, true, "greater than 0, at most 3"});
+        sizes.log_standard_deviation =
+            table.number("log_standard_deviation", {0.0, 3.0, false, true, "greater than 0, at most 3"});
         if (!(sizes.minimum_m < sizes.median_m && sizes.median_m < sizes.maximum_m))
             table.fail("median", shown(*table.find("median")) + " does not lie between the minimum and the maximum");
     }
@@ -129,13 +141,16 @@ double typical_diameter_m(const GrainSizeSpec& sizes) {
 double smallest_extent_m(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return std::min(outline.width_m, outline.height_m);
     if (outline.shape == Shape::disc) return outline.diameter_m;
-    const auto [left, right] = std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; });
-    const auto [low, high] = std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.y < b.y; });
+    const auto [left, right] =
+        std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; });
+    const auto [low, high] =
+        std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.y < b.y; });
     return std::min(right->x - left->x, high->y - low->y);
 }
 
 SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder) {
-    const TableReader table = root.table("specimen", {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"});
+    const TableReader table = root.table(
+        "specimen", {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"});
     table.require({"shape", "grains"});
     SpecimenSpec spec;
     spec.outline = read_outline(table);
@@ -149,12 +164,15 @@ SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path&
     const double largest = largest_diameter_m(spec.grain_sizes);
     const double extent = smallest_extent_m(spec.outline);
     if (largest > 0.5 * extent)
-        grains.fail("diameter", "grains of up to " + format_exact(1000.0 * largest) + " mm do not fit: the specimen is " + format_exact(1000.0 * extent) + " mm across",
+        grains.fail("diameter",
+                    "grains of up to " + format_exact(1000.0 * largest) + " mm do not fit: the specimen is " +
+                        format_exact(1000.0 * extent) + " mm across",
                     "grains of at most half the specimen's smallest side");
     const double typical = typical_diameter_m(spec.grain_sizes);
     const double count = rough_area_m2(spec.outline) * (1.0 - spec.porosity) / (0.25 * std::numbers::pi * typical * typical);
     if (count > largest_grain_count)
-        grains.fail("diameter", "grains of this size make about " + std::to_string(static_cast<long long>(std::min(count, 1e18))) + " grains",
+        grains.fail("diameter",
+                    "grains of this size make about " + std::to_string(static_cast<long long>(std::min(count, 1e18))) + " grains",
                     "at most " + std::to_string(static_cast<long long>(largest_grain_count)) + " grains");
 
     if (const toml::node* merge = grains.find("merge_length"); merge != nullptr) {
@@ -162,8 +180,10 @@ SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path&
         if (word != nullptr && word->get() == "none") {
             spec.merge_length_m = 0.0;
         } else if (word == nullptr || word->get() != "auto") {
-            if (word != nullptr && !word->get().empty() && !std::any_of(word->get().begin(), word->get().end(), [](char c) { return c >= '0' && c <= '9'; }))
-                grains.fail("merge_length", shown(*merge) + " is not a merge length", "\"auto\" (mean diameter / 12), \"none\", or a length such as \"0.25 mm\"");
+            if (word != nullptr && !word->get().empty() &&
+                !std::any_of(word->get().begin(), word->get().end(), [](char c) { return c >= '0' && c <= '9'; }))
+                grains.fail("merge_length", shown(*merge) + " is not a merge length",
+                            "\"auto\" (mean diameter / 12), \"none\", or a length such as \"0.25 mm\"");
             spec.merge_length_m = grains.quantity("merge_length", Dimension::length, not_negative);
             if (*spec.merge_length_m >= 0.5 * typical)
                 grains.fail("merge_length", shown(*merge) + " is half a grain or more: no cell would keep its shape",
@@ -176,7 +196,8 @@ SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path&
         spec.packing_file = given.is_absolute() ? given : folder / given;
         std::error_code ignored;
         if (!std::filesystem::is_regular_file(spec.packing_file, ignored))
-            table.fail("packing", "there is no file " + shown(*table.find("packing")), "a packing saved by an earlier run, its path relative to the job file");
+            table.fail("packing", "there is no file " + shown(*table.find("packing")),
+                       "a packing saved by an earlier run, its path relative to the job file");
     }
     return spec;
 }

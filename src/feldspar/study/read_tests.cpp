@@ -30,14 +30,17 @@ double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen
     const double diameter = table.quantity("diameter", Dimension::length, positive, usual);
     const double largest = largest_diameter_m(specimen.grain_sizes);
     if (largest > 0.5 * diameter)
-        table.fail("diameter", "grains of up to " + format_exact(1000.0 * largest) + " mm do not fit a disc of " + format_exact(1000.0 * diameter) + " mm",
+        table.fail("diameter",
+                   "grains of up to " + format_exact(1000.0 * largest) + " mm do not fit a disc of " +
+                       format_exact(1000.0 * diameter) + " mm",
                    "a disc of at least twice the largest grain");
     return diameter;
 }
 
 std::vector<double> confining_stresses(const TableReader& table) {
     const toml::array* list = table.find("sigma3") == nullptr ? nullptr : table.find("sigma3")->as_array();
-    const Range range{0.0, std::numeric_limits<double>::infinity(), false, true, "greater than zero (for zero: kind = \"uniaxial-compression\")"};
+    const Range range{0.0, std::numeric_limits<double>::infinity(), false, true,
+                      "greater than zero (for zero: kind = \"uniaxial-compression\")"};
     if (list == nullptr) return {table.quantity("sigma3", Dimension::stress, range)};
     if (list->empty()) table.fail("sigma3", "the list is empty", "one stress or more");
     std::vector<double> values;
@@ -62,8 +65,10 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen) {
     if (test.kind != TestKind::biaxial) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
     check_outline(table, test.kind, specimen.outline);
 
-    test.stop_fraction = table.fraction("stop_fraction", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.stop_fraction);
-    test.maximum_strain = table.fraction("maximum_strain", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.maximum_strain);
+    test.stop_fraction =
+        table.fraction("stop_fraction", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.stop_fraction);
+    test.maximum_strain =
+        table.fraction("maximum_strain", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.maximum_strain);
     test.snapshots = static_cast<int>(table.integer("snapshots", 0, 1000, test.snapshots));
     if (table.has("seeds"))
         for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
@@ -126,9 +131,13 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
             for (std::uint64_t seed : seeds) {
                 // as many digits as the names of the result files show
                 const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
-                const std::string key = std::string(name(test.kind)) + (test.kind == TestKind::biaxial ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
+                const std::string key =
+                    std::string(name(test.kind)) +
+                    (test.kind == TestKind::biaxial ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
                 if (!taken.insert(key + " s" + std::to_string(seed)).second)
-                    table.fail(table.has("sigma3") ? "sigma3" : "kind", key + " with seed " + std::to_string(seed) + " is asked for twice", "each test once for each seed");
+                    table.fail(table.has("sigma3") ? "sigma3" : "kind",
+                               key + " with seed " + std::to_string(seed) + " is asked for twice",
+                               "each test once for each seed");
             }
             result.tests.push_back(std::move(test));
         }
@@ -146,7 +155,8 @@ RunSettings read_run(const TableReader& root) {
     const toml::node* threads = table.find("threads");
     const bool automatic = threads != nullptr && threads->is_string() && threads->as_string()->get() == "auto";
     if (threads != nullptr && !automatic) {
-        if (!threads->is_integer()) table.fail("threads", shown(*threads) + " is not a number of threads", "\"auto\", or a whole number from 1 to 256");
+        if (!threads->is_integer())
+            table.fail("threads", shown(*threads) + " is not a number of threads", "\"auto\", or a whole number from 1 to 256");
         run.threads = static_cast<int>(table.integer("threads", 1, 256));
     }
     return run;

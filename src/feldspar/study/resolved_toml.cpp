@@ -13,8 +13,10 @@ std::string quote(const std::string& text) {
     std::string result = "\"";
     for (char c : text) {
         if (c == '"' || c == '\\') result += '\\';
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) result += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-        else result += c;
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+            result += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+        else
+            result += c;
     }
     return result + "\"";
 }
@@ -54,7 +56,8 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
         case Shape::polygon: {
             out.word("shape", "polygon");
             std::vector<std::string> items;
-            for (Vec2 v : outline.vertices_m) items.push_back(fmt::format("[{}, {}]", si(v.x, Dimension::length), si(v.y, Dimension::length)));
+            for (Vec2 v : outline.vertices_m)
+                items.push_back(fmt::format("[{}, {}]", si(v.x, Dimension::length), si(v.y, Dimension::length)));
             out.raw("vertices", fmt::format("[{}]", fmt::join(items, ", ")));
             items.clear();
             for (const std::string& label : outline.edge_labels) items.push_back(quote(label));
@@ -67,16 +70,19 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
 std::string grain_sizes(const GrainSizeSpec& sizes) {
     switch (sizes.kind) {
         case GrainSizeKind::uniform:
-            return fmt::format("{{ distribution = \"uniform\", minimum = {}, maximum = {} }}", si(sizes.minimum_m, Dimension::length),
-                               si(sizes.maximum_m, Dimension::length));
-        case GrainSizeKind::log_normal:
-            return fmt::format("{{ distribution = \"log-normal\", median = {}, log_standard_deviation = {}, minimum = {}, maximum = {} }}",
-                               si(sizes.median_m, Dimension::length), format_exact(sizes.log_standard_deviation),
+            return fmt::format("{{ distribution = \"uniform\", minimum = {}, maximum = {} }}",
                                si(sizes.minimum_m, Dimension::length), si(sizes.maximum_m, Dimension::length));
-        case GrainSizeKind::sieve: break;
+        case GrainSizeKind::log_normal:
+            return fmt::format(
+                "{{ distribution = \"log-normal\", median = {}, log_standard_deviation = {}, minimum = {}, maximum = {} }}",
+                si(sizes.median_m, Dimension::length), format_exact(sizes.log_standard_deviation),
+                si(sizes.minimum_m, Dimension::length), si(sizes.maximum_m, Dimension::length));
+        case GrainSizeKind::sieve:
+            break;
     }
     std::vector<std::string> points;
-    for (const SievePoint& point : sizes.sieve) points.push_back(fmt::format("[{}, {}]", si(point.diameter_m, Dimension::length), format_exact(point.passing)));
+    for (const SievePoint& point : sizes.sieve)
+        points.push_back(fmt::format("[{}, {}]", si(point.diameter_m, Dimension::length), format_exact(point.passing)));
     return fmt::format("{{ distribution = \"sieve\", curve = [{}] }}", fmt::join(points, ", "));
 }
 
@@ -88,9 +94,12 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
     out.head("[specimen.grains]");
     out.raw("diameter", grain_sizes(specimen.grain_sizes));
     out.number("porosity", specimen.porosity);
-    if (!specimen.merge_length_m) out.word("merge_length", "auto");
-    else if (*specimen.merge_length_m == 0.0) out.word("merge_length", "none");
-    else out.quantity("merge_length", *specimen.merge_length_m, Dimension::length);
+    if (!specimen.merge_length_m)
+        out.word("merge_length", "auto");
+    else if (*specimen.merge_length_m == 0.0)
+        out.word("merge_length", "none");
+    else
+        out.quantity("merge_length", *specimen.merge_length_m, Dimension::length);
     out.raw("triangles_per_grain", std::to_string(specimen.triangles_per_grain));
 }
 
@@ -117,12 +126,16 @@ void write_numerics(Lines& out, const NumericsSpec& numerics) {
     out.head("[numerics]");
     out.word("kind", name(numerics.kind));
     if (numerics.kind == NumericsKind::adaptive) {
-        if (numerics.residual_target) out.number("residual_target", *numerics.residual_target);
-        else out.number("accuracy", numerics.accuracy);
+        if (numerics.residual_target)
+            out.number("residual_target", *numerics.residual_target);
+        else
+            out.number("accuracy", numerics.accuracy);
     } else {
         out.number("damping", numerics.damping);
     }
-    if (numerics.speed_m) out.quantity("speed", *numerics.speed_m, numerics.kind == NumericsKind::paper ? Dimension::speed_per_step : Dimension::speed);
+    if (numerics.speed_m)
+        out.quantity("speed", *numerics.speed_m,
+                     numerics.kind == NumericsKind::paper ? Dimension::speed_per_step : Dimension::speed);
     if (numerics.mass_factor) out.number("mass_factor", *numerics.mass_factor);
     if (numerics.time_step_s) out.quantity("time_step", *numerics.time_step_s, Dimension::time);
     if (numerics.maximum_steps) out.raw("maximum_steps", std::to_string(*numerics.maximum_steps));
@@ -148,8 +161,10 @@ void write_laboratory(Lines& out, const Job& job) {
     if (job.laboratory.empty()) return;
     out.head("[laboratory]");
     for (const auto& [key, value] : job.laboratory) {
-        if (key == "nu" || key == "hoek_brown_mi") out.number(key, value);
-        else out.quantity(key, value, key == "friction_angle" ? Dimension::angle : Dimension::stress);
+        if (key == "nu" || key == "hoek_brown_mi")
+            out.number(key, value);
+        else
+            out.quantity(key, value, key == "friction_angle" ? Dimension::angle : Dimension::stress);
     }
 }
 

@@ -46,7 +46,8 @@ std::string bounded(const Range& range, std::string_view kind) { return std::str
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
     if (word.size() > 64) return {};
     std::string_view best;
-    std::size_t best_distance = word.size() <= 3 ? 2 : 1 + std::max<std::size_t>(2, word.size() / 3);  // first distance that is too far
+    std::size_t best_distance =
+        word.size() <= 3 ? 2 : 1 + std::max<std::size_t>(2, word.size() / 3);  // first distance that is too far
     for (std::string_view candidate : candidates) {
         const std::size_t distance = edit_distance(word, candidate);
         if (distance < best_distance && distance < candidate.size()) {
@@ -99,7 +100,8 @@ TableReader::TableReader(const toml::table& table, std::string path, std::string
     }
     if (first == nullptr) return;
     const std::vector<std::string_view> words(known);
-    throw InputError(place_of(first->source(), file_, full(first->str())), "unknown key", listed(words), did_you_mean(first->str(), words));
+    throw InputError(place_of(first->source(), file_, full(first->str())), "unknown key", listed(words),
+                     did_you_mean(first->str(), words));
 }
 
 void TableReader::require(std::initializer_list<std::string_view> keys) const {
@@ -111,7 +113,8 @@ void TableReader::require(std::initializer_list<std::string_view> keys) const {
     throw InputError(std::move(place), (missing.size() == 1 ? "missing key: " : "missing keys: ") + listed(missing));
 }
 
-void TableReader::refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed) const {
+void TableReader::refuse(std::initializer_list<std::string_view> keys, const std::string& setting,
+                         const std::string& allowed) const {
     for (std::string_view key : keys)
         if (has(key)) fail(key, "does not apply to " + setting, allowed);
 }
@@ -134,7 +137,8 @@ const toml::array& TableReader::array(std::string_view key) const {
 }
 
 double TableReader::quantity_of(const toml::node& node, std::string_view key, Dimension dimension, const Range& range) const {
-    const std::string wanted = std::string(describe(dimension)) + " with its unit, such as \"" + std::string(example(dimension)) + "\"";
+    const std::string wanted =
+        std::string(describe(dimension)) + " with its unit, such as \"" + std::string(example(dimension)) + "\"";
     if (node.is_number()) fail_at(node, key, shown(node) + " has no unit", wanted);
     if (!node.is_string()) fail_at(node, key, shown(node) + " is not " + std::string(describe(dimension)), wanted);
     double value = 0.0;
@@ -147,7 +151,8 @@ double TableReader::quantity_of(const toml::node& node, std::string_view key, Di
     return value;
 }
 
-double TableReader::quantity(std::string_view key, Dimension dimension, const Range& range, std::optional<double> fallback) const {
+double TableReader::quantity(std::string_view key, Dimension dimension, const Range& range,
+                             std::optional<double> fallback) const {
     if (!has(key) && fallback) return *fallback;
     return quantity_of(must_have(key), key, dimension, range);
 }
@@ -219,7 +224,8 @@ std::string TableReader::text(std::string_view key, std::optional<std::string> f
     return text_of(must_have(key), key);
 }
 
-void TableReader::fail(std::string_view key, const std::string& problem, const std::string& allowed, const std::string& suggestion) const {
+void TableReader::fail(std::string_view key, const std::string& problem, const std::string& allowed,
+                       const std::string& suggestion) const {
     const toml::node* node = find(key);
     const toml::source_region& where = node != nullptr ? node->source() : table_->source();
     throw InputError(place_of(where, file_, full(key)), problem, allowed, suggestion);

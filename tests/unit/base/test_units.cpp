@@ -93,7 +93,7 @@ TEST(Units, RefusesWithAReason) {
         {"25 MPa/m", Dimension::stress, "is a stiffness per area, not a stress", ""},
         {"25 GPa", Dimension::stiffness_gradient, "is a stress, not a stiffness per area", ""},
         {"20 J", Dimension::fracture_energy, "is not a fracture energy", ""},
-        {"5 Pa-1", Dimension::stress, "is not a stress", ""},        // udunits would take the reciprocal
+        {"5 Pa-1", Dimension::stress, "is not a stress", ""},  // udunits would take the reciprocal
         {"5 s/m", Dimension::speed, "is not a speed", ""},
         {"5 Hz", Dimension::time, "is not a time", ""},
         {"4 mPa", Dimension::stress, "thousandth of a pascal", "did you mean 'MPa'?"},
@@ -145,8 +145,10 @@ TEST(Units, RefusesWithAReason) {
         } catch (const InputError& error) {
             EXPECT_NE(error.problem().find(bad.problem), std::string::npos) << error.problem();
             EXPECT_NE(error.allowed().find(describe(bad.dimension)), std::string::npos) << error.allowed();
-            if (*bad.suggestion != '\0') EXPECT_EQ(error.suggestion(), bad.suggestion);
-            else EXPECT_EQ(error.suggestion(), "");
+            if (*bad.suggestion != '\0')
+                EXPECT_EQ(error.suggestion(), bad.suggestion);
+            else
+                EXPECT_EQ(error.suggestion(), "");
         }
     }
 }
@@ -154,8 +156,9 @@ TEST(Units, RefusesWithAReason) {
 TEST(Units, WritesWhatItReadsBackBitForBit) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> mantissa(0.1, 1.0), exponent(-12.0, 14.0);
-    for (Dimension dimension : {Dimension::length, Dimension::stress, Dimension::density, Dimension::stiffness_gradient, Dimension::fracture_energy,
-                                Dimension::speed, Dimension::speed_per_step, Dimension::time, Dimension::angle, Dimension::fraction}) {
+    for (Dimension dimension :
+         {Dimension::length, Dimension::stress, Dimension::density, Dimension::stiffness_gradient, Dimension::fracture_energy,
+          Dimension::speed, Dimension::speed_per_step, Dimension::time, Dimension::angle, Dimension::fraction}) {
         for (int i = 0; i < 200; ++i) {
             const double value = mantissa(random) * std::pow(10.0, exponent(random));
             EXPECT_EQ(parse_quantity(format_si(value, dimension), dimension), value) << format_si(value, dimension);
@@ -176,7 +179,8 @@ TEST(Units, MayBeUsedFromSeveralThreads) {
     std::vector<int> wrong(4, 0);
     for (int t = 0; t < 4; ++t)
         threads.emplace_back([t, &wrong] {
-            for (int i = 0; i < 200; ++i) wrong[static_cast<std::size_t>(t)] += parse_quantity("25.8 GPa", Dimension::stress) != 25.8e9;
+            for (int i = 0; i < 200; ++i)
+                wrong[static_cast<std::size_t>(t)] += parse_quantity("25.8 GPa", Dimension::stress) != 25.8e9;
         });
     for (std::thread& thread : threads) thread.join();
     for (int count : wrong) EXPECT_EQ(count, 0);

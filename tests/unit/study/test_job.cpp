@@ -51,7 +51,8 @@ TEST(Job, DefaultsAreThoseOfTheSpecs) {
         material.grain = { E = "25.8 GPa", nu = 0.23 }
         material.contact = { Kn = "18e4 GPa/m", kratio = 4, sigma_nt = "8.5 MPa", tau = "29.75 MPa", mu = 0, Gfn = "20 J/m2", Gfs = "800 J/m2" }
         test = [ { kind = "brazilian" } ]
-    )", "minimal");
+    )",
+                              "minimal");
     EXPECT_EQ(job.name, "minimal");
     EXPECT_EQ(job.contact.eta, 0.25);
     EXPECT_EQ(job.specimen.porosity, SpecimenSpec{}.porosity);
@@ -68,13 +69,15 @@ TEST(Job, BrazilianDiscHasTheSpecimensWidthUnlessTold) {
     const Job usual = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\""), "job");
     EXPECT_EQ(usual.brazilian_specimen.outline.diameter_m, 0.08);
     EXPECT_EQ(usual.brazilian_specimen.grain_sizes.maximum_m, 0.004);
-    const Job told = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"50 mm\"\nplate_mu = 0.2"), "job");
+    const Job told =
+        parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"50 mm\"\nplate_mu = 0.2"), "job");
     EXPECT_EQ(told.brazilian_specimen.outline.diameter_m, 0.05);
     EXPECT_EQ(told.tests[0].plate_mu, 0.2);
 }
 
 TEST(Job, AListOfSigma3IsAListOfTests) {
-    const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"biaxial\"\nsigma3 = [\"4 MPa\", \"10 MPa\"]\nseeds = [2, 3]"), "job");
+    const Job job = parse_job(
+        edited("kind = \"uniaxial-compression\"", "kind = \"biaxial\"\nsigma3 = [\"4 MPa\", \"10 MPa\"]\nseeds = [2, 3]"), "job");
     ASSERT_EQ(job.tests.size(), 2u);
     EXPECT_EQ(job.tests[0].sigma3_Pa, 4e6);
     EXPECT_EQ(job.tests[1].sigma3_Pa, 10e6);
@@ -83,15 +86,22 @@ TEST(Job, AListOfSigma3IsAListOfTests) {
 
 TEST(Job, ReadsEverySizeDistributionAndOutline) {
     const std::string uniform = R"({ distribution = "uniform", minimum = "2 mm", maximum = "4 mm" })";
-    const Job normal = parse_job(edited(uniform, R"({ distribution = "log-normal", median = "3 mm", log_standard_deviation = 0.2, minimum = "2 mm", maximum = "5 mm" })"), "job");
+    const Job normal = parse_job(
+        edited(
+            uniform,
+            R"({ distribution = "log-normal", median = "3 mm", log_standard_deviation = 0.2, minimum = "2 mm", maximum = "5 mm" })"),
+        "job");
     EXPECT_EQ(normal.specimen.grain_sizes.kind, GrainSizeKind::log_normal);
     EXPECT_EQ(normal.specimen.grain_sizes.median_m, 0.003);
-    const Job sieve = parse_job(edited(uniform, R"({ distribution = "sieve", curve = [["2 mm", 0], ["3 mm", "40 %"], ["4 mm", "100 %"]] })"), "job");
+    const Job sieve = parse_job(
+        edited(uniform, R"({ distribution = "sieve", curve = [["2 mm", 0], ["3 mm", "40 %"], ["4 mm", "100 %"]] })"), "job");
     ASSERT_EQ(sieve.specimen.grain_sizes.sieve.size(), 3u);
     EXPECT_EQ(sieve.specimen.grain_sizes.sieve[1].passing, 0.4);
     const Job polygon = parse_job(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
-                                         "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\n"
-                                         "edge_labels = [\"bottom\", \"right\", \"top\", \"left\"]"), "job");
+                                         "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 "
+                                         "mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\n"
+                                         "edge_labels = [\"bottom\", \"right\", \"top\", \"left\"]"),
+                                  "job");
     ASSERT_EQ(polygon.specimen.outline.vertices_m.size(), 4u);
     EXPECT_EQ(polygon.specimen.outline.vertices_m[2], (Vec2{0.08, 0.16}));
     EXPECT_EQ(polygon.specimen.outline.edge_labels[2], "top");
@@ -103,22 +113,28 @@ TEST(Job, MergeLengthIsAutoNoneOrALength) {
 }
 
 TEST(Job, EachNumericsHasItsOwnKeys) {
-    const Job paper = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"\nspeed = \"6.25e-9 m\"\ndamping = 0.5\nmass_factor = 1.7"), "job");
+    const Job paper = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"",
+                                       "kind = \"paper\"\nspeed = \"6.25e-9 m\"\ndamping = 0.5\nmass_factor = 1.7"),
+                                "job");
     EXPECT_EQ(paper.numerics.speed_m, 6.25e-9);
     EXPECT_EQ(paper.numerics.damping, 0.5);
     EXPECT_EQ(paper.numerics.mass_factor, 1.7);
-    const Job dynamic = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"dynamic\"\nspeed = \"50 mm/s\"\ntime_step = \"10 ns\"\nmaximum_steps = 1000"), "job");
+    const Job dynamic = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"",
+                                         "kind = \"dynamic\"\nspeed = \"50 mm/s\"\ntime_step = \"10 ns\"\nmaximum_steps = 1000"),
+                                  "job");
     EXPECT_EQ(dynamic.numerics.speed_m, 0.05);
     EXPECT_EQ(dynamic.numerics.time_step_s, 1e-8);
     EXPECT_EQ(dynamic.numerics.maximum_steps, 1000);
     const Job expert = parse_job(edited("accuracy = \"0.5 %\"", "residual_target = 0.003\nconfirm = true"), "job");
     EXPECT_EQ(expert.numerics.residual_target, 0.003);
     EXPECT_TRUE(expert.numerics.confirm);
-    for (const char* accuracy : {"\"0.05 %\"", "\"10 %\"", "0.0005", "0.1"}) EXPECT_NO_THROW(parse_job(edited("\"0.5 %\"", accuracy), "job")) << accuracy;
+    for (const char* accuracy : {"\"0.05 %\"", "\"10 %\"", "0.0005", "0.1"})
+        EXPECT_NO_THROW(parse_job(edited("\"0.5 %\"", accuracy), "job")) << accuracy;
 }
 
 TEST(Job, LaboratoryValuesHaveOneNameInside) {
-    const Job job = parse_job(edited("UCS = \"122.1 MPa\"", "E = \"25.8 GPa\"\nc = \"21 MPa\"\nphi = \"45 deg\"\nmi = 20"), "job");
+    const Job job =
+        parse_job(edited("UCS = \"122.1 MPa\"", "E = \"25.8 GPa\"\nc = \"21 MPa\"\nphi = \"45 deg\"\nmi = 20"), "job");
     EXPECT_EQ(job.laboratory.at("cohesion"), 21e6);
     EXPECT_DOUBLE_EQ(job.laboratory.at("friction_angle"), std::numbers::pi / 4);
     EXPECT_EQ(job.laboratory.at("hoek_brown_mi"), 20.0);
@@ -215,24 +231,33 @@ void expect_round_trip(const std::string& text) {
 TEST(ResolvedJob, ReadsBackToTheSameBits) {
     expect_round_trip(sample_job);
     expect_round_trip(edited("width = \"80 mm\"", "width = \"3.1 in\""));
-    expect_round_trip(edited("law = \"bilinear\"", "law = \"linear\"\nshear_measure = \"beyond-friction\"\ntension_unloading = \"secant\""));
+    expect_round_trip(
+        edited("law = \"bilinear\"", "law = \"linear\"\nshear_measure = \"beyond-friction\"\ntension_unloading = \"secant\""));
     expect_round_trip(edited("eta = 0.28", "kratio = 3.7"));
     expect_round_trip(edited("merge_length = \"auto\"", "merge_length = \"none\"\ntriangles_per_grain = 40"));
     expect_round_trip(edited("merge_length = \"auto\"", "merge_length = \"0.123 mm\""));
-    expect_round_trip(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"\nspeed = \"6.25e-9 m\"\nmaximum_steps = 123456"));
-    expect_round_trip(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"dynamic\"\nspeed = \"0.07 m/s\"\ntime_step = \"9.9 ns\""));
+    expect_round_trip(
+        edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"\nspeed = \"6.25e-9 m\"\nmaximum_steps = 123456"));
+    expect_round_trip(
+        edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"dynamic\"\nspeed = \"0.07 m/s\"\ntime_step = \"9.9 ns\""));
     expect_round_trip(edited("accuracy = \"0.5 %\"", "residual_target = 3.3e-3"));
-    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = \"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\""));
+    expect_round_trip(
+        edited("kind = \"uniaxial-compression\"",
+               "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = "
+               "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\""));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));
     expect_round_trip(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
-                             "shape = \"polygon\"\nvertices = [[\"-1 mm\", \"0.3 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"161.7 mm\"], [\"0 mm\", \"160 mm\"]]\n"
+                             "shape = \"polygon\"\nvertices = [[\"-1 mm\", \"0.3 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", "
+                             "\"161.7 mm\"], [\"0 mm\", \"160 mm\"]]\n"
                              "edge_labels = [\"bottom\", \"say \\\"right\\\"\", \"top\", \"le\\\\ft\"]"));
+    expect_round_trip(
+        edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
+               "{ distribution = \"sieve\", curve = [[\"2.1 mm\", 0], [\"3.3 mm\", \"41.7 %\"], [\"4 mm\", 1.0]] }"));
     expect_round_trip(edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
-                             "{ distribution = \"sieve\", curve = [[\"2.1 mm\", 0], [\"3.3 mm\", \"41.7 %\"], [\"4 mm\", 1.0]] }"));
-    expect_round_trip(edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
-                             "{ distribution = \"log-normal\", median = \"3.14 mm\", log_standard_deviation = 0.217, minimum = \"2 mm\", maximum = \"5 mm\" }"));
+                             "{ distribution = \"log-normal\", median = \"3.14 mm\", log_standard_deviation = 0.217, minimum = "
+                             "\"2 mm\", maximum = \"5 mm\" }"));
 }
 
 TEST(JobTemplate, EveryKindIsAJob) {
@@ -246,7 +271,8 @@ TEST(JobTemplate, EveryKindIsAJob) {
 
 TEST(Examples, AreJobs) {
     int found = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples")) {
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples")) {
         if (entry.path().extension() != ".toml") continue;
         SCOPED_TRACE(entry.path().filename().string());
         ++found;
@@ -283,8 +309,11 @@ TEST(JobTemplate, TheCommentedDefaultsAreTheDefaults) {
         const std::size_t end = text.find('\n', at);
         std::string line = text.substr(at, end - at);
         at = end + 1;
-        const bool alternative = line.find("distribution") != std::string::npos || line.starts_with("# DTS") || line.starts_with("# hoek") || line.starts_with("# maximum_steps") || line.starts_with("# seeds");
-        if (line.starts_with("# ") && line.find(" = ") != std::string::npos && line.find(" = ") == line.find(' ', 2) && !alternative) line = line.substr(2);
+        const bool alternative = line.find("distribution") != std::string::npos || line.starts_with("# DTS") ||
+                                 line.starts_with("# hoek") || line.starts_with("# maximum_steps") || line.starts_with("# seeds");
+        if (line.starts_with("# ") && line.find(" = ") != std::string::npos && line.find(" = ") == line.find(' ', 2) &&
+            !alternative)
+            line = line.substr(2);
         on += line + "\n";
     }
     EXPECT_NE(on, text);
@@ -295,7 +324,8 @@ TEST(Job, RelativePackingsCountFromTheJobsFolder) {
     const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "feldspar-packing-test";
     std::filesystem::create_directories(folder);
     std::ofstream(folder / "p.txt") << "a packing\n";
-    std::ofstream(folder / "job.toml") << edited("thickness = \"80 mm\"", "packing = \"p.txt\"", edited("[1, 2, 3, 4, 5]", "[1]"));
+    std::ofstream(folder / "job.toml") << edited("thickness = \"80 mm\"", "packing = \"p.txt\"",
+                                                 edited("[1, 2, 3, 4, 5]", "[1]"));
     EXPECT_EQ(read_job(folder / "job.toml").specimen.packing_file, folder / "p.txt");
     std::ofstream(folder / "several.toml") << edited("thickness = \"80 mm\"", "packing = \"p.txt\"");
     EXPECT_THROW(read_job(folder / "several.toml"), InputError);

@@ -35,10 +35,18 @@ TEST(JobRubbish, RandomEdits) {
         for (std::uint64_t edits = 1 + random() % 4; edits > 0; --edits) {
             const std::size_t at = random() % text.size();
             switch (random() % 4) {
-                case 0: text[at] = bytes[random() % bytes.size()]; break;
-                case 1: text.insert(at, 1, bytes[random() % bytes.size()]); break;
-                case 2: text.erase(at, 1 + random() % 12); break;
-                default: text.insert(at, text.substr(random() % text.size(), random() % 40)); break;
+                case 0:
+                    text[at] = bytes[random() % bytes.size()];
+                    break;
+                case 1:
+                    text.insert(at, 1, bytes[random() % bytes.size()]);
+                    break;
+                case 2:
+                    text.erase(at, 1 + random() % 12);
+                    break;
+                default:
+                    text.insert(at, text.substr(random() % text.size(), random() % 40));
+                    break;
             }
         }
         expect_read_or_refused(text);
@@ -46,7 +54,10 @@ TEST(JobRubbish, RandomEdits) {
 }
 
 TEST(JobRubbish, LonelyTokens) {
-    for (const char* text : {"[", "[[", "[a", "[[a", "[a.", "a", "a=", "a=[", "a={", "a=\"", "a='''", "=", ".", "\"", "]", "a.b.c", "a=1979-05-27", "a=0x", "a=1e", "a=+", "a=in", "a=tru", "\xEF\xBB", "\xEF\xBB\xBF[", "#", "\r", "\\"})
+    for (const char* text :
+         {"[", "[[", "[a", "[[a",   "[a.",          "a",    "a=",   "a=[", "a={",  "a=\"",  "a='''",    "=",
+          ".", "\"", "]",  "a.b.c", "a=1979-05-27", "a=0x", "a=1e", "a=+", "a=in", "a=tru", "\xEF\xBB", "\xEF\xBB\xBF[",
+          "#", "\r", "\\"})
         expect_read_or_refused(text);
     expect_read_or_refused("a=" + std::string(100000, '['));
     std::string dotted = "a";
