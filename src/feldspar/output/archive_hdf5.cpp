@@ -129,6 +129,9 @@ std::vector<double> flat(const std::vector<Vec2>& points) {
     return numbers;
 }
 
+/// Seven digits are enough for a stress, and fields are most of a file. Displacements keep all: openings are differences.
+std::vector<float> floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+
 /// One number of each crack.
 template <class Number, class Pick>
 std::vector<Number> each(const std::vector<Crack>& cracks, Pick pick) {
@@ -232,9 +235,9 @@ void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
         set_number(group, "axial_stress_MPa", snapshot.axial_stress_Pa * MPa);
         set_number(group, "cracks", snapshot.cracks);
         put(group, "displacement", flat(snapshot.displacement_m), 2, "m", "of each node");
-        put(group, "stress_xx", snapshot.stress_xx_Pa, 1, "Pa", "Cauchy, each triangle, compression positive");
-        put(group, "stress_yy", snapshot.stress_yy_Pa, 1, "Pa", "Cauchy, each triangle, compression positive");
-        put(group, "stress_xy", snapshot.stress_xy_Pa, 1, "Pa", "Cauchy, each triangle, compression positive");
+        put(group, "stress_xx", floats(snapshot.stress_xx_Pa), 1, "Pa", "Cauchy, each triangle, compression positive");
+        put(group, "stress_yy", floats(snapshot.stress_yy_Pa), 1, "Pa", "Cauchy, each triangle, compression positive");
+        put(group, "stress_xy", floats(snapshot.stress_xy_Pa), 1, "Pa", "Cauchy, each triangle, compression positive");
         put(group, "damage", snapshot.damage, 1, "1", "largest damage on the grain edge of each triangle, 0 intact, 1 broken");
         put(group, "crack_opening", snapshot.crack_opening_m, 1, "m", "of the first cracks of /cracks, in their order; positive is open");
     }

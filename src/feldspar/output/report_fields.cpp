@@ -49,7 +49,7 @@ public:
     std::string packed() const {
         uLongf size = compressBound(bytes_.size());
         std::vector<std::uint8_t> packed(size);
-        if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 9) != Z_OK) throw OutputError("zlib could not compress the report's fields");
+        if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK) throw OutputError("zlib could not compress the report's fields");
         return base64({packed.data(), size});
     }
 

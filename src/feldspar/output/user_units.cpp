@@ -1,12 +1,19 @@
 // The table of the quantities that users read.
 #include "feldspar/output/user_units.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <cstring>
 #include <numbers>
+
+#include <fmt/format.h>
 
 namespace feldspar {
 
 namespace {
+
+constexpr const char* strength_at = "sigma1_at_sigma3_";   ///< then the pressure, for example "10MPa_Pa"
 
 struct Words {
     const char* property;
@@ -14,30 +21,31 @@ struct Words {
     const char* symbol;
 };
 
-/// In the order of a table of results.
-constexpr std::array<Words, 21> known = {{
+/// In the order of a table of results: what a laboratory reports first, then how it was reached.
+constexpr auto known = std::to_array<Words>({
     {"E_Pa", "Young's modulus, secant at 50 % of the peak", "E"},
-    {"E_tangent_Pa", "Young's modulus, tangent at 50 % of the peak", "Et50"},
-    {"E_average_Pa", "Young's modulus, average 30 to 70 % of the peak", "Eavg"},
-    {"E_gauge_Pa", "Young's modulus, tangent, from the gauge", "E gauge"},
     {"nu", "Poisson's ratio", "\u03bd"},
     {"UCS_Pa", "Uniaxial compressive strength", "UCS"},
     {"DTS_Pa", "Direct tensile strength", "DTS"},
     {"BTS_Pa", "Brazilian tensile strength", "BTS"},
     {"cohesion_Pa", "Cohesion, Mohr-Coulomb", "c"},
     {"friction_angle_deg", "Friction angle, Mohr-Coulomb", "\u03c6"},
-    {"UCS_fitted_Pa", "UCS from the Mohr-Coulomb line", "UCS fit"},
     {"hoek_brown_mi", "Hoek-Brown constant, intact rock", "mi"},
-    {"hoek_brown_UCS_Pa", "UCS from the Hoek-Brown fit", "\u03c3ci fit"},
     {"UCS_over_BTS", "Ratio UCS / BTS", "UCS/BTS"},
     {"UCS_over_DTS", "Ratio UCS / DTS", "UCS/DTS"},
     {"BTS_over_DTS", "Ratio BTS / DTS", "BTS/DTS"},
+    {strength_at, "", ""},   // stands for the strengths at each lateral pressure
+    {"UCS_fitted_Pa", "UCS from the Mohr-Coulomb line", "UCS fit"},
+    {"hoek_brown_UCS_Pa", "UCS from the Hoek-Brown fit", "\u03c3ci fit"},
+    {"first_crack_Pa", "Stress at the first crack", "\u03c31st"},
     {"sigma_ci_crack_count_Pa", "Crack initiation stress, crack count", "\u03c3ci"},
     {"sigma_ci_crack_volume_Pa", "Crack initiation stress, crack volumetric strain", "\u03c3ci"},
     {"sigma_ci_lateral_strain_Pa", "Crack initiation stress, lateral strain response", "\u03c3ci"},
     {"sigma_cd_Pa", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd"},
-    {"first_crack_Pa", "Stress at the first crack", "\u03c31st"},
-}};
+    {"E_tangent_Pa", "Young's modulus, tangent at 50 % of the peak", "Et50"},
+    {"E_average_Pa", "Young's modulus, average 30 to 70 % of the peak", "Eavg"},
+    {"E_gauge_Pa", "Young's modulus, tangent, from the gauge", "E gauge"},
+});
 
 bool ends_with_pascal(const std::string& property) { return property.ends_with("_Pa"); }
 bool is_modulus(const std::string& property) { return property.starts_with("E_"); }
@@ -59,7 +67,14 @@ UserQuantity user_quantity(const std::string& property) {
         if (property != known[i].property) continue;
         quantity.label = known[i].label;
         quantity.symbol = known[i].symbol;
-        quantity.rank = static_cast<int>(i);
+        quantity.rank = static_cast<double>(i);
+    }
+    if (property.starts_with(strength_at)) {
+        const double pressure_MPa = std::strtod(property.c_str() + std::strlen(strength_at), nullptr);
+        quantity.label = fmt::format("Strength at \u03c3\u2083 = {:.6g} MPa", pressure_MPa);
+        quantity.symbol = "\u03c3\u2081";
+        const auto place = std::ranges::find(known, strength_at, &Words::property);
+        quantity.rank = static_cast<double>(place - known.begin()) + pressure_MPa / (1.0 + pressure_MPa);   // growing pressure, below the next rank
     }
     return quantity;
 }

@@ -12,7 +12,7 @@ struct UserQuantity {
     std::string unit;      ///< "GPa", "MPa", "deg", "" (dimensionless)
     std::string label;     ///< "Uniaxial compressive strength"; the name itself for a quantity not known here
     std::string symbol;    ///< "UCS", "E", "phi"
-    int rank = 1000;       ///< order in tables
+    double rank = 1000.0;  ///< order in tables
 };
 
 /// Translates a key of PropertySummary: "E_Pa" to E_GPa, other "..._Pa" to MPa, the rest stays.

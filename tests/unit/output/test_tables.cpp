@@ -165,6 +165,9 @@ TEST(UserUnits, EveryNameCarriesItsUnit) {
     EXPECT_EQ(user_quantity("hoek_brown_UCS_Pa").name, "hoek_brown_UCS_MPa");
     EXPECT_EQ(user_quantity("nu").name, "nu");
     EXPECT_EQ(user_quantity("unheard_of").label, "unheard_of");
+    EXPECT_EQ(user_quantity("sigma1_at_sigma3_10MPa_Pa").label, "Strength at \u03c3\u2083 = 10 MPa");
+    EXPECT_LT(user_quantity("sigma1_at_sigma3_4MPa_Pa").rank, user_quantity("sigma1_at_sigma3_10MPa_Pa").rank);
+    EXPECT_LT(user_quantity("sigma1_at_sigma3_10MPa_Pa").rank, user_quantity("sigma_cd_Pa").rank);
     EXPECT_EQ(property_of_laboratory("friction_angle"), "friction_angle_deg");
     EXPECT_EQ(property_of_laboratory("E"), "E_Pa");
 }

@@ -80,7 +80,7 @@ function drawMark(ctx, mark, x, y, size, color) {
  */
 class XYChart {
   constructor(host, options) {
-    this.host = h("div", {class: "chart"});
+    this.host = h("div", {class: "chart", style: "min-height:" + (options.height || 300) + "px"});
     this.tip = h("div", {class: "tip"});
     this.legend = h("div", {class: "legend"});
     host.append(this.legend, this.host);
@@ -88,11 +88,11 @@ class XYChart {
     this.set(options.series);
     charts.add(this);
     new ResizeObserver(() => {
-      const width = this.width();
-      if (this.plot && width !== this.plot.width) this.plot.setSize({width, height: this.options.height || 300});
+      if (this.plot && (this.width() !== this.plot.width || this.height() !== this.plot.height)) this.plot.setSize({width: this.width(), height: this.height()});
     }).observe(this.host);
   }
 
+  height() { return Math.max(this.options.height || 300, Math.floor(this.host.clientHeight)); }
   width() { return Math.max(220, Math.floor(this.host.clientWidth)); }
   color(series) { return /^[a-z]+$/.test(series.color) ? theme.get(series.color) : series.color; }
 
@@ -125,7 +125,7 @@ class XYChart {
       data.push([null, null]);
     }
     this.plot = new uPlot({
-      width: this.width(), height: o.height || 300, scales, axes, series: dummies, legend: {show: false}, padding: [8, right.length ? 0 : 12, 0, 0],
+      width: this.width(), height: this.height(), scales, axes, series: dummies, legend: {show: false}, padding: [8, right.length ? 0 : 12, 0, 0],
       cursor: {drag: {x: false, y: false, setScale: false}, points: {show: false}, x: false, y: false},
       hooks: {draw: [(u) => this.draw(u)], setCursor: [(u) => this.hover(u)]},
     }, data, this.host);

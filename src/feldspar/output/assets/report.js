@@ -310,8 +310,9 @@ function writePattern() {
     const series = [{label: "stress", x: test.history.strain, y: test.history.stress, color: "context", width: 1.8},
       {label: "moments kept", x: all.map((k) => k.strain), y: all.map((k) => k.stress), color: "soft", mark: "dot", size: 3},
       {label: "shown", x: [s.strain], y: [s.stress], color: "shear", mark: "ring", size: 5}];
-    if (curve) curve.set(series);
-    else curve = new XYChart(curveCard, {x: test.kind === "brazilian" ? "Approach / diameter (10\u207b\u00b3)" : "Axial strain (10\u207b\u00b3)", y: "Stress (MPa)", height: 190, series});
+    const x = test.kind === "brazilian" ? "Approach / diameter (10\u207b\u00b3)" : "Axial strain (10\u207b\u00b3)";
+    if (curve) { curve.options.x = x; curve.set(series); }
+    else curve = new XYChart(curveCard, {x, y: "Stress (MPa)", height: 190, series});
   }
   async function open(i) {
     current = i;
@@ -352,7 +353,7 @@ function writeEvidence() {
   page.append(table("evidence",
     [th("Test"), th("Seed", true), th("Strength", true), th("Grade"), th(["R*", h("br"), "mean"], true), th(["R* at", h("br"), "peak"], true), th(["Platens", h("br"), "differ by"], true, "largest difference of the two reactions over their mean"),
       th(["Kinetic /", h("br"), "strain energy"], true), th(["Damping /", h("br"), "fracture"], true), th(["Energy", h("br"), "residual"], true), th(["Platen speed", h("br"), "at peak"], true), confirmed ? th(["Peak at a", h("br"), "third of the rate"], true) : null],
-    data.tests.map((t, i) => h("tr", {}, td(i && titleOf(t) === titleOf(data.tests[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
+    [...groupTests().values()].flat().map((t, i, all) => h("tr", {}, td(i && titleOf(t) === titleOf(all[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
       td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(percent(t.imbalance_max), true), td(show(t.kinetic_over_strain, 2), true), td(percent(t.damping_over_fracture), true),
       td(percent(t.energy_residual), true), td(speedAtPeak(t), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null))));
   // the verdicts in words, each once
@@ -362,9 +363,12 @@ function writeEvidence() {
     if (!verdicts.has(key)) verdicts.set(key, []);
     verdicts.get(key).push(t);
   }
+  const list = h("details", {}, h("summary", {}, "The verdicts in words"));
+  list.open = verdicts.size <= 4;
+  page.append(list);
   const names = (tests) => [...new Set(tests.map(titleOf))].map((title) => title + ", seed" + (tests.filter((t) => titleOf(t) === title).length > 1 ? "s " : " ") + tests.filter((t) => titleOf(t) === title).map((t) => t.seed).join(", ")).join("; ");
   for (const tests of [...verdicts.values()].sort((a, b) => (a[0].grade < b[0].grade ? -1 : 1))) {
-    page.append(h("p", {class: "verdict"}, h("span", {class: "grade " + tests[0].grade}, tests[0].grade), " " + tests[0].verdict + " ", h("span", {class: "soft small"}, "(" + names(tests) + ")")));
+    list.append(h("p", {class: "verdict"}, h("span", {class: "grade " + tests[0].grade}, tests[0].grade), " " + tests[0].verdict + " ", h("span", {class: "soft small"}, "(" + names(tests) + ")")));
   }
 }
 
@@ -396,5 +400,9 @@ writeEnvelope();
 writeEvidence();
 writeProvenance();
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { setTheme(); redrawAll(); });
-addEventListener("beforeprint", () => { setTheme("light"); redrawAll(); });
+addEventListener("beforeprint", () => {
+  for (const d of document.querySelectorAll("details")) d.open = true;
+  setTheme("light");
+  redrawAll();
+});
 addEventListener("afterprint", () => { setTheme(); redrawAll(); });
