@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "sample_specimens.hpp"
@@ -138,16 +139,25 @@ TEST(FixedTopology, TrianglesAndFlatFansKeepTheWholeRing) {
     EXPECT_EQ(three.triangles.size(), 9U);
     const GrainMesh six = mesh_grains(regular_cell(6), 0);
     EXPECT_EQ(six.nodes.size(), 12U);
-    // A thin kite: collapsing a short edge would leave next to nothing between the centre and its neighbours.
-    const Tessellation kite = one_cell({{0, 0}, {1, -0.004}, {1.02, 0}, {1, 0.004}});
-    const GrainMesh mesh = mesh_grains(kite, 0);
-    double ring = 0.0, least = 1.0;
+    // A triangle with a vertex in the middle of its left side. The shortest edge collapsed, the line from the opposite corner
+    // to its midpoint is a median, on which the centroid lies: a triangle without area.
+    const GrainMesh almost_three = mesh_grains(one_cell({{0, 2}, {-0.01, 0}, {0, -2}, {1.2, 1.5}}), 0);
+    EXPECT_EQ(almost_three.nodes.size(), 9U);
+    EXPECT_EQ(almost_three.triangles.size(), 12U);
+}
+
+TEST(FixedTopology, CentreOfACellThatBendsSeesAllOfIt) {
+    // An arrowhead around a re-entrant corner: the centroid lies outside its kernel.
+    const Tessellation bent = one_cell({{0, 0}, {4, 0}, {4, 0.5}, {0.5, 0.5}, {0.5, 4}, {0, 4}});
+    const GrainMesh mesh = mesh_grains(bent, 0);
+    double area = 0.0;
     for (const auto& t : mesh.triangles) {
-        if (t[0] != 4) continue;
-        ring += area_of(mesh, t);
-        least = std::min(least, area_of(mesh, t));
+        EXPECT_GT(area_of(mesh, t), 0.0);
+        area += area_of(mesh, t);
     }
-    EXPECT_TRUE(mesh.nodes.size() == 9U || least >= 0.01 * ring);
+    EXPECT_NEAR(area, signed_area(bent.vertices), 1e-14);
+    const Tessellation zigzag = one_cell({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}});  // a U sees itself from nowhere
+    EXPECT_THROW(mesh_grains(zigzag, 0), InputError);
 }
 
 TEST(FineMesh, ComesNearTheNumberAskedFor) {

@@ -105,6 +105,10 @@ TEST_P(Cells, OutlineEdgesLieOnTheOutlineTheyName) {
                                                      : distance_to_segment(p, s.outline.vertices[edge],
                                                                            s.outline.vertices[(edge + 1) % s.outline.vertices.size()]);
                 EXPECT_NEAR(off, 0.0, 1e-15);
+                if (s.outline.is_disc) continue;
+                const Vec2 from = s.outline.vertices[edge], to = s.outline.vertices[(edge + 1) % s.outline.vertices.size()];
+                EXPECT_TRUE(from.x != to.x || p.x == from.x) << "exactly on an upright side";
+                EXPECT_TRUE(from.y != to.y || p.y == from.y) << "exactly on a level side";
             }
         }
     }
