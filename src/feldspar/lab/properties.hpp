@@ -32,7 +32,7 @@ struct EnvelopeFit {
     double cohesion_Pa = 0.0;           ///< Mohr-Coulomb
     double friction_angle_deg = 0.0;
     double UCS_fitted_Pa = 0.0;         ///< intercept of the Mohr-Coulomb line
-    double hoek_brown_mi = 0.0;         ///< not-a-number with fewer than three points
+    double hoek_brown_mi = 0.0;         ///< not-a-number with fewer than two sigma_3
     double hoek_brown_UCS_Pa = 0.0;     ///< its sigma_ci
     double UCS_measured_Pa = 0.0;       ///< not-a-number if the packing has no uniaxial test
     std::vector<double> sigma3_Pa;      ///< the tests that are in

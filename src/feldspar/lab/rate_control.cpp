@@ -10,6 +10,7 @@ namespace {
 // falling faster than this only throws away what has to be climbed again.
 constexpr double kMostSlowing = 0.85;
 constexpr double kMostHastening = 1.06;
+constexpr double kFailing = 0.05;   // R* of a body that fails dynamically whatever the speed
 constexpr double kBlend = 0.5;   // of the newly observed loading mode
 
 }  // namespace
@@ -32,7 +33,9 @@ double RateControl::next(double speed, double unbalanced_N, double platen_force_
     largest_force_N_ = std::max(largest_force_N_, platen_force_N);
     const double now = residual(unbalanced_N, platen_force_N);
     const double factor = now > 0.0 ? std::clamp(std::sqrt(target_ / now), kMostSlowing, kMostHastening) : kMostHastening;
-    const double slowest = (past_peak ? 6e-8 : 6e-9) * height_m_, fastest = std::max(slowest, 0.4 * platen_travel_m / travel_time_);
+    // Once the specimen fails by itself, crawling does not help; a branch that softens quietly stays under control.
+    const bool failing = past_peak && now > kFailing;
+    const double slowest = (failing ? 6e-8 : 6e-9) * height_m_, fastest = std::max(slowest, 0.4 * platen_travel_m / travel_time_);
     return std::clamp(speed * factor, slowest, fastest);
 }
 

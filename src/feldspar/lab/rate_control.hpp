@@ -33,7 +33,7 @@ public:
     /// @param unbalanced_N       sum of |F| over the free degrees of freedom
     /// @param platen_force_N     mean of both platens, magnitude
     /// @param platen_travel_m    so far
-    /// @param past_peak          the specimen is failing by itself, which no speed makes quasi-static: do not crawl
+    /// @param past_peak          the stress has fallen below the peak
     /// @return the speed for the next steps
     double next(double speed, double unbalanced_N, double platen_force_N, double platen_travel_m, bool past_peak);
 

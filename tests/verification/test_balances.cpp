@@ -1,0 +1,60 @@
+// Energy of whole tests through failure, for every kind of test and of numerics, on small specimens.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "fixtures.hpp"
+
+namespace feldspar {
+namespace {
+
+struct Case {
+    TestKind kind;
+    NumericsKind numerics;
+    ContactLaw law;
+};
+
+std::string label(const testing::TestParamInfo<Case>& info) {
+    std::string text = std::string(name(info.param.kind)) + "_" + name(info.param.numerics) + "_" + name(info.param.law);
+    std::erase(text, '-');
+    return text;
+}
+
+class EnergyBalance : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Tests, EnergyBalance,
+                         testing::Values(Case{TestKind::uniaxial_compression, NumericsKind::adaptive, ContactLaw::bilinear},
+                                         Case{TestKind::uniaxial_compression, NumericsKind::paper, ContactLaw::bilinear},
+                                         Case{TestKind::uniaxial_compression, NumericsKind::dynamic, ContactLaw::bilinear},
+                                         Case{TestKind::uniaxial_compression, NumericsKind::adaptive, ContactLaw::brittle},
+                                         Case{TestKind::biaxial, NumericsKind::adaptive, ContactLaw::bilinear},
+                                         Case{TestKind::biaxial, NumericsKind::paper, ContactLaw::bilinear},
+                                         Case{TestKind::direct_tension, NumericsKind::adaptive, ContactLaw::bilinear},
+                                         Case{TestKind::direct_tension, NumericsKind::paper, ContactLaw::linear},
+                                         Case{TestKind::brazilian, NumericsKind::adaptive, ContactLaw::bilinear},
+                                         Case{TestKind::brazilian, NumericsKind::paper, ContactLaw::bilinear_literal}),
+                         label);
+
+TEST_P(EnergyBalance, ClosesThroughFailure) {
+    const Case c = GetParam();
+    const bool disc = c.kind == TestKind::brazilian;
+    TestSetup s = fixtures::setup(fixtures::make(disc ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04)), c.kind);
+    s.contact.law = c.law;
+    s.numerics.kind = c.numerics;
+    s.numerics.accuracy = 0.02;
+    if (c.numerics == NumericsKind::paper) s.numerics.speed_m = 2e-8;
+    if (c.numerics == NumericsKind::dynamic) s.numerics.speed_m = 0.5;
+    if (c.kind == TestKind::direct_tension) s.test.stop_fraction = 0.3;   // softening alone reaches the usual 0.8
+    if (c.kind == TestKind::biaxial) s.test.sigma3_Pa = 5e6;
+    const TestResult r = run_test(s, fixtures::threads(2));
+    EXPECT_TRUE(r.properties.peak_reached) << r.stop_reason;
+    EXPECT_GT(r.cracks.size(), 0U);
+    EXPECT_LT(r.energy_residual, 5e-3);
+    EXPECT_GT(r.energy_at_end.fracture, 0.0);
+    EXPECT_GE(r.energy_at_end.friction, -1e-9 * r.energy_at_end.supplied());   // rounding of elastic points
+    double strongest = 0.0;
+    for (const HistoryRow& row : r.history) strongest = std::max(strongest, std::abs(row.axial_stress_Pa));
+    EXPECT_GT(strongest, 1e6);
+}
+
+}  // namespace
+}  // namespace feldspar

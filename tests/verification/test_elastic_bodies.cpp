@@ -1,0 +1,116 @@
+// Whole elastic specimens against closed forms: E, nu, equilibrium, the Brazilian stress field, isotropic compression.
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/lab/body_energy.hpp"
+#include "fixtures.hpp"
+
+namespace feldspar {
+namespace {
+
+using fixtures::make;
+using fixtures::setup;
+using fixtures::threads;
+
+// Mean over the circle r < radius of the plane solution for a disc under a pair of point loads (Timoshenko & Goodier),
+// in units of 2P / (pi D t) and -6P / (pi D t); compression downwards.
+Vec2 closed_form_mean(double disc_radius, double radius) {
+    double sx = 0.0, sy = 0.0;
+    int count = 0;
+    constexpr int kGrid = 400;
+    for (int i = 0; i < kGrid; ++i)
+        for (int j = 0; j < kGrid; ++j) {
+            const double x = radius * (2.0 * (i + 0.5) / kGrid - 1.0), y = radius * (2.0 * (j + 0.5) / kGrid - 1.0);
+            if (x * x + y * y > radius * radius) continue;
+            const double R = disc_radius, up = R - y, down = R + y;
+            const double r1 = x * x + up * up, r2 = x * x + down * down;
+            sx += -(up * x * x / (r1 * r1) + down * x * x / (r2 * r2) - 0.5 / R);
+            sy += -(up * up * up / (r1 * r1) + down * down * down / (r2 * r2) - 0.5 / R);
+            ++count;
+        }
+    return {sx / count * 2.0 * disc_radius, sy / count * 2.0 * disc_radius / -3.0};
+}
+
+TEST(ElasticBodies, BrazilianStressAroundTheCentreIsTheClosedForm) {
+    const Vec2 expected = closed_form_mean(0.04, 0.008);
+    EXPECT_NEAR(expected.x, 0.960, 1e-3);   // the guide's own figures for the closed form
+    const TestSetup s = setup(make(fixtures::disc(0.08)), TestKind::brazilian);
+    const RunControl control = threads(2);
+    Experiment e(s, control);
+    choose_step(e);
+    prepare(e);
+    const Reactions reactions = platen_reactions(e.body);
+    const double P = 0.5 * (reactions.loading - reactions.rest), D = 0.08, t = e.body.thickness_m;
+    double sxx = 0.0, syy = 0.0, volume = 0.0;
+    for (const Triangle& triangle : e.body.triangles) {
+        const Vec2 centre = (1.0 / 3.0) * (e.body.nodes.reference[triangle.node[0]] + e.body.nodes.reference[triangle.node[1]] +
+                                           e.body.nodes.reference[triangle.node[2]]);
+        if (norm(centre) > 0.008) continue;
+        const Mat2 stress = cauchy_stress(e.body.elasticity, displacement_gradient(e.body, triangle));
+        sxx += stress.xx * triangle.volume_m3;
+        syy += stress.yy * triangle.volume_m3;
+        volume += triangle.volume_m3;
+    }
+    EXPECT_NEAR(sxx / volume / (2.0 * P / (std::numbers::pi * D * t)), expected.x, 0.02);
+    EXPECT_NEAR(syy / volume / (-6.0 * P / (std::numbers::pi * D * t)), expected.y, 0.02);
+    EXPECT_NEAR(-reactions.loading / reactions.rest, 1.0, 2e-3);
+}
+
+struct Elastic {
+    double E_Pa, nu, top_over_bottom;
+};
+
+Elastic elastic_constants(PlaneState plane) {
+    TestSetup s = setup(make(fixtures::rectangle(0.08, 0.16)), TestKind::uniaxial_compression);
+    s.model.plane = plane;
+    s.numerics.maximum_steps = 10;
+    const TestResult r = run_test(s, threads(2));
+    const auto start = std::find_if(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::loading; });
+    return {start->axial_stress_Pa / start->axial_strain, -start->lateral_strain_gauge / start->axial_strain_gauge,
+            start->stress_top_Pa / start->stress_bottom_Pa};
+}
+
+TEST(ElasticBodies, PaperSizeSpecimenHasThePrototypesConstants) {   // 24.3 GPa and 0.232, an independent program's
+    const Elastic e = elastic_constants(PlaneState::stress);
+    EXPECT_NEAR(e.E_Pa, 24.3e9, 0.02 * 24.3e9);
+    EXPECT_NEAR(e.nu, 0.232, 0.01);
+    EXPECT_NEAR(e.top_over_bottom, 1.0, 2e-3);
+}
+
+TEST(ElasticBodies, PlaneStrainGivesTheHigherRatio) {   // nu / (1 - nu) = 0.299 for the grains; the prototype's 0.296
+    EXPECT_NEAR(elastic_constants(PlaneState::strain).nu, 0.296, 0.01);
+}
+
+TEST(ElasticBodies, StiffContactsLeaveTheGrainsOwnConstants) {
+    // With contacts in series, 1/E = 1/E_grain + 1/(Kn d): a thousand times stiffer contacts leave E_grain, here on a small
+    // specimen whose staircase of contacts shortens nothing.
+    TestSetup s = setup(make(fixtures::rectangle(0.03, 0.06)), TestKind::uniaxial_compression);
+    s.numerics.maximum_steps = 10;
+    s.contact.Kn_Pa_m *= 30.0;
+    const TestResult r = run_test(s, threads(1));
+    const HistoryRow& row = r.history.back();
+    EXPECT_NEAR(row.axial_stress_Pa / row.axial_strain, 25.8e9, 0.005 * 25.8e9);
+    EXPECT_NEAR(-row.lateral_strain_gauge / row.axial_strain_gauge, 0.23, 0.005);
+}
+
+TEST(ElasticBodies, ConsolidationIsIsotropicBeforeShearing) {
+    for (const NumericsKind kind : {NumericsKind::adaptive, NumericsKind::paper}) {
+        TestSetup s = setup(make(fixtures::rectangle(0.02, 0.04)), TestKind::biaxial);
+        s.test.sigma3_Pa = 10e6;
+        s.numerics.kind = kind;
+        s.numerics.maximum_steps = 50;
+        const TestResult r = run_test(s, threads(1));
+        const auto isotropic = std::find_if(r.history.rbegin(), r.history.rend(), [](const HistoryRow& row) { return row.phase == Phase::consolidation; });
+        ASSERT_NE(isotropic, r.history.rend());
+        EXPECT_NEAR(isotropic->axial_stress_Pa, 10e6, 3e-3 * 10e6) << name(kind);   // the servo's own tolerance is 2e-3
+        EXPECT_EQ(isotropic->sigma3_Pa, 10e6);
+        // Isotropic plane stress: strain (1 - nu) sigma / E in the grains, and the contacts' share on top.
+        EXPECT_NEAR(isotropic->axial_strain_gauge / isotropic->lateral_strain_gauge, 1.0, 0.1) << name(kind);
+        EXPECT_NEAR(isotropic->axial_strain_gauge, 0.77 * 10e6 / 24.3e9, 0.08 * 0.77 * 10e6 / 24.3e9) << name(kind);
+    }
+}
+
+}  // namespace
+}  // namespace feldspar

@@ -1,0 +1,65 @@
+// Detachment and return: an open broken contact is dropped, and comes back as friction when the circles overlap.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/model/assemble.hpp"
+#include "feldspar/step/step.hpp"
+#include "fixtures.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double kSide = 0.003, kSkin = 3e-4;
+
+Assembly bar() {
+    Assembly body = assemble(*fixtures::two_grain_bar(kSide), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    set_scaled_masses(body, MassBound::tensor, 1.0);
+    return body;
+}
+
+void lift(Assembly& body, double by) {
+    for (int n = body.grains[1].node_begin; n < body.grains[1].node_end; ++n) body.nodes.displacement[n] = {0.0, by};
+}
+
+TEST(NewContacts, IntactContactsAreNeverDropped) {
+    Assembly body = bar();
+    ContactFinder finder(body, kSkin);
+    lift(body, 10.0 * kSkin);
+    EXPECT_EQ(finder.update(body, 1.0).dropped, 0);
+}
+
+TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
+    Assembly body = bar();
+    ContactFinder finder(body, kSkin);
+    for (ContactPoint& point : body.points) point.bond.damage = 1.0;
+    lift(body, 1.5 * kSkin);
+    ContactFinder::Changes changes = finder.update(body, 1.0);
+    EXPECT_EQ(changes.dropped, 1);
+    EXPECT_EQ(changes.made, 0);
+    lift(body, 1e-9);   // circles of radius kSide / 2 just apart
+    EXPECT_EQ(finder.update(body, 1.0).made, 0);
+    const double mass_before = body.nodes.mass[body.contacts[0].a.node[0]];
+    lift(body, -1e-8);
+    EXPECT_EQ(finder.update(body, 1.0).made, 1);
+    EXPECT_EQ(finder.update(body, 1.0).made, 0);   // only once
+    ASSERT_EQ(body.contacts.size(), 2U);
+    const ContactPoint& point = body.points.back();
+    EXPECT_NEAR(point.bond.un_m, -1e-8, 1e-12);
+    EXPECT_NEAR(point.area_m2, kSide * 0.08, 1e-12);
+    EXPECT_GT(body.nodes.mass[body.contacts[1].a.node[0]], mass_before);   // the step stays stable
+    std::fill(body.nodes.velocity.begin(), body.nodes.velocity.end(), Vec2{});
+    Team team(1);
+    evaluate_forces(body, team, Strength::real);
+    EXPECT_NEAR(point.bond.Fn_N / (18e13 * kSide * 0.08 * 1e-8), 1.0, 1e-3);
+    EXPECT_EQ(point.bond.Fs_N, 0.0);
+}
+
+TEST(NewContacts, PaperSizeSpecimenStartsWithoutAnyToMake) {
+    Assembly body = assemble(*fixtures::make(fixtures::rectangle(0.08, 0.16)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    ContactFinder finder(body, kSkin);
+    EXPECT_EQ(finder.update(body, 1.0).made, 0);
+}
+
+}  // namespace
+}  // namespace feldspar

@@ -1,0 +1,119 @@
+// The stability bound is the bound: settings above it are refused, and it is where motion starts to grow.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/base/rng.hpp"
+#include "feldspar/lab/body_energy.hpp"
+#include "feldspar/lab/stability.hpp"
+#include "feldspar/model/assemble.hpp"
+#include "fixtures.hpp"
+
+namespace feldspar {
+namespace {
+
+// Largest velocity after free vibration from a tiny disturbance, over the largest before.
+double growth(Assembly body, Damping damping, double alpha, int steps) {
+    Team team(1);
+    RandomStream random(5, "disturbance");
+    for (Vec2& v : body.nodes.velocity) v = {1e-15 * random.normal(), 1e-15 * random.normal()};
+    StepSettings settings;
+    settings.damping = damping;
+    settings.alpha = alpha;
+    settings.strength = Strength::unlimited;
+    PlatenWork work;
+    advance(body, team, settings, 0, steps, work);
+    double largest = 0.0;
+    for (const Vec2 v : body.nodes.velocity) largest = std::isfinite(norm(v)) ? std::max(largest, norm(v)) : INFINITY;
+    return largest / 5e-15;
+}
+
+TEST(Stability, MotionGrowsJustAboveTheLimitAndNotBelow) {
+    Assembly body = assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    Team team(1);
+    set_scaled_masses(body, MassBound::tensor, 1.0);
+    const double omega2 = largest_omega2(body, team);
+    EXPECT_LT(omega2, 4.0);   // the tensor bound is rigorous
+    EXPECT_GT(omega2, 3.0);   // and tight
+    set_scaled_masses(body, MassBound::tensor, omega2 / 4.0 * 1.01);
+    EXPECT_LT(growth(body, Damping::deviation, 0.0, 2000), 100.0);
+    set_scaled_masses(body, MassBound::tensor, omega2 / 4.0 * 0.98);
+    EXPECT_GT(growth(body, Damping::deviation, 0.0, 2000), 1e6);
+}
+
+TEST(Stability, LocalDampingLowersTheLimit) {
+    Assembly body = assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    set_scaled_masses(body, MassBound::row_sum, 1.7);
+    EXPECT_LT(growth(body, Damping::local, 0.7, 2000), 10.0);
+    set_scaled_masses(body, MassBound::row_sum, 1.0);   // m = 0.25 K as printed in the paper
+    EXPECT_GT(growth(body, Damping::local, 0.7, 2000), 1e6);
+    EXPECT_LT(growth(body, Damping::local, 0.0, 2000), 100.0);
+}
+
+TEST(Stability, ThePrintedMassWithLocalDampingIsRefusedBeforeItRuns) {
+    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    s.numerics.kind = NumericsKind::paper;
+    s.numerics.mass_factor = 1.0;
+    try {
+        preview_test(s, fixtures::threads(1));
+        FAIL() << "an unstable setting was accepted";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.place().key, "numerics.mass_factor");
+        EXPECT_NE(std::string(error.what()).find("unstable"), std::string::npos);
+    }
+    s.numerics.mass_factor.reset();
+    EXPECT_NO_THROW(preview_test(s, fixtures::threads(1)));
+}
+
+TEST(Stability, ATimeStepAboveTheLimitIsRefused) {
+    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    s.numerics.kind = NumericsKind::dynamic;
+    s.numerics.speed_m = 0.1;
+    const double stable = preview_test(s, fixtures::threads(1)).stable_time_step_s;
+    EXPECT_GT(stable, 0.0);
+    s.numerics.time_step_s = 0.99 * stable;
+    EXPECT_NO_THROW(preview_test(s, fixtures::threads(1)));
+    s.numerics.time_step_s = 1.01 * stable;
+    EXPECT_THROW(preview_test(s, fixtures::threads(1)), InputError);
+}
+
+TEST(Stability, ARealBarRingsWithTheClosedFormFrequency) {
+    // Fixed below, free above: quarter wave, omega = (pi / 2) sqrt(E / rho) / H with the bar's own E.
+    const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.04));
+    Assembly body = assemble(*specimen, ModelSpec{}, fixtures::granite(), fixtures::table7());
+    attach_platen_rows(body, *specimen);
+    for (const int node : body.platens[0].nodes) body.nodes.inverse_mass[node].y = 1.0;   // let the top go
+    set_real_masses(body, 2650.0);
+    Team team(1);
+    StepSettings settings;
+    settings.dt = 0.8 * 2.0 / std::sqrt(largest_omega2(body, team));
+    settings.strength = Strength::unlimited;
+    for (int n = 0; n < body.nodes.count(); ++n)
+        body.nodes.velocity[n].y = 1e-6 * std::sin(0.5 * 3.14159265358979 * body.nodes.reference[n].y / 0.04);
+    for (const int node : body.platens[1].nodes) body.nodes.velocity[node] = {};
+    const auto mean_top = [&] {
+        double sum = 0.0;
+        for (const int node : body.platens[0].nodes) sum += body.nodes.displacement[node].y;
+        return sum;
+    };
+    PlatenWork work;
+    double before = 0.0, last_crossing = 0.0, first_crossing = 0.0;
+    int crossings = 0;
+    for (int k = 0; crossings < 5 && k < 100000; ++k) {
+        advance(body, team, settings, k, 1, work);
+        const double now = mean_top();
+        if (k > 0 && (before < 0.0) != (now < 0.0)) {
+            last_crossing = (k + now / (before - now)) * settings.dt;
+            if (crossings++ == 0) first_crossing = last_crossing;
+        }
+        before = now;
+    }
+    ASSERT_EQ(crossings, 5);
+    const double half_period = (last_crossing - first_crossing) / 4.0;
+    const double expected = 2.0 * 0.04 / std::sqrt(24.3e9 / 2650.0);
+    EXPECT_NEAR(half_period / expected, 1.0, 0.03);   // the small bar's own E differs from the large specimen's by 2 %
+}
+
+}  // namespace
+}  // namespace feldspar
