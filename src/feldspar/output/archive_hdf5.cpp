@@ -2,14 +2,14 @@
 //
 // The file is built in memory (the library's core driver) and handed to the run directory as bytes. Writing straight to disk
 // was rejected: after a failed flush HDF5 1.10 keeps the file open and complains again when the program ends.
+#include <fmt/format.h>
+#include <hdf5.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <fmt/format.h>
-#include <hdf5.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/history_columns.hpp"
@@ -47,7 +47,7 @@ public:
     Handle(const Handle&) = delete;
     Handle& operator=(const Handle&) = delete;
     ~Handle() { close_(id_); }
-    operator hid_t() const { return id_; }   // NOLINT(google-explicit-constructor): it stands for the identifier
+    operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): it stands for the identifier
 
 private:
     hid_t id_;
@@ -73,13 +73,21 @@ private:
 template <class Number>
 hid_t type_of();
 template <>
-hid_t type_of<double>() { return H5T_NATIVE_DOUBLE; }
+hid_t type_of<double>() {
+    return H5T_NATIVE_DOUBLE;
+}
 template <>
-hid_t type_of<float>() { return H5T_NATIVE_FLOAT; }
+hid_t type_of<float>() {
+    return H5T_NATIVE_FLOAT;
+}
 template <>
-hid_t type_of<int>() { return H5T_NATIVE_INT; }
+hid_t type_of<int>() {
+    return H5T_NATIVE_INT;
+}
 template <>
-hid_t type_of<std::int64_t>() { return H5T_NATIVE_INT64; }
+hid_t type_of<std::int64_t>() {
+    return H5T_NATIVE_INT64;
+}
 
 Handle make_group(hid_t parent, const std::string& name) {
     return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose};
@@ -103,13 +111,14 @@ void set_number(hid_t object, const char* key, Number value) {
 
 /// Writes `values` as rows of `width` numbers, shuffled and compressed, with its unit and meaning as attributes.
 template <class Number>
-void put(hid_t parent, const std::string& name, const std::vector<Number>& values, hsize_t width, const char* unit, const char* meaning) {
+void put(hid_t parent, const std::string& name, const std::vector<Number>& values, hsize_t width, const char* unit,
+         const char* meaning) {
     const hsize_t rows = values.size() / width;
     const hsize_t extent[2] = {rows, width};
     const int rank = width == 1 ? 1 : 2;
     const Handle space(H5Screate_simple(rank, extent, nullptr), H5Sclose);
     const Handle settings(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    require(H5Pset_obj_track_times(settings, false));   // the same results give the same bytes
+    require(H5Pset_obj_track_times(settings, false));  // the same results give the same bytes
     if (rows > 0) {
         const hsize_t chunk[2] = {std::min<hsize_t>(rows, 65536), width};
         require(H5Pset_chunk(settings, rank, chunk));
@@ -197,7 +206,8 @@ void put_cracks(hid_t root, const std::vector<Crack>& cracks) {
         return flat(list);
     };
     put(group, "step", each<std::int64_t>(cracks, [](const Crack& c) { return c.step; }), 1, "1", "loading step of the break");
-    put(group, "axial_strain", each<double>(cracks, [](const Crack& c) { return c.axial_strain; }), 1, "1", "from the platens, at the break");
+    put(group, "axial_strain", each<double>(cracks, [](const Crack& c) { return c.axial_strain; }), 1, "1",
+        "from the platens, at the break");
     put(group, "axial_stress", each<double>(cracks, [](const Crack& c) { return c.axial_stress_Pa; }), 1, "Pa", "at the break");
     put(group, "mode", each<int>(cracks, [](const Crack& c) { return static_cast<int>(c.mode); }), 1, "1", "0 tensile, 1 shear");
     put(group, "grain_a", each<int>(cracks, [](const Crack& c) { return c.grain_a; }), 1, "1", "grain on one side");
@@ -205,7 +215,8 @@ void put_cracks(hid_t root, const std::vector<Crack>& cracks) {
     put(group, "contact", each<int>(cracks, [](const Crack& c) { return c.contact; }), 1, "1", "contact of the initial assembly");
     put(group, "point", each<int>(cracks, [](const Crack& c) { return c.point; }), 1, "1", "contact point within the contact");
     put(group, "place", points([](const Crack& c) { return c.place; }), 2, "m", "the contact point, undeformed");
-    put(group, "from", points([](const Crack& c) { return c.from; }), 2, "m", "start of the point's share of the edge, undeformed");
+    put(group, "from", points([](const Crack& c) { return c.from; }), 2, "m",
+        "start of the point's share of the edge, undeformed");
     put(group, "to", points([](const Crack& c) { return c.to; }), 2, "m", "its end");
     put(group, "area", each<double>(cracks, [](const Crack& c) { return c.area_m2; }), 1, "m2", "area of the contact point");
     put(group, "energy", each<double>(cracks, [](const Crack& c) { return c.energy_J; }), 1, "J", "dissipated until the break");
@@ -217,7 +228,8 @@ void put_mesh(hid_t root, const GrainMesh& mesh) {
     std::vector<int> grain(mesh.triangles.size(), 0);
     for (const auto& triangle : mesh.triangles) triangles.insert(triangles.end(), triangle.begin(), triangle.end());
     for (std::size_t g = 0; g + 1 < mesh.triangle_begin.size(); ++g) {
-        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) grain[static_cast<std::size_t>(t)] = static_cast<int>(g);
+        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t)
+            grain[static_cast<std::size_t>(t)] = static_cast<int>(g);
     }
     put(group, "nodes", flat(mesh.nodes), 2, "m", "undeformed position of each node");
     put(group, "triangles", triangles, 3, "1", "three nodes each, counter-clockwise");
@@ -239,14 +251,15 @@ void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
         put(group, "stress_yy", floats(snapshot.stress_yy_Pa), 1, "Pa", "Cauchy, each triangle, compression positive");
         put(group, "stress_xy", floats(snapshot.stress_xy_Pa), 1, "Pa", "Cauchy, each triangle, compression positive");
         put(group, "damage", snapshot.damage, 1, "1", "largest damage on the grain edge of each triangle, 0 intact, 1 broken");
-        put(group, "crack_opening", snapshot.crack_opening_m, 1, "m", "of the first cracks of /cracks, in their order; positive is open");
+        put(group, "crack_opening", snapshot.crack_opening_m, 1, "m",
+            "of the first cracks of /cracks, in their order; positive is open");
     }
 }
 
 std::string archive_bytes(const TestResult& result, const Job& job, const Provenance& provenance) {
     const Silence silence;
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    require(H5Pset_fapl_core(access, 4 << 20, false));   // grows by 4 MiB; nothing reaches the disk
+    require(H5Pset_fapl_core(access, 4 << 20, false));  // grows by 4 MiB; nothing reaches the disk
     const Handle file(H5Fcreate("archive-in-memory", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
     {
         const Handle root(H5Gopen2(file, "/", H5P_DEFAULT), H5Gclose);

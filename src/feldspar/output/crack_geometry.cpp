@@ -23,7 +23,7 @@ CrackFace find_face(const Specimen& specimen, const Crack& crack, int grain, int
     double nearest = std::numeric_limits<double>::infinity();
     for (int k = 0; k < count; ++k) {
         if (cell.neighbours[static_cast<std::size_t>(k)] != other) continue;
-        const CrackFace face{.node_0 = first + k, .node_1 = first + (k + 1) % count};   // a grain's first nodes are its vertices
+        const CrackFace face{.node_0 = first + k, .node_1 = first + (k + 1) % count};  // a grain's first nodes are its vertices
         const Vec2 start = specimen.mesh.nodes[static_cast<std::size_t>(face.node_0)];
         const Vec2 end = specimen.mesh.nodes[static_cast<std::size_t>(face.node_1)];
         const double distance = norm(start + fraction_along(start, end, crack.place) * (end - start) - crack.place);
@@ -42,7 +42,8 @@ std::vector<CrackFaces> find_crack_faces(const Specimen& specimen, const std::ve
     std::vector<CrackFaces> faces;
     faces.reserve(cracks.size());
     for (const Crack& crack : cracks) {
-        faces.push_back({find_face(specimen, crack, crack.grain_a, crack.grain_b), find_face(specimen, crack, crack.grain_b, crack.grain_a)});
+        faces.push_back(
+            {find_face(specimen, crack, crack.grain_a, crack.grain_b), find_face(specimen, crack, crack.grain_b, crack.grain_a)});
     }
     return faces;
 }

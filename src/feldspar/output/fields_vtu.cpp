@@ -1,11 +1,11 @@
 // Fields for ParaView: a .pvd that lists, for each snapshot, one grid of triangles (part 0) and one of crack lines (part 1).
 // Positions are undeformed; "Warp By Vector" with displacement_m shows the deformed body and the open cracks.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "feldspar/output/crack_geometry.hpp"
 #include "feldspar/output/history_columns.hpp"
@@ -49,10 +49,12 @@ std::string grains_vtu(const Specimen& specimen, const Snapshot& snapshot, const
     for (const auto& triangle : mesh.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
     std::vector<std::int32_t> grain(mesh.triangles.size());
     for (std::size_t g = 0; g + 1 < mesh.triangle_begin.size(); ++g) {
-        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) grain[static_cast<std::size_t>(t)] = static_cast<int>(g);
+        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t)
+            grain[static_cast<std::size_t>(t)] = static_cast<int>(g);
     }
     std::vector<float> displacement;
-    for (const Vec2 u : snapshot.displacement_m) displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
+    for (const Vec2 u : snapshot.displacement_m)
+        displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
     const PrincipalStresses principal = principal_stresses(snapshot);
     VtuGrid grid(points, corners, VtkCell::triangle);
     grid.point_data("displacement_m", displacement, 3);
@@ -67,7 +69,8 @@ std::string grains_vtu(const Specimen& specimen, const Snapshot& snapshot, const
     return grid.file(comment);
 }
 
-std::string cracks_vtu(const TestResult& result, const std::vector<CrackFaces>& faces, const Snapshot& snapshot, const std::string& comment) {
+std::string cracks_vtu(const TestResult& result, const std::vector<CrackFaces>& faces, const Snapshot& snapshot,
+                       const std::string& comment) {
     std::vector<double> points;
     std::vector<std::int32_t> ends;
     std::vector<float> displacement, time, stress, opening, energy;
@@ -130,15 +133,16 @@ void write_vtu(const RunDirectory& directory, const TestResult& result) {
     const std::vector<CrackFaces> faces = find_crack_faces(*result.specimen, result.cracks);
     const Times time = times(result.snapshots);
     std::string collection = fmt::format(
-        "<?xml version=\"1.0\"?>\n<!-- {}; {}. Part 0: grains; part 1: cracks (mode 0 tensile, 1 shear; time = magnitude of the axial "
+        "<?xml version=\"1.0\"?>\n<!-- {}; {}. Part 0: grains; part 1: cracks (mode 0 tensile, 1 shear; time = magnitude of the "
+        "axial "
         "strain at the break). timestep = {}. -->\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
         stem, sign_convention, time.meaning);
     for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
         const Snapshot& snapshot = result.snapshots[n];
         // numbers only: the label is free text, which an XML comment could not always hold
-        const std::string comment = fmt::format("{}, snapshot {}, step {}, axial strain {}; {}", stem, n, snapshot.step, snapshot.axial_strain,
-                                                sign_convention);
+        const std::string comment = fmt::format("{}, snapshot {}, step {}, axial strain {}; {}", stem, n, snapshot.step,
+                                                snapshot.axial_strain, sign_convention);
         const std::string grains = fmt::format("{}grains-{:03}.vtu", folder, n);
         const std::string cracks = fmt::format("{}cracks-{:03}.vtu", folder, n);
         directory.write_text(grains, grains_vtu(*result.specimen, snapshot, comment));

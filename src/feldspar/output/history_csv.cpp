@@ -1,9 +1,9 @@
 // A test's history as CSV. Nothing in it depends on the time of day, the wall time or the number of threads: two runs of the
 // same job give the same bytes.
+#include <fmt/format.h>
+
 #include <iterator>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
@@ -19,8 +19,8 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     fmt::format_to(line, "# history of {}, seed {}", name(result.test.kind), result.seed);
     if (result.test.kind == TestKind::biaxial) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
     fmt::format_to(line, "\n# signs: {}\n", sign_convention);
-    fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind), name(result.model.contact),
-                   name(result.contact.law), name(result.numerics.kind), name(result.model.plane));
+    fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
+                   name(result.model.contact), name(result.contact.law), name(result.numerics.kind), name(result.model.plane));
     fmt::format_to(line, "# feldspar {}, commit {}\n# columns: name [unit] meaning\n", provenance.version, provenance.commit);
     for (const HistoryColumn& column : history_columns()) {
         fmt::format_to(line, "#   {} [{}] {}\n", column.name, column.unit, column.meaning);

@@ -1,4 +1,7 @@
 // Where the results came from: program, machine, time.
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
 #include <algorithm>
 #include <array>
 #include <ctime>
@@ -6,12 +9,8 @@
 #include <string>
 #include <utility>
 
-#include <sys/utsname.h>
-
-#include <fmt/format.h>
-
 #include "feldspar/output/results.hpp"
-#include "feldspar_commit.hpp"   // made at build time
+#include "feldspar_commit.hpp"  // made at build time
 
 namespace feldspar {
 
@@ -54,8 +53,8 @@ std::string now_utc() {
     const std::time_t now = std::time(nullptr);
     std::tm parts{};
     gmtime_r(&now, &parts);
-    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday, parts.tm_hour,
-                       parts.tm_min, parts.tm_sec);
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", parts.tm_year + 1900, parts.tm_mon + 1, parts.tm_mday,
+                       parts.tm_hour, parts.tm_min, parts.tm_sec);
 }
 
 }  // namespace

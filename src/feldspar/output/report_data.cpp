@@ -1,10 +1,10 @@
 #include "feldspar/output/report_data.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-
-#include <fmt/format.h>
 
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -15,14 +15,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_rows = 600;   ///< of a history in the report; the CSV has them all
+constexpr std::size_t most_rows = 600;  ///< of a history in the report; the CSV has them all
 
 /// Row numbers that stay: evenly spread, with the first, the last and the peak.
 std::vector<std::size_t> kept_rows(const std::vector<HistoryRow>& history) {
     std::vector<std::size_t> kept;
     if (history.empty()) return kept;
     const std::size_t stride = (history.size() + most_rows - 1) / most_rows;
-    const auto higher = [](const HistoryRow& a, const HistoryRow& b) { return std::abs(a.axial_stress_Pa) < std::abs(b.axial_stress_Pa); };
+    const auto higher = [](const HistoryRow& a, const HistoryRow& b) {
+        return std::abs(a.axial_stress_Pa) < std::abs(b.axial_stress_Pa);
+    };
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
     for (std::size_t r = 0; r < history.size(); ++r) {
         if (r % stride == 0 || r == peak || r + 1 == history.size()) kept.push_back(r);
@@ -39,7 +41,7 @@ Json history_json(const std::vector<HistoryRow>& history) {
         json[name] = list;
     };
     using Row = const HistoryRow&;
-    column("strain", [](Row r) { return r.axial_strain * 1e3; });   // strains in 10^-3
+    column("strain", [](Row r) { return r.axial_strain * 1e3; });  // strains in 10^-3
     column("gauge", [](Row r) { return r.axial_strain_gauge * 1e3; });
     column("lateral", [](Row r) { return r.lateral_strain_gauge * 1e3; });
     column("stress", [](Row r) { return r.axial_stress_Pa * MPa; });
@@ -101,7 +103,8 @@ std::vector<std::pair<std::string, double>> laboratory(const Job& job) {
         const auto place = job.laboratory.find(key);
         return place == job.laboratory.end() ? std::nan("") : place->second;
     };
-    for (const auto& [key, value] : job.laboratory) values.emplace_back(property_of_laboratory(key), laboratory_in_user_units(key, value));
+    for (const auto& [key, value] : job.laboratory)
+        values.emplace_back(property_of_laboratory(key), laboratory_in_user_units(key, value));
     const auto ratio = [&](const char* property, double over, double under) {
         if (std::isfinite(over) && under > 0.0) values.emplace_back(property, over / under);
     };
@@ -157,12 +160,14 @@ Json envelope_json(const PropertySummary& properties) {
 Json specimens_json(std::span<const TestResult> results) {
     Json list = Json::array();
     for (const bool brazilian : {false, true}) {
-        const auto found = std::ranges::find_if(results, [&](const TestResult& r) { return r.specimen && (r.test.kind == TestKind::brazilian) == brazilian; });
+        const auto found = std::ranges::find_if(
+            results, [&](const TestResult& r) { return r.specimen && (r.test.kind == TestKind::brazilian) == brazilian; });
         if (found == results.end()) continue;
         const Specimen& specimen = *found->specimen;
         const OutlineSpec& outline = specimen.spec.outline;
         std::string shape = fmt::format("polygon with {} corners", outline.vertices_m.size());
-        if (outline.shape == Shape::rectangle) shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
+        if (outline.shape == Shape::rectangle)
+            shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
         if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
         list.push_back({{"for", brazilian ? "Brazilian test" : "compression and tension"},
                         {"shape", shape},
@@ -186,14 +191,17 @@ Json rounded(double value) {
     return std::strtod(fmt::format("{:.5e}", value).c_str(), nullptr);
 }
 
-Json report_data(const Job& job, std::span<const TestResult> results, const PropertySummary& properties, const Provenance& provenance,
-                 bool complete) {
+Json report_data(const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
+                 const Provenance& provenance, bool complete) {
     Json data;
     data["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}, {"seeds", job.seeds}};
     data["complete"] = complete;
     data["signs"] = sign_convention;
-    data["model"] = {{"grains", name(job.model.kind)}, {"contact", name(job.model.contact)}, {"plane", name(job.model.plane)},
-                     {"law", name(job.contact.law)},   {"numerics", name(job.numerics.kind)}};
+    data["model"] = {{"grains", name(job.model.kind)},
+                     {"contact", name(job.model.contact)},
+                     {"plane", name(job.model.plane)},
+                     {"law", name(job.contact.law)},
+                     {"numerics", name(job.numerics.kind)}};
     data["specimens"] = specimens_json(results);
     data["properties"] = properties_json(job, properties);
     data["laboratory"] = Json::object();
@@ -201,8 +209,9 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     data["envelope"] = envelope_json(properties);
     data["tests"] = Json::array();
     for (const TestResult& result : results) data["tests"].push_back(test_json(result));
-    data["provenance"] = {{"version", provenance.version},   {"commit", provenance.commit},   {"machine", provenance.machine},
-                          {"compiler", provenance.compiler}, {"started", provenance.started}, {"threads", provenance.threads},
+    data["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
+                          {"machine", provenance.machine},          {"compiler", provenance.compiler},
+                          {"started", provenance.started},          {"threads", provenance.threads},
                           {"command_line", provenance.command_line}};
     return data;
 }

@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "feldspar/output/results.hpp"
 
@@ -19,8 +18,8 @@ nlohmann::ordered_json report_data(const Job& job, std::span<const TestResult> r
 
 /// Fields of one test for the viewer of the failure pattern.
 struct ReportFields {
-    nlohmann::ordered_json meta;   ///< what lies where in the block, ranges, snapshots
-    std::string block;             ///< zlib-compressed, base64
+    nlohmann::ordered_json meta;  ///< what lies where in the block, ranges, snapshots
+    std::string block;            ///< zlib-compressed, base64
 };
 
 /// The fields of the first test of each kind (and sigma_3) that fit into `budget_B` characters. A test that does not fit as a

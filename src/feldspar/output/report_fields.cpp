@@ -14,13 +14,13 @@
 //   u<n>             int16    all x, then all y, each as the difference from the node before; times `scale` (mm)
 //   damage<n>        uint8    0 ... 255 for 0 ... 1
 //   sigma1_<n>, sigma3_<n>  uint8  principal stresses: 0 ... 255 between the test's limits
+#include <zlib.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
-
-#include <zlib.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/crack_geometry.hpp"
@@ -49,7 +49,8 @@ public:
     std::string packed() const {
         uLongf size = compressBound(bytes_.size());
         std::vector<std::uint8_t> packed(size);
-        if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK) throw OutputError("zlib could not compress the report's fields");
+        if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK)
+            throw OutputError("zlib could not compress the report's fields");
         return base64({packed.data(), size});
     }
 
@@ -86,7 +87,8 @@ Principal principal(const Snapshot& snapshot) {
     Principal p;
     for (std::size_t t = 0; t < snapshot.stress_xx_Pa.size(); ++t) {
         const double mean = 0.5 * (snapshot.stress_xx_Pa[t] + snapshot.stress_yy_Pa[t]) * MPa;
-        const double radius = std::hypot(0.5 * (snapshot.stress_xx_Pa[t] - snapshot.stress_yy_Pa[t]), snapshot.stress_xy_Pa[t]) * MPa;
+        const double radius =
+            std::hypot(0.5 * (snapshot.stress_xx_Pa[t] - snapshot.stress_yy_Pa[t]), snapshot.stress_xy_Pa[t]) * MPa;
         p.sigma1_MPa.push_back(mean + radius);
         p.sigma3_MPa.push_back(mean - radius);
     }
@@ -95,11 +97,13 @@ Principal principal(const Snapshot& snapshot) {
 
 void add_mesh(Block& block, const GrainMesh& mesh) {
     std::vector<float> nodes;
-    for (const Vec2 node : mesh.nodes) nodes.insert(nodes.end(), {static_cast<float>(node.x * 1e3), static_cast<float>(node.y * 1e3)});
+    for (const Vec2 node : mesh.nodes)
+        nodes.insert(nodes.end(), {static_cast<float>(node.x * 1e3), static_cast<float>(node.y * 1e3)});
     std::vector<std::uint16_t> corners;
     for (std::size_t g = 0; g + 1 < mesh.triangle_begin.size(); ++g) {
         for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) {
-            for (const int node : mesh.triangles[static_cast<std::size_t>(t)]) corners.push_back(static_cast<std::uint16_t>(node - mesh.node_begin[g]));
+            for (const int node : mesh.triangles[static_cast<std::size_t>(t)])
+                corners.push_back(static_cast<std::uint16_t>(node - mesh.node_begin[g]));
         }
     }
     block.add("nodes", "float32", nodes);
@@ -139,7 +143,8 @@ double add_displacement(Block& block, const std::string& part, const std::vector
         for (const Vec2 u : displacement_m) {
             const double value = (y ? u.y : u.x) / scale;
             const auto now = static_cast<std::int16_t>(std::lround(std::isfinite(value) ? value : 0.0));
-            steps.push_back(static_cast<std::int16_t>(static_cast<std::uint16_t>(now) - static_cast<std::uint16_t>(before)));   // wraps, and so does the viewer
+            steps.push_back(static_cast<std::int16_t>(static_cast<std::uint16_t>(now) -
+                                                      static_cast<std::uint16_t>(before)));  // wraps, and so does the viewer
             before = now;
         }
     }
@@ -172,7 +177,8 @@ ReportFields fields_of(const TestResult& result, std::size_t test, const std::ve
         const std::string n = std::to_string(i);
         const double scale = add_displacement(block, "u" + n, snapshot.displacement_m);
         std::vector<std::uint8_t> damage;
-        for (const float d : snapshot.damage) damage.push_back(static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(d, 0.0F, 1.0F))));
+        for (const float d : snapshot.damage)
+            damage.push_back(static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(d, 0.0F, 1.0F))));
         block.add("damage" + n, "uint8", damage);
         block.add("sigma1_" + n, "uint8", levels(stresses[i].sigma1_MPa, limits_1));
         block.add("sigma3_" + n, "uint8", levels(stresses[i].sigma3_MPa, limits_3));
@@ -197,7 +203,8 @@ bool can_be_drawn(const TestResult& result) {
     if (!result.specimen || result.snapshots.empty()) return false;
     const GrainMesh& mesh = result.specimen->mesh;
     return std::ranges::all_of(result.snapshots, [&](const Snapshot& s) {
-        return s.displacement_m.size() == mesh.nodes.size() && s.stress_xx_Pa.size() == mesh.triangles.size() && s.damage.size() == mesh.triangles.size();
+        return s.displacement_m.size() == mesh.nodes.size() && s.stress_xx_Pa.size() == mesh.triangles.size() &&
+               s.damage.size() == mesh.triangles.size();
     });
 }
 

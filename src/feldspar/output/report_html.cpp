@@ -1,7 +1,7 @@
 // report.html: one file with its data, styles and scripts inside; it opens from disk and asks the network for nothing.
-#include <string>
-
 #include <fmt/format.h>
+
+#include <string>
 
 #include "feldspar/output/report_assets.hpp"
 #include "feldspar/output/report_data.hpp"
@@ -11,18 +11,29 @@ namespace feldspar {
 
 namespace {
 
-constexpr std::size_t largest_report_B = 14'000'000;   ///< more is slow to open and to send
+constexpr std::size_t largest_report_B = 14'000'000;  ///< more is slow to open and to send
 
 std::string escaped(const std::string& text) {
     std::string html;
     for (const char letter : text) {
         switch (letter) {
-            case '&': html += "&amp;"; break;
-            case '<': html += "&lt;"; break;
-            case '>': html += "&gt;"; break;
-            case '"': html += "&quot;"; break;
-            case '\'': html += "&#39;"; break;
-            default: html += letter;
+            case '&':
+                html += "&amp;";
+                break;
+            case '<':
+                html += "&lt;";
+                break;
+            case '>':
+                html += "&gt;";
+                break;
+            case '"':
+                html += "&quot;";
+                break;
+            case '\'':
+                html += "&#39;";
+                break;
+            default:
+                html += letter;
         }
     }
     return html;
@@ -34,8 +45,10 @@ std::string script_json(const nlohmann::ordered_json& json) {
     std::string safe;
     safe.reserve(text.size());
     for (const char letter : text) {
-        if (letter == '<') safe += "\\u003c";
-        else safe += letter;
+        if (letter == '<')
+            safe += "\\u003c";
+        else
+            safe += letter;
     }
     return safe;
 }
@@ -60,8 +73,8 @@ private:
 
 }  // namespace
 
-void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
-                  const Provenance& provenance, bool complete) {
+void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                  const PropertySummary& properties, const Provenance& provenance, bool complete) {
     nlohmann::ordered_json data = report_data(job, results, properties, provenance, complete);
     data["fields"] = nlohmann::ordered_json::array();
     const std::size_t used = script_json(data).size();

@@ -18,9 +18,9 @@ namespace feldspar {
 struct Provenance {
     std::string version;
     std::string commit;
-    std::string machine;      ///< processor and operating system
+    std::string machine;  ///< processor and operating system
     std::string compiler;
-    std::string started;      ///< ISO 8601, UTC
+    std::string started;  ///< ISO 8601, UTC
     std::string command_line;
     int threads = 1;
 };

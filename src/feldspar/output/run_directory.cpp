@@ -1,4 +1,10 @@
 // The run's directory. Every file is written aside, flushed to the disk, and renamed when it is whole.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -6,13 +12,6 @@
 #include <exception>
 #include <string_view>
 #include <system_error>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <sys/statvfs.h>
-#include <unistd.h>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/results.hpp"
@@ -23,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr unsigned long long smallest_space_B = 1ULL << 20;   ///< with less than this a run is refused before it starts
+constexpr unsigned long long smallest_space_B = 1ULL << 20;  ///< with less than this a run is refused before it starts
 
 std::string reason(int error) { return std::strerror(error); }
 
@@ -83,7 +82,8 @@ private:
 fs::path nearest_existing(fs::path path) {
     std::error_code error;
     path = fs::absolute(path, error);
-    while (!fs::exists(fs::symlink_status(path, error)) && path.has_parent_path() && path.parent_path() != path) path = path.parent_path();
+    while (!fs::exists(fs::symlink_status(path, error)) && path.has_parent_path() && path.parent_path() != path)
+        path = path.parent_path();
     return path;
 }
 
@@ -120,8 +120,8 @@ void refuse_existing(const fs::path& wanted) {
 std::string file_name_of(const std::string& job_name) {
     std::string name;
     for (const char letter : job_name) {
-        const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9') ||
-                           letter == '-' || letter == '_' || letter == '.';
+        const bool plain = (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+                           (letter >= '0' && letter <= '9') || letter == '-' || letter == '_' || letter == '.';
         name += plain ? letter : '-';
     }
     return name.empty() ? "job" : name;
@@ -147,7 +147,8 @@ void write_bytes(const fs::path& path, std::string_view bytes) {
 void flush_to_disk(const fs::path& path, bool directory) {
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | (directory ? O_DIRECTORY : 0)));
     if (file.number() < 0) lost(path, reason(errno));
-    if (::fsync(file.number()) != 0 && !(directory && (errno == EINVAL || errno == EACCES || errno == EBADF))) lost(path, reason(errno));
+    if (::fsync(file.number()) != 0 && !(directory && (errno == EINVAL || errno == EACCES || errno == EBADF)))
+        lost(path, reason(errno));
     if (!file.close()) lost(path, reason(errno));
 }
 
@@ -188,7 +189,7 @@ void RunDirectory::write(const std::string& name, const std::function<void(const
         fill(aside);
         flush_to_disk(aside, false);
         if (::rename(aside.c_str(), path.c_str()) != 0) lost(path, reason(errno));
-    } catch (const std::system_error& problem) {   // also std::filesystem and stream failures
+    } catch (const std::system_error& problem) {  // also std::filesystem and stream failures
         ::unlink(aside.c_str());
         lost(path, problem.code().message());
     } catch (...) {

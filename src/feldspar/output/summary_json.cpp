@@ -3,9 +3,8 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <system_error>
-
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
@@ -195,15 +194,17 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
     add_specimens(summary, "specimen", results, [](const TestResult& r) { return r.test.kind != TestKind::brazilian; });
     add_specimens(summary, "brazilian_specimen", results, [](const TestResult& r) { return r.test.kind == TestKind::brazilian; });
     // a run of Brazilian tests only has one kind of specimen
-    if (!summary.contains("specimen") && summary.contains("brazilian_specimen")) summary["specimen"] = summary["brazilian_specimen"];
+    if (!summary.contains("specimen") && summary.contains("brazilian_specimen"))
+        summary["specimen"] = summary["brazilian_specimen"];
     summary["tests"] = Json::array();
     for (const TestResult& result : results) summary["tests"].push_back(test_json(directory, result));
     summary["properties"] = properties_json(properties);
     summary["laboratory"] = laboratory_json(job);
     summary["envelope"] = envelope_json(properties);
     summary["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}};
-    summary["provenance"] = {{"version", provenance.version},   {"commit", provenance.commit},   {"machine", provenance.machine},
-                             {"compiler", provenance.compiler}, {"started", provenance.started}, {"threads", provenance.threads},
+    summary["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
+                             {"machine", provenance.machine},          {"compiler", provenance.compiler},
+                             {"started", provenance.started},          {"threads", provenance.threads},
                              {"command_line", provenance.command_line}};
     // a name that is not valid UTF-8 must not lose the run's numbers
     directory.write_text("summary.json", summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -1,19 +1,19 @@
 // The table of the quantities that users read.
 #include "feldspar/output/user_units.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <cstring>
 #include <numbers>
 
-#include <fmt/format.h>
-
 namespace feldspar {
 
 namespace {
 
-constexpr const char* strength_at = "sigma1_at_sigma3_";   ///< then the pressure, for example "10MPa_Pa"
+constexpr const char* strength_at = "sigma1_at_sigma3_";  ///< then the pressure, for example "10MPa_Pa"
 
 struct Words {
     const char* property;
@@ -34,7 +34,7 @@ constexpr auto known = std::to_array<Words>({
     {"UCS_over_BTS", "Ratio UCS / BTS", "UCS/BTS"},
     {"UCS_over_DTS", "Ratio UCS / DTS", "UCS/DTS"},
     {"BTS_over_DTS", "Ratio BTS / DTS", "BTS/DTS"},
-    {strength_at, "", ""},   // stands for the strengths at each lateral pressure
+    {strength_at, "", ""},  // stands for the strengths at each lateral pressure
     {"UCS_fitted_Pa", "UCS from the Mohr-Coulomb line", "UCS fit"},
     {"hoek_brown_UCS_Pa", "UCS from the Hoek-Brown fit", "\u03c3ci fit"},
     {"first_crack_Pa", "Stress at the first crack", "\u03c31st"},
@@ -74,7 +74,8 @@ UserQuantity user_quantity(const std::string& property) {
         quantity.label = fmt::format("Strength at \u03c3\u2083 = {:.6g} MPa", pressure_MPa);
         quantity.symbol = "\u03c3\u2081";
         const auto place = std::ranges::find(known, strength_at, &Words::property);
-        quantity.rank = static_cast<double>(place - known.begin()) + pressure_MPa / (1.0 + pressure_MPa);   // growing pressure, below the next rank
+        quantity.rank = static_cast<double>(place - known.begin()) +
+                        pressure_MPa / (1.0 + pressure_MPa);  // growing pressure, below the next rank
     }
     return quantity;
 }

@@ -25,7 +25,7 @@ std::string property_of_laboratory(const std::string& name);
 /// A value of Job::laboratory (SI, radians) in user units.
 double laboratory_in_user_units(const std::string& name, double value);
 
-inline constexpr double MPa = 1e-6;   ///< times Pa
-inline constexpr double GPa = 1e-9;   ///< times Pa
+inline constexpr double MPa = 1e-6;  ///< times Pa
+inline constexpr double GPa = 1e-9;  ///< times Pa
 
 }  // namespace feldspar

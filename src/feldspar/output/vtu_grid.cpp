@@ -1,11 +1,11 @@
 #include "feldspar/output/vtu_grid.hpp"
 
+#include <fmt/format.h>
+#include <zlib.h>
+
 #include <algorithm>
 #include <bit>
 #include <type_traits>
-
-#include <fmt/format.h>
-#include <zlib.h>
 
 #include "feldspar/base/error.hpp"
 
@@ -17,11 +17,16 @@ constexpr std::size_t block_B = 1 << 20;
 
 template <class Number>
 constexpr const char* vtk_type() {
-    if constexpr (std::is_same_v<Number, double>) return "Float64";
-    else if constexpr (std::is_same_v<Number, float>) return "Float32";
-    else if constexpr (std::is_same_v<Number, std::int32_t>) return "Int32";
-    else if constexpr (std::is_same_v<Number, std::int64_t>) return "Int64";
-    else return "UInt8";
+    if constexpr (std::is_same_v<Number, double>)
+        return "Float64";
+    else if constexpr (std::is_same_v<Number, float>)
+        return "Float32";
+    else if constexpr (std::is_same_v<Number, std::int32_t>)
+        return "Int32";
+    else if constexpr (std::is_same_v<Number, std::int64_t>)
+        return "Int64";
+    else
+        return "UInt8";
 }
 
 void append_number(std::string& bytes, std::uint64_t number) {
@@ -40,7 +45,8 @@ std::string vtk_compressed(std::string_view bytes) {
         const std::string_view block = bytes.substr(from, block_B);
         uLongf size = compressBound(block.size());
         std::string packed(size, '\0');
-        if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(block.data()), block.size(), 5) != Z_OK) {
+        if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(block.data()), block.size(),
+                      5) != Z_OK) {
             throw OutputError("zlib could not compress a field");
         }
         append_number(header, size);
@@ -51,8 +57,10 @@ std::string vtk_compressed(std::string_view bytes) {
 
 template <class Number>
 std::string VtuGrid::array(const std::string& name, std::span<const Number> values, int components) {
-    const std::string xml = fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)" "\n",
-                                        vtk_type<Number>(), name, components, appended_.size());
+    const std::string xml =
+        fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)"
+                    "\n",
+                    vtk_type<Number>(), name, components, appended_.size());
     appended_ += vtk_compressed({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     return xml;
 }
@@ -87,7 +95,8 @@ std::string VtuGrid::file(const std::string& comment) const {
         "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
         comment, point_count_, cell_count_);
     text += "<Points>\n" + points_ + "</Points>\n<Cells>\n" + cells_ + "</Cells>\n<PointData>\n" + point_arrays_ +
-            "</PointData>\n<CellData>\n" + cell_arrays_ + "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+            "</PointData>\n<CellData>\n" + cell_arrays_ +
+            "</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     return text + appended_ + "\n</AppendedData>\n</VTKFile>\n";
 }
 

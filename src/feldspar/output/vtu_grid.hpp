@@ -33,8 +33,8 @@ private:
 
     std::size_t point_count_ = 0;
     std::size_t cell_count_ = 0;
-    std::string points_, cells_, point_arrays_, cell_arrays_;   ///< the XML of each part
-    std::string appended_;                                      ///< the data behind it
+    std::string points_, cells_, point_arrays_, cell_arrays_;  ///< the XML of each part
+    std::string appended_;                                     ///< the data behind it
 };
 
 /// VTK's compressed block format: number of blocks, their size, the size of the last if it is shorter, the compressed sizes,

@@ -1,12 +1,12 @@
 // A directory of a test's own that vanishes with it.
 #pragma once
 
+#include <stdlib.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
-
-#include <stdlib.h>
 
 namespace feldspar::testing {
 

@@ -112,7 +112,8 @@ inline TestResult make_result(TestKind kind = TestKind::uniaxial_compression, st
         s.step = 50LL * row;
         s.axial_strain = 2.5e-4 * row;
         s.axial_stress_Pa = result.history[static_cast<std::size_t>(row)].axial_stress_Pa;
-        for (const Vec2 node : result.specimen->mesh.nodes) s.displacement_m.push_back({0.25 * s.axial_strain * node.x, -s.axial_strain * node.y});
+        for (const Vec2 node : result.specimen->mesh.nodes)
+            s.displacement_m.push_back({0.25 * s.axial_strain * node.x, -s.axial_strain * node.y});
         // grain 1 moves away from grain 0, so that the tensile crack opens by 1 um
         if (cracks > 0) {
             for (int n = 5; n < 10; ++n) s.displacement_m[static_cast<std::size_t>(n)].x += 1e-6;
@@ -161,8 +162,13 @@ inline Job make_job() {
 }
 
 inline Provenance make_provenance() {
-    return {.version = "0.1.0", .commit = "abc", .machine = "a machine", .compiler = "a compiler", .started = "2026-01-01T00:00:00Z",
-            .command_line = "feldspar run augig.toml", .threads = 2};
+    return {.version = "0.1.0",
+            .commit = "abc",
+            .machine = "a machine",
+            .compiler = "a compiler",
+            .started = "2026-01-01T00:00:00Z",
+            .command_line = "feldspar run augig.toml",
+            .threads = 2};
 }
 
 inline PropertySummary make_properties() {
@@ -173,8 +179,15 @@ inline PropertySummary make_properties() {
     properties.values["friction_angle_deg"] = {52.0, 51.0, 53.0, {3}};
     properties.values["cohesion_Pa"] = {20e6, 19e6, 21e6, {3}};
     properties.values["hoek_brown_mi"] = {std::numeric_limits<double>::quiet_NaN(), 1.0, 2.0, {3}};
-    properties.fits.push_back({.seed = 3, .cohesion_Pa = 20e6, .friction_angle_deg = 52.0, .UCS_fitted_Pa = 116e6, .hoek_brown_mi = 20.0,
-                               .hoek_brown_UCS_Pa = 118e6, .UCS_measured_Pa = 120e6, .sigma3_Pa = {0.0, 4e6, 10e6}, .sigma1_Pa = {120e6, 150e6, 200e6}});
+    properties.fits.push_back({.seed = 3,
+                               .cohesion_Pa = 20e6,
+                               .friction_angle_deg = 52.0,
+                               .UCS_fitted_Pa = 116e6,
+                               .hoek_brown_mi = 20.0,
+                               .hoek_brown_UCS_Pa = 118e6,
+                               .UCS_measured_Pa = 120e6,
+                               .sigma3_Pa = {0.0, 4e6, 10e6},
+                               .sigma1_Pa = {120e6, 150e6, 200e6}});
     properties.envelope_method = "Mohr-Coulomb through three tests";
     return properties;
 }

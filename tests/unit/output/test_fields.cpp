@@ -1,11 +1,11 @@
 // The files with fields, read back: HDF5 archive and VTU.
-#include <cstring>
-#include <regex>
-#include <vector>
-
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <zlib.h>
+
+#include <cstring>
+#include <regex>
+#include <vector>
 
 #include "feldspar/output/crack_geometry.hpp"
 #include "feldspar/output/history_columns.hpp"
@@ -63,7 +63,8 @@ TEST_F(Fields, ArchiveReadsBack) {
     EXPECT_EQ(read_set(file, "/mesh/triangles").size(), 3 * result.specimen->mesh.triangles.size());
     EXPECT_EQ(read_set(file, "/mesh/grain")[5], 1.0);
     const Snapshot& snapshot = result.snapshots[1];
-    EXPECT_FLOAT_EQ(static_cast<float>(read_set(file, "/snapshots/001-first-crack/stress_yy")[3]), static_cast<float>(snapshot.stress_yy_Pa[3]));
+    EXPECT_FLOAT_EQ(static_cast<float>(read_set(file, "/snapshots/001-first-crack/stress_yy")[3]),
+                    static_cast<float>(snapshot.stress_yy_Pa[3]));
     EXPECT_EQ(read_set(file, "/snapshots/001-first-crack/displacement")[13], snapshot.displacement_m[6].y);
     EXPECT_EQ(read_set(file, "/snapshots/001-first-crack/crack_opening"), snapshot.crack_opening_m);
     EXPECT_TRUE(read_set(file, "/snapshots/000-start/crack_opening").empty());
@@ -101,7 +102,9 @@ std::string decompress(std::string_view bytes) {
     for (std::uint64_t b = 0; b < blocks; ++b) {
         uLongf size = b + 1 == blocks && number(2) > 0 ? number(2) : number(1);
         std::string block(size, '\0');
-        EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(block.data()), &size, reinterpret_cast<const Bytef*>(bytes.data() + from), number(3 + b)), Z_OK);
+        EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(block.data()), &size, reinterpret_cast<const Bytef*>(bytes.data() + from),
+                             number(3 + b)),
+                  Z_OK);
         data.append(block.data(), size);
         from += number(3 + b);
     }
@@ -174,7 +177,8 @@ TEST_F(Fields, TimesThatDoNotGrowBecomeNumbers) {
 }
 
 TEST(VtkCompressed, HoldsAnyLength) {
-    for (const std::size_t length : {std::size_t{0}, std::size_t{1}, std::size_t{1} << 20, (std::size_t{1} << 20) + 5, std::size_t{3} << 20}) {
+    for (const std::size_t length :
+         {std::size_t{0}, std::size_t{1}, std::size_t{1} << 20, (std::size_t{1} << 20) + 5, std::size_t{3} << 20}) {
         std::string bytes(length, '\0');
         for (std::size_t i = 0; i < length; ++i) bytes[i] = static_cast<char>(i * i % 251);
         EXPECT_EQ(decompress(vtk_compressed(bytes)), bytes) << length;
@@ -189,7 +193,7 @@ TEST(CrackGeometry, FacesMoveWithTheirOwnGrain) {
     const auto b = face_displacement(faces[0].b, result.snapshots[1].displacement_m);
     EXPECT_NEAR(b[0].x - a[0].x, 1e-6, 1e-15);
     EXPECT_NEAR(b[1].x - a[1].x, 1e-6, 1e-15);
-    EXPECT_NEAR(a[0].y, -result.snapshots[1].axial_strain * 0.25e-3, 1e-15);   // a quarter of the way up the edge
+    EXPECT_NEAR(a[0].y, -result.snapshots[1].axial_strain * 0.25e-3, 1e-15);  // a quarter of the way up the edge
     EXPECT_NEAR(b[1].y, -result.snapshots[1].axial_strain * 0.75e-3, 1e-15);
 }
 

@@ -1,11 +1,11 @@
 // report.html: its data can be read, its text is escaped, it asks nobody for anything.
+#include <gtest/gtest.h>
+#include <zlib.h>
+
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <vector>
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-#include <zlib.h>
 
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
@@ -43,7 +43,8 @@ protected:
     ScratchDirectory scratch;
     RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
     Job job = make_job();
-    std::vector<TestResult> results = {make_result(), make_result(TestKind::uniaxial_compression, 4), make_result(TestKind::brazilian)};
+    std::vector<TestResult> results = {make_result(), make_result(TestKind::uniaxial_compression, 4),
+                                       make_result(TestKind::brazilian)};
 
     std::string page(bool complete = true) {
         write_report(directory, job, results, make_properties(), make_provenance(), complete);
@@ -56,11 +57,11 @@ TEST_F(Report, HoldsDataThatReadsBack) {
     EXPECT_EQ(data["job"]["name"], "augig");
     ASSERT_EQ(data["tests"].size(), 3U);
     EXPECT_EQ(data["tests"][0]["history"]["stress"].size(), results[0].history.size());
-    EXPECT_NEAR(data["tests"][0]["history"]["strain"].back().get<double>(), 5.0, 1e-9);   // 10^-3
+    EXPECT_NEAR(data["tests"][0]["history"]["strain"].back().get<double>(), 5.0, 1e-9);  // 10^-3
     EXPECT_TRUE(data["tests"][2]["nu"].is_null());
     EXPECT_EQ(data["properties"][0]["name"], "E_GPa");
     EXPECT_NEAR(data["properties"][0]["laboratory"].get<double>(), 25.8, 1e-9);
-    EXPECT_EQ(data["fields"].size(), 2U);   // one packing a kind
+    EXPECT_EQ(data["fields"].size(), 2U);  // one packing a kind
     EXPECT_EQ(data["fields"][1]["test"], 2);
 }
 
@@ -72,7 +73,9 @@ TEST_F(Report, EscapesEverythingThatAUserCanWrite) {
     EXPECT_EQ(html.find("alert(1)</script>"), std::string::npos);
     EXPECT_EQ(html.find("alert(2)</script>"), std::string::npos);
     EXPECT_EQ(html.find("<!--<script>"), std::string::npos);
-    EXPECT_NE(html.find("<title>&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;quoted&quot; {{data}} - Feldspar"), std::string::npos);
+    EXPECT_NE(
+        html.find("<title>&lt;/title&gt;&lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;quoted&quot; {{data}} - Feldspar"),
+        std::string::npos);
     const json data = json::parse(between(html, "id=\"data\">", "</script>"));
     EXPECT_EQ(data["job"]["name"], job.name);
     EXPECT_EQ(data["job"]["resolved"], job.text);
@@ -91,7 +94,8 @@ TEST_F(Report, AsksTheNetworkForNothing) {
     EXPECT_EQ(html.find("fetch("), std::string::npos);
     EXPECT_EQ(html.find("XMLHttpRequest"), std::string::npos);
     EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
-    for (const char* mark : {"{{uplot_css}}", "{{css}}", "{{data}}", "{{fields}}", "{{uplot_js}}", "{{charts_js}}", "{{viewer_js}}", "{{report_js}}"}) {
+    for (const char* mark : {"{{uplot_css}}", "{{css}}", "{{data}}", "{{fields}}", "{{uplot_js}}", "{{charts_js}}",
+                             "{{viewer_js}}", "{{report_js}}"}) {
         EXPECT_EQ(html.find(mark), std::string::npos) << mark;
     }
 }
@@ -123,9 +127,9 @@ TEST(ReportFields, ReadBackWithinAStep) {
     const ReportFields& fields = list[0];
     const GrainMesh& mesh = results[0].specimen->mesh;
     EXPECT_EQ(part<float>(fields, "nodes").size(), 2 * mesh.nodes.size());
-    EXPECT_EQ(part<std::uint16_t>(fields, "corners")[3 * 5 + 2], 4);   // the centre of grain 1, counted from its first node
+    EXPECT_EQ(part<std::uint16_t>(fields, "corners")[3 * 5 + 2], 4);  // the centre of grain 1, counted from its first node
     EXPECT_EQ(part<std::uint8_t>(fields, "crack_mode"), (std::vector<std::uint8_t>{0, 1}));
-    EXPECT_EQ(part<std::int32_t>(fields, "crack_nodes")[0], 1);   // the right edge of grain 0
+    EXPECT_EQ(part<std::int32_t>(fields, "crack_nodes")[0], 1);  // the right edge of grain 0
     const double scale = fields.meta["snapshots"][1]["scale"].get<double>();
     const auto steps = part<std::int16_t>(fields, "u1");
     std::int16_t sum = 0;
@@ -139,12 +143,13 @@ TEST(ReportFields, ReadBackWithinAStep) {
 }
 
 TEST(ReportFields, StayWithinTheBudget) {
-    const std::vector<TestResult> results = {make_result(TestKind::uniaxial_compression, 1, 12, 12), make_result(TestKind::brazilian, 1, 12, 12)};
+    const std::vector<TestResult> results = {make_result(TestKind::uniaxial_compression, 1, 12, 12),
+                                             make_result(TestKind::brazilian, 1, 12, 12)};
     const auto all = report_fields(results, 1 << 20);
     ASSERT_EQ(all.size(), 2U);
     EXPECT_EQ(all[0].meta["snapshots"].size(), 3U);
     const std::size_t one = all[0].block.size();
-    const auto tight = report_fields(results, one - 1);   // the first loses its start; little is left for the second
+    const auto tight = report_fields(results, one - 1);  // the first loses its start; little is left for the second
     ASSERT_GE(tight.size(), 1U);
     EXPECT_EQ(tight[0].meta["snapshots"].size(), 2U);
     std::size_t total = 0;
@@ -154,7 +159,9 @@ TEST(ReportFields, StayWithinTheBudget) {
 }
 
 TEST(Base64, MatchesItsDefinition) {
-    const auto encode = [](const std::string& text) { return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); };
+    const auto encode = [](const std::string& text) {
+        return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    };
     EXPECT_EQ(encode(""), "");
     EXPECT_EQ(encode("f"), "Zg==");
     EXPECT_EQ(encode("fo"), "Zm8=");

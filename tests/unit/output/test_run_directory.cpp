@@ -1,11 +1,11 @@
 // A run's directory: numbering, refusals, and what is left when a write fails.
-#include <csignal>
-#include <fstream>
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <csignal>
+#include <fstream>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/results.hpp"
@@ -53,8 +53,10 @@ TEST(RunDirectory, RefusesWhatExists) {
     std::ofstream(scratch.path() / "file") << "x";
     fs::create_symlink("nowhere", scratch.path() / "link");
     for (const char* name : {"old", "file", "link"}) {
-        EXPECT_NE(refusal([&] { RunDirectory::create(scratch.path() / name, "job"); }).find("exists already"), std::string::npos) << name;
-        EXPECT_NE(refusal([&] { RunDirectory::check(scratch.path() / name, "job"); }).find("exists already"), std::string::npos) << name;
+        EXPECT_NE(refusal([&] { RunDirectory::create(scratch.path() / name, "job"); }).find("exists already"), std::string::npos)
+            << name;
+        EXPECT_NE(refusal([&] { RunDirectory::check(scratch.path() / name, "job"); }).find("exists already"), std::string::npos)
+            << name;
     }
     EXPECT_EQ(count_entries(scratch.path()), 3);
 }
@@ -68,7 +70,8 @@ TEST(RunDirectory, CheckMakesNothing) {
 TEST(RunDirectory, RefusesAPlaceThatIsNoDirectory) {
     const ScratchDirectory scratch;
     std::ofstream(scratch.path() / "file") << "x";
-    EXPECT_NE(refusal([&] { RunDirectory::check(scratch.path() / "file" / "run", "job"); }).find("is not a directory"), std::string::npos);
+    EXPECT_NE(refusal([&] { RunDirectory::check(scratch.path() / "file" / "run", "job"); }).find("is not a directory"),
+              std::string::npos);
     EXPECT_NE(refusal([&] { RunDirectory::check("/dev/full/run", "job"); }).find("is not a directory"), std::string::npos);
 }
 
@@ -76,9 +79,10 @@ TEST(RunDirectory, RefusesAPlaceThatMayNotBeWritten) {
     const ScratchDirectory scratch;
     fs::create_directory(scratch.path() / "locked");
     fs::permissions(scratch.path(), fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
-    fs::permissions(scratch.path() / "locked", fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+    fs::permissions(scratch.path() / "locked",
+                    fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
     const int code = in_child([&] {
-        if (geteuid() == 0 && seteuid(65534) != 0) return 9;   // root may write everywhere
+        if (geteuid() == 0 && seteuid(65534) != 0) return 9;  // root may write everywhere
         const std::string message = refusal([&] { RunDirectory::check(scratch.path() / "locked" / "run", "job"); });
         return message.find("Permission denied") != std::string::npos ? 0 : 1;
     });
@@ -118,7 +122,7 @@ TEST(RunDirectory, AFailedWriteKeepsTheEarlierFileAndLeavesNothingAside) {
                                      throw OutputError("no more");
                                  }),
                  OutputError);
-    EXPECT_THROW(directory.write("other.json", [](const fs::path&) {}), OutputError);   // nothing was written at all
+    EXPECT_THROW(directory.write("other.json", [](const fs::path&) {}), OutputError);  // nothing was written at all
     EXPECT_EQ(read_file(directory.path() / "summary.json"), "whole");
     EXPECT_EQ(count_entries(directory.path()), 1);
 }

@@ -1,10 +1,10 @@
 // The files that users read as tables: history CSV and summary.json.
+#include <gtest/gtest.h>
+
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
-
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
@@ -96,22 +96,47 @@ TEST_F(Tables, HistoryDependsOnTheResultsAlone) {
 
 TEST_F(Tables, SummaryHasEveryPromisedName) {
     const json top = summary({make_result(), make_result(TestKind::brazilian, 3)});
-    for (const char* name : {"version", "commit", "seeds", "specimen", "brazilian_specimen", "tests", "properties", "laboratory", "envelope",
-                             "job", "provenance", "complete", "signs"}) {
+    for (const char* name : {"version", "commit", "seeds", "specimen", "brazilian_specimen", "tests", "properties", "laboratory",
+                             "envelope", "job", "provenance", "complete", "signs"}) {
         EXPECT_TRUE(top.contains(name)) << name;
     }
     for (const char* name : {"grains", "contacts", "nodes", "triangles", "merged_edges", "vertices_per_grain"}) {
         EXPECT_TRUE(top["specimen"].contains(name)) << name;
     }
-    for (const char* name :
-         {"kind", "model", "contact", "law", "numerics", "plane", "seed", "sigma3_MPa", "peak_stress_MPa", "peak_reached", "first_crack_MPa",
-          "E_GPa", "E_tangent_GPa", "nu", "steps", "steps_to_peak", "preparation_steps", "wall_s", "ms_per_step", "threads", "residual_mean",
-          "residual_at_peak", "imbalance_max", "kinetic_over_strain", "damping_over_fracture", "cracks_tensile", "cracks_shear",
-          "energy_residual", "quasi_static"}) {
+    for (const char* name : {"kind",
+                             "model",
+                             "contact",
+                             "law",
+                             "numerics",
+                             "plane",
+                             "seed",
+                             "sigma3_MPa",
+                             "peak_stress_MPa",
+                             "peak_reached",
+                             "first_crack_MPa",
+                             "E_GPa",
+                             "E_tangent_GPa",
+                             "nu",
+                             "steps",
+                             "steps_to_peak",
+                             "preparation_steps",
+                             "wall_s",
+                             "ms_per_step",
+                             "threads",
+                             "residual_mean",
+                             "residual_at_peak",
+                             "imbalance_max",
+                             "kinetic_over_strain",
+                             "damping_over_fracture",
+                             "cracks_tensile",
+                             "cracks_shear",
+                             "energy_residual",
+                             "quasi_static"}) {
         EXPECT_TRUE(top["tests"][0].contains(name)) << name;
     }
     for (const char* name : {"E_GPa", "nu", "UCS_MPa", "cohesion_MPa", "friction_angle_deg", "hoek_brown_mi"}) {
-        for (const char* part : {"median", "minimum", "maximum", "seeds"}) EXPECT_TRUE(top["properties"][name].contains(part)) << name;
+        for (const char* part : {"median", "minimum", "maximum", "seeds"})
+            EXPECT_TRUE(top["properties"][name].contains(part)) << name;
     }
 }
 

@@ -60,16 +60,24 @@ function writeHeader() {
   page.append(h("p", {class: "soft small", style: "margin-top:16px"}, "Signs: " + data.signs + "."));
 }
 
-/** The range of the packings as a bar, the median as a dot, the laboratory as a mark. */
-function rangeBar(row) {
-  const values = [row.minimum, row.maximum, row.median, row.laboratory].filter((v) => v !== null);
-  if (row.minimum === null || row.maximum === null || !values.length) return "";
-  const low = Math.min(...values), high = Math.max(...values), span = high - low || 1;
-  const at = (v) => 6 + (88 * (v - low)) / span + "%";
+/** Largest deviation from the median that the spread column shows, the same for every row. */
+function spreadReach() {
+  let reach = 0.02;
+  for (const p of data.properties) {
+    for (const v of [p.minimum, p.maximum, p.laboratory]) if (v !== null && p.median) reach = Math.max(reach, Math.abs(v / p.median - 1));
+  }
+  return Math.min(reach, 0.6);
+}
+
+/** The range of the packings as a bar, the median as a dot, the laboratory as a mark: all relative to the median. */
+function rangeBar(row, reach) {
+  if (row.minimum === null || row.maximum === null || !row.median) return "";
+  const at = (v) => 50 + 46 * Math.max(-1, Math.min(1, (v / row.median - 1) / reach));
+  const low = Math.min(at(row.minimum), at(row.maximum)), high = Math.max(at(row.minimum), at(row.maximum));
   return h("span", {class: "range", "aria-hidden": "true"},
-    h("i", {class: "bar", style: "left:" + at(row.minimum) + ";width:" + (88 * (row.maximum - row.minimum)) / span + "%"}),
-    row.laboratory === null ? null : h("i", {class: "lab", style: "left:" + at(row.laboratory)}),
-    row.median === null ? null : h("i", {class: "dot", style: "left:" + at(row.median)}));
+    h("i", {class: "bar", style: "left:" + low + "%;width:" + (high - low) + "%"}),
+    row.laboratory === null ? null : h("i", {class: "lab", style: "left:" + at(row.laboratory) + "%"}),
+    h("i", {class: "dot", style: "left:50%"}));
 }
 
 function writeProperties() {
@@ -78,6 +86,7 @@ function writeProperties() {
   const compared = data.properties.some((p) => p.laboratory !== null);
   page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + ". E and \u03bd hold for plane " +
     data.model.plane + "."));
+  const reach = spreadReach();
   const head = [th("Property"), th("", true), th("Median", true), th("Range", true), th("Packings", true)];
   if (compared) head.push(th("Laboratory", true), th("Difference", true));
   head.push(th("Spread" + (compared ? " and laboratory" : "")));
@@ -91,10 +100,11 @@ function writeProperties() {
       cells.push(td(p.laboratory === null ? "" : show(p.laboratory), true),
         td(known ? (off > 0 ? "+" : "") + off.toFixed(Math.abs(off) < 9.95 ? 1 : 0).replace("-", "\u2212") + " %" : "", true));
     }
-    cells.push(td(rangeBar(p)));
+    cells.push(td(rangeBar(p, reach)));
     return h("tr", {}, cells);
   })));
-  page.append(h("p", {class: "soft small", style: "margin-top:8px"}, "Dot: median; grey bar: range over the packings" + (compared ? "; orange mark: laboratory." : ".")));
+  page.append(h("p", {class: "soft small", style: "margin-top:8px"}, "Spread, relative to the median (full width \u00b1" + Math.round(100 * reach) + " %). Dot: median; grey bar: range over the packings" +
+    (compared ? "; orange mark: laboratory." : ".")));
 }
 
 /** Buttons for one of several things. */
