@@ -88,6 +88,20 @@ std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& 
                        failures(table, false), advice(result.numerics, e.grade), after);
 }
 
+/// R* at the peak: the median over the loading rows of the last percent of stress before it. The unstable crack that makes the
+/// peak starts while the platens, a travel time away, still feel the stress rise; one row would tell of the crack, not of the rate.
+double residual_near_peak(const TestResult& result, const Peak& peak, double sign) {
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i <= peak.row; ++i) {
+        const HistoryRow& row = result.history[i];
+        if (row.phase == Phase::loading && sign * row.axial_stress_Pa >= 0.99 * peak.stress_Pa) residuals.push_back(row.residual);
+    }
+    if (residuals.empty() || std::any_of(residuals.begin(), residuals.end(), [](double r) { return std::isnan(r); })) return nan;
+    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+    std::nth_element(residuals.begin(), middle, residuals.end());
+    return *middle;
+}
+
 }  // namespace
 
 QuasiStaticEvidence judge(const TestResult& result) {
@@ -126,7 +140,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
     }
     const HistoryRow& top = result.history[peak->row];
     e.residual_mean = residuals / rows;
-    e.residual_at_peak = top.residual;
+    e.residual_at_peak = residual_near_peak(result, *peak, sign);
     e.imbalance_max = imbalance;
     e.kinetic_over_strain = kinetic;
     if (top.energy.fracture > 0.0) e.damping_over_fracture = top.energy.damping / top.energy.fracture;

@@ -24,8 +24,9 @@ public:
     /// @param travel_time  of a wave over the height, in steps
     /// @param expected_N   about what the specimen will carry, so that the first weak points at a tenth of the strength do not
     ///                     slow the test down as if it were failing
-    RateControl(double target, double height_m, double travel_time, double expected_N)
-        : target_(target), height_m_(height_m), travel_time_(travel_time), largest_force_N_(expected_N) {}
+    /// @param relative_target  target over that of an accuracy of 0.5 %: the slowest speed goes with it
+    RateControl(double target, double relative_target, double height_m, double travel_time, double expected_N)
+        : target_(target), relative_target_(relative_target), height_m_(height_m), travel_time_(travel_time), largest_force_N_(expected_N) {}
 
     double start() const { return 6e-8 * height_m_; }
 
@@ -42,6 +43,7 @@ public:
 
 private:
     double target_;
+    double relative_target_;
     double height_m_;
     double travel_time_;
     double largest_force_N_;

@@ -121,9 +121,10 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
     const bool adaptive = e.setup.numerics.kind == NumericsKind::adaptive;
     const int block = adaptive ? 10 : 50;   // steps between records
     ContactFinder finder(e.body, 0.1 * mean_diameter(e.body));
-    RateControl control(residual_target(e.setup.numerics, e.setup.test.kind), e.height_m, e.travel_time,
+    const double target = residual_target(e.setup.numerics, e.setup.test.kind);
+    RateControl control(target, target / residual_target(NumericsSpec{}, e.setup.test.kind), e.height_m, e.travel_time,
                         expected_strength(e.setup.contact, e.setup.test) * e.section_m2);
-    LoadingModeUpdate mode_update(e.travel_time, residual_target(e.setup.numerics, e.setup.test.kind));
+    LoadingModeUpdate mode_update(e.travel_time, target);
     const long long first_step = e.step;
     StopRule stop(e, first_step);
     ProgressReporter progress(e);
@@ -145,7 +146,7 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
         }
         if (adaptive) {
             const double force = std::abs(row.axial_stress_Pa) * e.section_m2;
-            const bool past_peak = e.direction * row.axial_stress_Pa < 0.95 * stop.peak();
+            const bool past_peak = e.direction * row.axial_stress_Pa < 0.98 * stop.peak();
             const double unbalanced = unbalanced_force(e.body);
             mode_update.observe(e.body, e.step, e.platen_travel_m, control.residual(unbalanced, force));
             const double speed = control.next(e.settings.speed, unbalanced, force, e.platen_travel_m, past_peak);
