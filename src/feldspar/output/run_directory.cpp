@@ -30,7 +30,12 @@ std::string reason(int error) { return std::strerror(error); }
     throw InputError({.file = "", .line = 0, .column = 0, .key = "--out"}, problem, allowed);
 }
 
-[[noreturn]] void lost(const fs::path& path, const std::string& why) {
+/// Where a file is written before it is renamed to `path`.
+fs::path aside_of(const fs::path& path) { return path.parent_path() / fmt::format(".{}.part", path.filename().string()); }
+
+[[noreturn]] void lost(fs::path path, const std::string& why) {
+    const std::string file = path.filename().string();  // the user knows the file by its final name
+    if (file.starts_with('.') && file.ends_with(".part")) path = path.parent_path() / file.substr(1, file.size() - 6);
     throw OutputError(fmt::format("cannot write '{}': {}", path.string(), why));
 }
 
@@ -180,7 +185,7 @@ RunDirectory RunDirectory::create(const std::optional<fs::path>& wanted, const s
 
 void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const {
     const fs::path path = path_ / name;
-    const fs::path aside = path.parent_path() / fmt::format(".{}.part", path.filename().string());
+    const fs::path aside = aside_of(path);
     const HoldFileSizeSignal hold;
     if (path.parent_path() != path_ && ::mkdir(path.parent_path().c_str(), 0777) != 0 && errno != EEXIST) {
         lost(path.parent_path(), reason(errno));

@@ -138,7 +138,7 @@ TEST(RunDirectory, AFullDiskLeavesNoTruncatedFile) {
         try {
             directory.write_text("history.csv", std::string(10000, 'x'));
         } catch (const OutputError& error) {
-            return std::string(error.what()).find("File too large") != std::string::npos ? 0 : 2;
+            return std::string(error.what()).find("/history.csv': File too large") != std::string::npos ? 0 : 2;
         }
         return 1;
     });

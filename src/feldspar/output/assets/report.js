@@ -93,7 +93,7 @@ function writeProperties() {
   page.append(table("", head, data.properties.map((p) => {
     const cells = [td(p.label), td([p.symbol], true, "unit"),
       td([show(p.median), p.unit ? h("span", {class: "unit"}, " " + p.unit.replace("deg", "\u00b0")) : ""], true, "strong"),
-      td(show(p.minimum) + " \u2013 " + show(p.maximum), true), td(String(p.packings), true)];
+      td(p.packings < 2 ? "" : show(p.minimum) + " \u2013 " + show(p.maximum), true), td(String(p.packings), true)];
     if (compared) {
       const known = p.laboratory !== null && p.median !== null && p.laboratory !== 0;
       const off = known ? (100 * (p.median - p.laboratory)) / p.laboratory : null;
@@ -299,7 +299,7 @@ function writePattern() {
       ctx.putImageData(image, 0, 0);
       low.textContent = show(from);
       high.textContent = show(to) + " " + kind.unit;
-      scale.append(low, bar, high, h("span", {}, kind.label + (kind.around ? "; tension violet, compression orange" : "")));
+      scale.append(low, bar, high, kind.around ? h("span", {}, "violet tension, orange compression") : "");
     }
     const key = (color, text) => h("span", {}, h("b", {style: "border-color:" + color}), text);
     crackKey.replaceChildren();
