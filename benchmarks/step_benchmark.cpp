@@ -1,0 +1,83 @@
+// What a step costs, stage by stage, on the paper's specimens (1630 grains; 640 for the Brazilian disc).
+#include <memory>
+
+#include <benchmark/benchmark.h>
+
+#include "feldspar/lab/body_energy.hpp"
+#include "feldspar/model/assemble.hpp"
+#include "feldspar/specimen/specimen.hpp"
+#include "feldspar/step/step.hpp"
+
+namespace feldspar {
+namespace {
+
+// The Augig granite with Table 7 of the paper, at rest under a strain of 1e-4.
+Assembly granite(bool disc) {
+    SpecimenSpec spec;
+    spec.outline.shape = disc ? Shape::disc : Shape::rectangle;
+    spec.outline.width_m = 0.08;
+    spec.outline.height_m = 0.16;
+    spec.outline.diameter_m = 0.08;
+    spec.grain_sizes.minimum_m = 0.002;
+    spec.grain_sizes.maximum_m = 0.004;
+    ContactMaterial contact;
+    contact.Kn_Pa_m = 18e13;
+    contact.eta = 0.28;
+    contact.sigma_nt_Pa = 8.5e6;
+    contact.tau_Pa = 29.75e6;
+    contact.mu = 0.4;
+    contact.Gfn_J_m2 = 20.0;
+    contact.Gfs_J_m2 = 800.0;
+    Assembly body = assemble(make_specimen(spec, 1), ModelSpec{}, {25.8e9, 0.23, 2650.0}, contact);
+    set_scaled_masses(body, MassBound::tensor, 1.0);
+    for (int n = 0; n < body.nodes.count(); ++n) body.nodes.displacement[n] = 1e-4 * body.nodes.reference[n];
+    return body;
+}
+
+void label(benchmark::State& state, const Assembly& body) {
+    const double steps = static_cast<double>(state.iterations());
+    using Counter = benchmark::Counter;
+    const auto per = [&](std::size_t count) { return Counter(steps * static_cast<double>(count), Counter::kIsRate | Counter::kInvert); };
+    state.counters["s/triangle"] = per(body.triangles.size());
+    state.counters["s/point"] = per(body.points.size());
+    state.counters["B/grain"] = body.memory_bytes() / static_cast<double>(body.grains.size());
+}
+
+void contact_stage(benchmark::State& state) {
+    Assembly body = granite(false);
+    for (auto _ : state) contact_forces(body, {0, static_cast<int>(body.contacts.size())}, StepSettings{}, 0);
+    label(state, body);
+}
+
+void grain_stage(benchmark::State& state) {
+    Assembly body = granite(false);
+    StepSettings settings;
+    settings.dt = 0.0;   // the same state every time
+    for (auto _ : state) grain_forces(body, {0, static_cast<int>(body.grains.size())}, settings);
+    label(state, body);
+}
+
+void whole_step(benchmark::State& state, bool disc) {
+    Assembly body = granite(disc);
+    Team team(static_cast<int>(state.range(0)));
+    StepSettings settings;
+    settings.viscous = 0.01;
+    settings.strength = Strength::unlimited;
+    PlatenWork work;
+    for (auto _ : state) advance(body, team, settings, 0, 10, work);
+    state.SetItemsProcessed(state.iterations() * 10);   // steps
+}
+
+void energy_sums(benchmark::State& state) {
+    const Assembly body = granite(false);
+    for (auto _ : state) benchmark::DoNotOptimize(stored_energy(body));
+}
+
+BENCHMARK(contact_stage)->Unit(benchmark::kMicrosecond);
+BENCHMARK(grain_stage)->Unit(benchmark::kMicrosecond);
+BENCHMARK(energy_sums)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(whole_step, uniaxial_ten_steps, false)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond)->UseRealTime();
+BENCHMARK_CAPTURE(whole_step, brazilian_ten_steps, true)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond)->UseRealTime();
+
+}  // namespace
+}  // namespace feldspar
