@@ -17,7 +17,7 @@ nlohmann::ordered_json report_data(const Job& job, std::span<const TestResult> r
                                    const Provenance& provenance, bool complete);
 
 /// Fields of one test for the viewer of the failure pattern.
-struct ReportFields {
+struct ReportFields {             // NOLINT(bugprone-exception-escape): moving the JSON throws nothing
     nlohmann::ordered_json meta;  ///< what lies where in the block, ranges, snapshots
     std::string block;            ///< zlib-compressed, base64
 };

@@ -57,10 +57,9 @@ std::string vtk_compressed(std::string_view bytes) {
 
 template <class Number>
 std::string VtuGrid::array(const std::string& name, std::span<const Number> values, int components) {
-    const std::string xml =
-        fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)"
-                    "\n",
-                    vtk_type<Number>(), name, components, appended_.size());
+    std::string xml = fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)"
+                                  "\n",
+                                  vtk_type<Number>(), name, components, appended_.size());
     appended_ += vtk_compressed({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     return xml;
 }

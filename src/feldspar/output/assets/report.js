@@ -180,7 +180,7 @@ function writeTests() {
     updates.push((i) => a.set(stressSeries(tests, i)));
     if (tests.some(hasGauges)) {
       grid.append(second);
-      const b = new XYChart(second, {x: "Strain in the middle of the specimen (10\u207b\u00b3)", y: stressLabel, series: strainSeries(tests[0])});
+      const b = new XYChart(second, {x: "Strain, middle of the specimen (10\u207b\u00b3)", y: stressLabel, series: strainSeries(tests[0])});
       updates.push((i) => b.set(strainSeries(tests[i])));
     }
     grid.append(third);
