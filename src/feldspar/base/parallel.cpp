@@ -12,7 +12,7 @@ namespace {
 template <class Condition>
 void spin_while(Condition waiting) {
     for (int turn = 0; waiting(); ++turn) {
-        if (turn < 4000) {
+        if (turn < 300) {
 #if defined(__x86_64__)
             _mm_pause();
 #endif

@@ -10,6 +10,9 @@ namespace {
 // falling faster than this only throws away what has to be climbed again.
 constexpr double kMostSlowing = 0.85;
 constexpr double kMostHastening = 1.06;
+// A local crack rings for a travel time whatever the speed is. If the load changes by no more than this share meanwhile, going
+// slower does not change what the crack does.
+constexpr double kLoadWhileCracking = 0.0025;
 constexpr double kFailing = 0.02;   // R* of a body that fails dynamically whatever the speed
 constexpr double kBlend = 0.5;   // of the newly observed loading mode
 
@@ -35,7 +38,10 @@ double RateControl::next(double speed, double unbalanced_N, double platen_force_
     const double factor = now > 0.0 ? std::clamp(std::sqrt(target_ / now), kMostSlowing, kMostHastening) : kMostHastening;
     // Once the specimen fails by itself, crawling does not help; a branch that softens quietly stays under control.
     const bool failing = past_peak && now > kFailing;
-    const double slowest = (failing ? 1e-7 : 6e-9 * relative_target_) * height_m_, fastest = std::max(slowest, 0.4 * platen_travel_m / travel_time_);
+    const double per_travel_time = platen_travel_m / travel_time_;
+    const double crawling = relative_target_ * std::max(6e-9 * height_m_, kLoadWhileCracking * per_travel_time);
+    const double slowest = failing ? std::max(crawling, 1e-7 * height_m_) : crawling;
+    const double fastest = std::max(slowest, 0.4 * per_travel_time);
     return std::clamp(speed * factor, slowest, fastest);
 }
 
