@@ -4,18 +4,10 @@
 
 namespace feldspar {
 
-Mat2 displacement_gradient(const Assembly& body, const Triangle& triangle) {
-    const std::vector<Vec2>& u = body.nodes.displacement;
-    const auto [i, j, k] = triangle.node;
-    const Vec2 gj = triangle.gradient[0], gk = triangle.gradient[1];
-    const Vec2 uj = u[j] - u[i], uk = u[k] - u[i];
-    return {uj.x * gj.x + uk.x * gk.x, uj.x * gj.y + uk.x * gk.y, uj.y * gj.x + uk.y * gk.x, uj.y * gj.y + uk.y * gk.y};
-}
-
 StoredEnergy stored_energy(const Assembly& body) {
     StoredEnergy sum;
     for (const Triangle& triangle : body.triangles)
-        sum.grains_J += triangle.volume_m3 * strain_energy_density(body.elasticity, displacement_gradient(body, triangle));
+        sum.grains_J += triangle.volume_m3 * strain_energy_density(body.elasticity, displacement_gradient(body.nodes.displacement, triangle));
     for (const Contact& contact : body.contacts) {
         const BondLaw& law = body.laws[contact.material];
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {

@@ -14,9 +14,6 @@ struct StoredEnergy {
     double pressure_J = 0.0;   ///< put in so far by the lateral pressure
 };
 
-/// G = F - I of a triangle in the current configuration.
-Mat2 displacement_gradient(const Assembly& body, const Triangle& triangle);
-
 StoredEnergy stored_energy(const Assembly& body);
 
 struct KineticEnergy {

@@ -12,6 +12,9 @@
 
 namespace feldspar {
 
+/// Platen speed of the paper's own numerics, m a step, unless the user gives one (docs/decisions: loading rate).
+inline constexpr double kPaperSpeed = 6.25e-9;
+
 /// Everything that the stages of a test share. Each stage (prepare, load) is a function of its own.
 struct Experiment {
     Experiment(const TestSetup& setup, const RunControl& control);
@@ -56,5 +59,14 @@ void choose_step(Experiment& experiment);
 
 /// From the unloaded body to the first moment of loading: elastic start (adaptive), consolidation (biaxial), initial velocities.
 void prepare(Experiment& experiment);
+
+class Recorder;
+
+/// Loads until a stop rule, the user or a force that is not a number ends it (@throws NumericalError for the last).
+void load(Experiment& experiment, Recorder& recorder, TestResult& result);
+
+/// Loading steps that a test of this kind typically takes, for estimates of time only: measured on the Augig granite at an
+/// accuracy of 0.5 % (docs/validation).
+double typical_steps(const Experiment& experiment);
 
 }  // namespace feldspar

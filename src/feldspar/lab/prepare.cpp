@@ -242,7 +242,7 @@ void prepare_adaptive(Experiment& e) {
 void prepare_plainly(Experiment& e) {
     if (e.setup.test.kind == TestKind::biaxial && e.setup.test.sigma3_Pa > 0.0) consolidate_by_ramp(e);
     note_isotropic(e);
-    const double speed = e.setup.numerics.speed_m.value_or(6.25e-9);
+    const double speed = e.setup.numerics.speed_m.value_or(kPaperSpeed);
     if (e.brazilian()) {
         e.change_speed(speed);
         return;

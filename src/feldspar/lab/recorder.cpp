@@ -162,11 +162,7 @@ Snapshot Recorder::complete(const Fields& f) const {
     s.axial_stress_Pa = f.row.axial_stress_Pa;
     s.displacement_m = f.displacement;
     for (const Triangle& triangle : e_.body.triangles) {
-        const auto [i, j, k] = triangle.node;
-        const Vec2 gj = triangle.gradient[0], gk = triangle.gradient[1];
-        const Vec2 uj = f.displacement[j] - f.displacement[i], uk = f.displacement[k] - f.displacement[i];
-        const Mat2 stress = cauchy_stress(e_.body.elasticity, {uj.x * gj.x + uk.x * gk.x, uj.x * gj.y + uk.x * gk.y,
-                                                               uj.y * gj.x + uk.y * gk.x, uj.y * gj.y + uk.y * gk.y});
+        const Mat2 stress = cauchy_stress(e_.body.elasticity, displacement_gradient(f.displacement, triangle));
         s.stress_xx_Pa.push_back(-stress.xx);
         s.stress_yy_Pa.push_back(-stress.yy);
         s.stress_xy_Pa.push_back(-stress.xy);

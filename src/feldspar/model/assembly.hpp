@@ -134,6 +134,14 @@ struct Assembly {
     double memory_bytes() const;
 };
 
+/// G = F - I of a triangle, from the displacements of all nodes.
+inline Mat2 displacement_gradient(const std::vector<Vec2>& u, const Triangle& triangle) {
+    const auto [i, j, k] = triangle.node;
+    const Vec2 gj = triangle.gradient[0], gk = triangle.gradient[1];
+    const Vec2 uj = u[j] - u[i], uk = u[k] - u[i];
+    return {uj.x * gj.x + uk.x * gk.x, uj.x * gj.y + uk.x * gk.y, uj.y * gj.x + uk.y * gk.x, uj.y * gj.y + uk.y * gk.y};
+}
+
 /// Direction and length of a contact's frame in the current configuration.
 struct ContactFrame {
     Vec2 n;

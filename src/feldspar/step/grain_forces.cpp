@@ -20,11 +20,8 @@ void add_triangles(Assembly& body, const Grain& grain) {
     for (int t = grain.triangle_begin; t < grain.triangle_end; ++t) {
         const Triangle& triangle = body.triangles[t];
         const auto [i, j, k] = triangle.node;
-        const Vec2 gj = triangle.gradient[0], gk = triangle.gradient[1];
-        const Vec2 uj = u[j] - u[i], uk = u[k] - u[i];
-        const Mat2 G = {uj.x * gj.x + uk.x * gk.x, uj.x * gj.y + uk.x * gk.y, uj.y * gj.x + uk.y * gk.x, uj.y * gj.y + uk.y * gk.y};
-        const Mat2 P = first_piola_stress(body.elasticity, G);
-        const Vec2 fj = -triangle.volume_m3 * (P * gj), fk = -triangle.volume_m3 * (P * gk);
+        const Mat2 P = first_piola_stress(body.elasticity, displacement_gradient(u, triangle));
+        const Vec2 fj = -triangle.volume_m3 * (P * triangle.gradient[0]), fk = -triangle.volume_m3 * (P * triangle.gradient[1]);
         body.nodes.force[j] += fj;
         body.nodes.force[k] += fk;
         body.nodes.force[i] -= fj + fk;
