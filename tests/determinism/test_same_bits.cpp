@@ -24,6 +24,10 @@ std::uint64_t hash(const TestResult& r) {
         add(row.lateral_strain_gauge);
         add(row.residual);
         add(row.platen_speed);
+        add(row.stress_bottom_Pa);
+        add(row.energy.external);   // the platens' work is summed by one thread while the others wait
+        add(row.energy.kinetic);
+        add(row.energy.friction);
         add(row.energy.fracture);
         add(row.energy.damping);
         add(row.energy.elastic_grains);

@@ -143,6 +143,63 @@ TEST_P(EveryLaw, BrokenPointIsPureFriction) {
     EXPECT_EQ(s.Fs_N, 0.0);
 }
 
+TEST(BondLaw, DamageIsTheSumOfBothDirections) {   // (C9), not the larger of the two
+    const BondLaw law = BondLaw::make(material(ContactLaw::bilinear));
+    BondState s;
+    const double un = 0.5 * (law.normal.x0 + law.normal.x_y), us = 0.5 * (law.shear.x0 + law.shear.x_y);   // half of 0.75 each
+    for (int k = 0; k < 1000; ++k) update_bond(law, kArea, 1e-3 * un, 0.0, s);
+    EXPECT_NEAR(s.damage, 0.375, 1e-9);
+    for (int k = 0; k < 1000; ++k) update_bond(law, kArea, 0.0, 1e-3 * us, s);
+    EXPECT_NEAR(s.damage, 0.75, 1e-9);
+}
+
+TEST(BondLaw, UnderPressureABrittlePointHoldsItsCohesionAndTheFriction) {   // (C8) with the friction part included
+    const ContactMaterial m = material(ContactLaw::brittle);
+    const BondLaw law = BondLaw::make(m);
+    const double pressure = 54e6, limit = m.tau_Pa + m.mu * pressure;
+    BondState s;
+    update_bond(law, kArea, -pressure / law.Kn_Pa_m, 0.0, s);
+    double largest = 0.0;
+    BondEvent event = BondEvent::none;
+    const double dus = 1e-4 * limit / law.Ks_Pa_m;   // 10000 steps to the limit
+    for (int k = 0; k < 10100 && event == BondEvent::none; ++k) {
+        event = update_bond(law, kArea, 0.0, dus, s);
+        if (event == BondEvent::none) largest = std::max(largest, std::abs(s.Fs_N) / kArea);
+    }
+    EXPECT_EQ(event, BondEvent::broke_in_shear);
+    EXPECT_NEAR(largest / limit, 1.0, 1.1e-4);   // it breaks within the step that passes the limit
+    EXPECT_NEAR(std::abs(s.Fs_N) / kArea / (m.mu * pressure), 1.0, 1e-9);
+}
+
+TEST_P(EveryLaw, SlidingUnderPressureIsFrictionAndTheRestIsFracture) {   // (C16)
+    const ContactMaterial m = material(GetParam());
+    const BondLaw law = BondLaw::make(m);
+    const double ks = law.Ks_Pa_m * kArea;
+    for (const double pressure : {0.0, 54e6}) {
+        BondState s;
+        update_bond(law, kArea, -pressure / law.Kn_Pa_m, 0.0, s);
+        const double stored = elastic_energy(law, kArea, s), reach = 2e-4;
+        constexpr int kSteps = 40000;
+        double work = stored;
+        for (int k = 0; k < kSteps; ++k) {
+            const double before = s.Fs_N;
+            update_bond(law, kArea, 0.0, reach / kSteps, s);
+            work -= 0.5 * (before + s.Fs_N) * reach / kSteps;
+        }
+        ASSERT_EQ(s.damage, 1.0);
+        // mu Fn over the sliding, which is the displacement without its elastic part. The brittle law loses its cohesion within the
+        // step after which it is broken, so that under pressure this loss is friction by (C16).
+        const double friction = m.mu * pressure * kArea, sliding = reach - friction / ks;
+        double expected = friction * sliding;
+        if (GetParam() == ContactLaw::brittle && pressure > 0.0) expected += 0.5 * m.tau_Pa * m.tau_Pa * kArea / law.Ks_Pa_m;
+        EXPECT_NEAR(s.friction_J, expected, 1e-3 * work) << pressure;
+        EXPECT_NEAR(s.fracture_J, work - stored - 0.5 * friction * friction / ks - expected, 1e-3 * work) << pressure;
+        if (pressure == 0.0) {
+            EXPECT_EQ(s.friction_J, 0.0);
+        }
+    }
+}
+
 TEST(BondLaw, TensionUnloadsWithTheElasticSlopeOrToTheOrigin) {
     for (const TensionUnloading option : {TensionUnloading::elastic, TensionUnloading::secant}) {
         ContactMaterial m = material(ContactLaw::bilinear);

@@ -56,5 +56,19 @@ TEST(PlaneElasticity, UniaxialStrainGivesHookesLaw) {
     EXPECT_NEAR(plane.yy / (E * strain), 0.0, 1e-6);
 }
 
+TEST(PlaneElasticity, CauchyStressIsForceOverTheDeformedSectionAndTurnsWithTheBody) {
+    const PlaneElasticity D = plane_elasticity(25.8e9, 0.23, PlaneState::stress);
+    const double lx = 1.1, ly = 0.95;   // large, so that the sections differ from the undeformed ones
+    const Mat2 P = first_piola_stress(D, {lx - 1.0, 0, 0, ly - 1.0});
+    const double sx = P.xx / ly, sy = P.yy / lx;
+    const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
+    const Mat2 F = rotated(angle, {lx, 0, 0, ly});
+    const Mat2 stress = cauchy_stress(D, {F.xx - 1.0, F.xy, F.yx, F.yy - 1.0});
+    EXPECT_NEAR(stress.xx / sx, (c * c * sx + s * s * sy) / sx, 1e-12);
+    EXPECT_NEAR(stress.yy / sx, (s * s * sx + c * c * sy) / sx, 1e-12);
+    EXPECT_NEAR(stress.xy / sx, c * s * (sx - sy) / sx, 1e-12);
+    EXPECT_NEAR(stress.yx / sx, c * s * (sx - sy) / sx, 1e-12);
+}
+
 }  // namespace
 }  // namespace feldspar
