@@ -88,9 +88,10 @@ void maintain_contacts(Experiment& e, ContactFinder& finder, TestResult& result,
     const ContactFinder::Changes changes = finder.update(e.body, e.mass_factor);
     e.rate_control_J += changes.kinetic_J;   // nodes that became heavier took their speed with them
     result.new_contacts += changes.made;
-    const int sides = choose_shape_functions(e.body);
-    result.shape_fallbacks += static_cast<long long>(sides) * steps;
-    if (sides > 0) result.angular_momentum_loss = std::max(result.angular_momentum_loss, fallback_moment_loss(e.body));
+    const ShapeChoice shapes = choose_shape_functions(e.body, e.mass_factor);
+    e.rate_control_J += shapes.kinetic_J;
+    result.shape_fallbacks += static_cast<long long>(shapes.fallback_sides) * steps;
+    if (shapes.fallback_sides > 0) result.angular_momentum_loss = std::max(result.angular_momentum_loss, fallback_moment_loss(e.body));
 }
 
 double mean_diameter(const Assembly& body) {

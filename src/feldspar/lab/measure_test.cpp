@@ -17,7 +17,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 TestProperties nothing() {
     TestProperties p{};
     p.peak_stress_Pa = p.first_crack_Pa = nan;
-    p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = p.E_gauge_Pa = p.nu = nan;
+    p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = p.E_gauge_Pa = p.nu = p.nu_tangent = nan;
     p.sigma_ci_crack_count_Pa = p.sigma_ci_crack_volume_Pa = p.sigma_ci_lateral_strain_Pa = p.sigma_cd_Pa = nan;
     return p;
 }
@@ -45,6 +45,13 @@ double secant(const LoadingCurve& curve) {
     return (half->stress_Pa - curve.points.front().stress_Pa) / half->strain;
 }
 
+/// (P5): over the same stress as (P3), from the gauges.
+double secant_ratio(const LoadingCurve& curve) {
+    const auto half = at_stress(curve, 0.5 * curve.peak_Pa());
+    if (!half || !(half->strain_gauge > 0.0)) return nan;
+    return -half->lateral_gauge / half->strain_gauge;
+}
+
 }  // namespace
 
 TestProperties measure(const TestResult& result) {
@@ -62,7 +69,8 @@ TestProperties measure(const TestResult& result) {
     p.E_tangent_Pa = slope_between(curve, 0.4, 0.6, &CurvePoint::strain, &CurvePoint::stress_Pa);
     p.E_average_Pa = slope_between(curve, 0.3, 0.7, &CurvePoint::strain, &CurvePoint::stress_Pa);
     p.E_gauge_Pa = slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::stress_Pa);
-    p.nu = -slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::lateral_gauge);
+    p.nu = secant_ratio(curve);
+    p.nu_tangent = -slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::lateral_gauge);
     if (!peak->reached) return p;   // the thresholds mean nothing before the peak is known
 
     p.sigma_ci_crack_count_Pa = crack_count_threshold(result, *peak);

@@ -107,7 +107,8 @@ struct TestProperties {
     double E_tangent_Pa;          ///< at 50 % of the peak (40 ... 60 %), from the platens
     double E_average_Pa;          ///< 30 ... 70 % of the peak, from the platens
     double E_gauge_Pa;            ///< tangent at 50 % of the peak, from the gauge
-    double nu;                    ///< 40 ... 60 % of the peak, from the gauges
+    double nu;                    ///< secant at 50 % of the peak, from the gauges: the same stress window as E_secant
+    double nu_tangent;            ///< 40 ... 60 % of the peak, from the gauges: grows as cracks begin to open
     double sigma_ci_crack_count_Pa;       ///< 1 % of the cracks at the peak
     double sigma_ci_crack_volume_Pa;      ///< reversal of the crack volumetric strain
     double sigma_ci_lateral_strain_Pa;    ///< lateral strain response

@@ -67,6 +67,7 @@ void remember_shapes(Assembly& body, const Contact& contact) {
         InitialShape shape;
         shape.a = shape_functions(pa, x);
         if (contact.b.grain >= 0) shape.b = shape_functions(corners(body.nodes, contact.b.node), x);
+        stiffness_shares(shape.a, shape.b, contact.b.grain >= 0, shape.covered_a, shape.covered_b);
         body.initial_shapes.push_back(shape);
     }
 }

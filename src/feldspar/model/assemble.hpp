@@ -1,6 +1,9 @@
 // From a specimen and its materials to a body that can move: nodes, triangles, contacts, platens, masses.
 #pragma once
 
+#include <array>
+#include <cmath>
+
 #include "feldspar/model/assembly.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -33,6 +36,21 @@ void set_scaled_masses(Assembly& body, MassBound bound, double factor);
 
 /// Real lumped masses: a third of each triangle's to each of its nodes.
 void set_real_masses(Assembly& body, double density_kg_m3);
+
+/// |N_i| sum|N_j| of the six shape functions of a contact point: what its stiffness counts for at each node (docs/theory:
+/// motion-and-mass). A platen has none.
+inline void stiffness_shares(const std::array<double, 3>& Na, const std::array<double, 3>& Nb, bool grain_b, std::array<double, 3>& a,
+                             std::array<double, 3>& b) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) sum += std::abs(Na[i]) + (grain_b ? std::abs(Nb[i]) : 0.0);
+    for (int i = 0; i < 3; ++i) {
+        a[i] = sum * std::abs(Na[i]);
+        b[i] = grain_b ? sum * std::abs(Nb[i]) : 0.0;
+    }
+}
+
+/// Adds to a node's mass; 0 in an imposed direction stays. @return kinetic energy that it gained at its present velocity, J.
+double add_mass(Nodes& nodes, int node, double mass_kg);
 
 /// Mass that a contact's stiffness asks of the six nodes, added to their masses (new contacts). @return kinetic energy that the
 /// heavier nodes gained at their present velocities, J.

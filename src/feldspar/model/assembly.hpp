@@ -83,9 +83,10 @@ struct ContactPoint {
     bool lost_compression = false; ///< compression left at an open gap vanished when it broke
 };
 
-/// Initial shape functions of a contact point on both sides; read only by the fall-back.
+/// What a contact point keeps of its shape functions, read only between steps and by the fall-back.
 struct InitialShape {
-    std::array<double, 3> a{}, b{};
+    std::array<double, 3> a{}, b{};              ///< of the undeformed state
+    std::array<double, 3> covered_a{}, covered_b{};  ///< |N_i| sum|N_j| that the masses of the nodes already allow for
 };
 
 using SlotForces = std::array<Vec2, 3>;   ///< forces on the three nodes of a contact side (a platen uses the first)

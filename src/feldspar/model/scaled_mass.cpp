@@ -110,12 +110,17 @@ void set_real_masses(Assembly& body, double density_kg_m3) {
     for (int i = 0; i < body.nodes.count(); ++i) set_mass(body.nodes, i, mass[i]);
 }
 
+double add_mass(Nodes& nodes, int node, double mass_kg) {
+    set_mass(nodes, node, nodes.mass[node] + mass_kg);
+    const double free_x = nodes.inverse_mass[node].x != 0.0, free_y = nodes.inverse_mass[node].y != 0.0;
+    const Vec2 v = nodes.velocity[node];
+    return 0.5 * mass_kg * (free_x * v.x * v.x + free_y * v.y * v.y);
+}
+
 double add_contact_mass(Assembly& body, const Contact& contact, double factor) {
     double kinetic = 0.0;
     visit_contact_stiffness(body, contact, [&](int node, double N, double sum, double kn, double ks, Vec2) {
-        const double extra = 0.25 * factor * sum * N * std::max(kn, ks);
-        set_mass(body.nodes, node, body.nodes.mass[node] + extra);
-        kinetic += 0.5 * extra * dot(body.nodes.velocity[node], body.nodes.velocity[node]);
+        kinetic += add_mass(body.nodes, node, 0.25 * factor * sum * N * std::max(kn, ks));
     });
     return kinetic;
 }

@@ -68,6 +68,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["E_average_GPa"] = in_GPa(p.E_average_Pa);
     test["E_gauge_GPa"] = in_GPa(p.E_gauge_Pa);
     test["nu"] = number(p.nu);
+    test["nu_tangent"] = number(p.nu_tangent);
     test["sigma_ci_crack_count_MPa"] = in_MPa(p.sigma_ci_crack_count_Pa);
     test["sigma_ci_crack_volume_MPa"] = in_MPa(p.sigma_ci_crack_volume_Pa);
     test["sigma_ci_lateral_strain_MPa"] = in_MPa(p.sigma_ci_lateral_strain_Pa);

@@ -24,7 +24,7 @@ struct Words {
 /// In the order of a table of results: what a laboratory reports first, then how it was reached.
 constexpr auto known = std::to_array<Words>({
     {"E_Pa", "Young's modulus, secant at 50 % of the peak", "E"},
-    {"nu", "Poisson's ratio", "\u03bd"},
+    {"nu", "Poisson's ratio, secant at 50 % of the peak", "\u03bd"},
     {"UCS_Pa", "Uniaxial compressive strength", "UCS"},
     {"DTS_Pa", "Direct tensile strength", "DTS"},
     {"BTS_Pa", "Brazilian tensile strength", "BTS"},
@@ -43,6 +43,7 @@ constexpr auto known = std::to_array<Words>({
     {"sigma_ci_lateral_strain_Pa", "Crack initiation stress, lateral strain response", "\u03c3ci"},
     {"sigma_cd_Pa", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd"},
     {"E_tangent_Pa", "Young's modulus, tangent at 50 % of the peak", "Et50"},
+    {"nu_tangent", "Poisson's ratio, tangent at 50 % of the peak", "\u03bd tangent"},
     {"E_average_Pa", "Young's modulus, average 30 to 70 % of the peak", "Eavg"},
     {"E_gauge_Pa", "Young's modulus, tangent, from the gauge", "E gauge"},
 });
@@ -82,7 +83,7 @@ UserQuantity user_quantity(const std::string& property) {
 
 std::string property_of_laboratory(const std::string& name) {
     if (name == "friction_angle") return "friction_angle_deg";
-    if (name == "nu" || name == "hoek_brown_mi" || name.find("_over_") != std::string::npos) return name;
+    if (name == "nu" || name == "nu_tangent" || name == "hoek_brown_mi" || name.find("_over_") != std::string::npos) return name;
     return name + "_Pa";
 }
 

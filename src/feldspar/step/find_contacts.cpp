@@ -96,28 +96,72 @@ ContactFinder::Changes ContactFinder::update(Assembly& body, double mass_factor)
     return changes;
 }
 
-int choose_shape_functions(Assembly& body) {
-    int sides = 0;
-    const auto departs = [](const std::array<double, 3>& now, const std::array<double, 3>& initial) {
-        return std::abs(now[0] - initial[0]) > 0.5 || std::abs(now[1] - initial[1]) > 0.5 || std::abs(now[2] - initial[2]) > 0.5;
-    };
+namespace {
+
+// Whether any shape function has departed from its initial value by more than the fall-back allows.
+bool departs(const std::array<double, 3>& now, const std::array<double, 3>& initial) {
+    return std::abs(now[0] - initial[0]) > 0.5 || std::abs(now[1] - initial[1]) > 0.5 || std::abs(now[2] - initial[2]) > 0.5;
+}
+
+// Gives the nodes of one side the mass that the point's present shape functions ask for beyond what is covered.
+double cover(Assembly& body, const EdgeNodes& nodes, const std::array<double, 3>& needed, std::array<double, 3>& covered, double per_share) {
+    double kinetic = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        if (needed[i] <= covered[i]) continue;
+        kinetic += add_mass(body.nodes, nodes[i], per_share * (needed[i] - covered[i]));
+        covered[i] = needed[i];
+    }
+    return kinetic;
+}
+
+// An extrapolated point is stiffer than the masses were made for: sum |N| grows from 1 to 2 a side before the fall-back. The
+// bound has a margin of a tenth (largest omega^2 3.5 of 4), so masses follow in steps of that size.
+double follow_stiffness(Assembly& body, const Contact& contact, int p, const std::array<double, 3>& Na, const std::array<double, 3>& Nb,
+                        double mass_factor) {
+    InitialShape& shape = body.initial_shapes[p];
+    const bool grain_b = contact.b.grain >= 0;
+    std::array<double, 3> a{}, b{};
+    stiffness_shares(Na, Nb, grain_b, a, b);
+    bool beyond = false;
+    for (int i = 0; i < 3; ++i) beyond = beyond || a[i] > 1.1 * shape.covered_a[i] + 0.05 || b[i] > 1.1 * shape.covered_b[i] + 0.05;
+    if (!beyond) return 0.0;
+    const BondLaw& law = body.laws[contact.material];
+    const double per_share = 0.25 * mass_factor * body.points[p].area_m2 * std::max(law.Kn_Pa_m, law.Ks_Pa_m);
+    double kinetic = cover(body, contact.a.node, a, shape.covered_a, per_share);
+    if (grain_b) kinetic += cover(body, contact.b.node, b, shape.covered_b, per_share);
+    return kinetic;
+}
+
+}  // namespace
+
+ShapeChoice choose_shape_functions(Assembly& body, double mass_factor) {
+    ShapeChoice choice;
     for (Contact& contact : body.contacts) {
         contact.initial_shape = false;
         if (contact.dropped) continue;
         const ContactFrame frame = contact_frame(body, contact);
+        const bool grain_b = contact.b.grain >= 0;
         const auto pa = corners(body.nodes, contact.a.node);
-        const auto pb = contact.b.grain >= 0 ? corners(body.nodes, contact.b.node) : pa;
-        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+        const auto pb = grain_b ? corners(body.nodes, contact.b.node) : pa;
+        const auto shapes_at = [&](int p) {
             const Vec2 x = frame.reference_point + body.points[p].along_m * frame.edge_tangent;
-            if (departs(shape_functions(pa, x), body.initial_shapes[p].a) ||
-                (contact.b.grain >= 0 && departs(shape_functions(pb, x), body.initial_shapes[p].b))) {
-                contact.initial_shape = true;
-                sides += contact.b.grain >= 0 ? 2 : 1;
-                break;
+            return std::array{shape_functions(pa, x), shape_functions(pb, x)};
+        };
+        const int end = contact.first_point + contact.points;
+        for (int p = contact.first_point; p < end && !contact.initial_shape; ++p) {
+            const auto [Na, Nb] = shapes_at(p);
+            contact.initial_shape = departs(Na, body.initial_shapes[p].a) || (grain_b && departs(Nb, body.initial_shapes[p].b));
+        }
+        if (contact.initial_shape) {
+            choice.fallback_sides += grain_b ? 2 : 1;
+        } else if (mass_factor > 0.0) {
+            for (int p = contact.first_point; p < end; ++p) {
+                const auto [Na, Nb] = shapes_at(p);
+                choice.kinetic_J += follow_stiffness(body, contact, p, Na, Nb, mass_factor);
             }
         }
     }
-    return sides;
+    return choice;
 }
 
 }  // namespace feldspar

@@ -88,8 +88,15 @@ private:
     std::vector<double> rest_overlaps_m_;
 };
 
+struct ShapeChoice {
+    int fallback_sides = 0;     ///< contact sides on the initial shape functions
+    double kinetic_J = 0.0;     ///< gained because nodes became heavier (scaled masses only)
+};
+
 /// Chooses for each contact between current and initial shape functions: the initial ones where any current value departs
-/// from its initial one by more than 0.5. @return number of contact sides on the fall-back.
-int choose_shape_functions(Assembly& body);
+/// from its initial one by more than 0.5. Where extrapolation makes a point stiffer than the scaled masses allow for, the
+/// masses follow, so that the step stays stable.
+/// @param mass_factor  factor of the scaled masses; 0 with real masses, which stay
+ShapeChoice choose_shape_functions(Assembly& body, double mass_factor);
 
 }  // namespace feldspar
