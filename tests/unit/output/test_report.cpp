@@ -77,7 +77,7 @@ TEST_F(Report, EscapesEverythingThatAUserCanWrite) {
         std::string::npos);
     const json data = json::parse(between(html, "id=\"data\">", "</script>"));
     EXPECT_EQ(data["job"]["name"], job.name);
-    EXPECT_EQ(data["job"]["resolved"], job.text);
+    EXPECT_EQ(data["job"]["resolved"], resolved_toml(job));
 }
 
 TEST_F(Report, ANameThatIsNoUnicodeDoesNotLoseTheReport) {
