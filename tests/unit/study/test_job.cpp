@@ -298,7 +298,7 @@ TEST(Examples, TheAugigGraniteIsTable7) {
     }
     EXPECT_EQ(read_job(folder / "job.toml").seeds.size(), 5u);
     EXPECT_EQ(read_job(folder / "job.toml").tests.size(), 5u);
-    EXPECT_EQ(read_job(folder / "short.toml").tests.size(), 3u);
+    EXPECT_EQ(read_job(folder / "short.toml").tests.size(), 5u);
 }
 
 TEST(JobTemplate, TheCommentedDefaultsAreTheDefaults) {
