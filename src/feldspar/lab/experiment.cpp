@@ -34,7 +34,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
         if (!s.specimen->outline.is_disc) throw InputError({}, "a Brazilian test needs a disc");
         height_m = 2.0 * s.specimen->outline.radius_m;
         section_m2 = 0.5 * std::numbers::pi * height_m * body.thickness_m;
-        attach_plates(body, *s.specimen, s.contact, s.test.plate_stiffness_factor, s.test.plate_mu);
+        attach_plates(body, *s.specimen, s.contact, s.test.plate_stiffness_factor, s.test.plate_mu.value_or(0.4));
     } else {
         height_m = box.upper.y - box.lower.y;
         attach_platen_rows(body, *s.specimen);

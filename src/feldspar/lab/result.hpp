@@ -116,6 +116,7 @@ struct TestProperties {
 };
 
 struct TestResult {
+    std::string variant;                  ///< which of the job's variants this is; empty if the job has none
     TestSpec test;
     ModelSpec model;
     ContactMaterial contact;

@@ -7,8 +7,9 @@
 
 namespace feldspar {
 
-enum class GrainKind { flexible };                     // rigid and inner particles will join here
-enum class ContactKind { lobatto3, point };            ///< three Lobatto points, or one (PCM)
+enum class GrainKind { flexible, rigid, inner_particles };
+enum class ContactKind { lobatto3, point };            ///< three Lobatto points, or one (PCM); inner particles always have one
+enum class ContactNormal { centres, edge };            ///< centre to centre, or the Laguerre edge's normal (inner particles, between grains)
 enum class PlaneState { stress, strain };
 enum class ContactLaw { bilinear, bilinear_literal, linear, brittle };
 enum class ShearMeasure { total, beyond_friction };    ///< |us|, or |us| - mu max(Fn, 0) / ks
@@ -17,13 +18,14 @@ enum class TensionUnloading { elastic, secant };       ///< slope kn from the cu
 struct ModelSpec {
     GrainKind kind = GrainKind::flexible;
     ContactKind contact = ContactKind::lobatto3;
+    ContactNormal normal = ContactNormal::centres;
     PlaneState plane = PlaneState::stress;
 };
 
-/// Linear elastic grain.
+/// Linear elastic grain. Rigid grains and grains of inner particles have no elastic constants of their own.
 struct GrainMaterial {
-    double E_Pa = 0.0;
-    double nu = 0.0;
+    double E_Pa = 0.0;                  ///< flexible grains only
+    double nu = 0.0;                    ///< flexible grains only
     double density_kg_m3 = 2650.0;
 };
 
@@ -62,8 +64,9 @@ struct TestSpec {
     double sigma3_Pa = 0.0;              ///< biaxial only
     double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
     double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
-    double plate_stiffness_factor = 1.0; ///< Brazilian: plate Kn as a multiple of the contacts' Kn
-    double plate_mu = 0.4;               ///< Brazilian: friction of the plates
+    double plate_stiffness_factor = 1.0; ///< plates: their Kn as a multiple of the contacts' Kn
+    std::optional<double> plate_mu;      ///< plates: friction; default 0.4 in the Brazilian test, else 0
+    int membrane_plates = 16;            ///< biaxial, rigid and inner particles: plates of the membrane on each side
     int snapshots = 8;                   ///< fields kept between the first crack and the end, besides start, peak and end
     std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
 };
@@ -96,6 +99,14 @@ inline const char* name(ContactLaw law) {
 }
 inline const char* name(ContactKind kind) { return kind == ContactKind::lobatto3 ? "lobatto3" : "point"; }
 inline const char* name(PlaneState plane) { return plane == PlaneState::stress ? "stress" : "strain"; }
-inline const char* name(GrainKind) { return "flexible"; }
+inline const char* name(GrainKind kind) {
+    switch (kind) {
+        case GrainKind::flexible: return "flexible";
+        case GrainKind::rigid: return "rigid";
+        case GrainKind::inner_particles: return "inner-particles";
+    }
+    return "?";
+}
+inline const char* name(ContactNormal normal) { return normal == ContactNormal::centres ? "centres" : "edge"; }
 
 }  // namespace feldspar

@@ -51,6 +51,7 @@ struct SpecimenSpec {
     std::optional<double> merge_length_m;         ///< shorter cell edges are merged; absent = mean diameter / 12; 0 = never
     int triangles_per_grain = 0;                  ///< 0 = the fixed topology; otherwise a finer mesh of about so many
     std::filesystem::path packing_file;           ///< if not empty: load this packing instead of making one
+    double particles_per_grain = 0.0;             ///< inner particles in a grain of mean area; 0 = grains are not filled
 };
 
 /// The outline made ready: a counter-clockwise polygon with a label on each edge. A disc keeps its circle: cells on it get
@@ -101,6 +102,40 @@ struct GrainMesh {
     std::vector<int> edge_triangle;               ///< the triangle that owns edge k of grain g: [edge_begin[g] + k]
 };
 
+/// Where an inner particle lies in its cell.
+enum class ParticlePlace : std::uint8_t { interior, edge, vertex };
+
+/// Two touching particles of one grain.
+struct InsideContact {
+    int a = 0, b = 0;   ///< particles
+};
+
+/// Two particles of different grains that face each other across a cell edge, with their share of it.
+struct AcrossContact {
+    int a = 0, b = 0;              ///< particles; a lies in cell_a, b in the neighbour
+    int cell_a = 0, edge_a = 0;    ///< the cell edge, seen from a's cell ...
+    int cell_b = 0, edge_b = 0;    ///< ... and from b's
+    Vec2 from, to;                 ///< m, the share of the edge, along a's edge; the shares of an edge add up to the edge
+};
+
+/// A particle that lies along the outline, with its share of the cell edge there: platens and membranes press on these.
+struct OutlineShare {
+    int particle = 0;
+    int cell = 0, edge = 0;
+    Vec2 from, to;                 ///< m
+};
+
+/// Small discs inside the cells, for grains that are filled with inner particles. Contiguous by grain.
+struct Filling {
+    std::vector<int> particle_begin;    ///< grains + 1 offsets; empty if the grains are not filled
+    std::vector<Vec2> centres;          ///< m
+    std::vector<double> radii_m;
+    std::vector<ParticlePlace> places;
+    std::vector<InsideContact> inside;   ///< in the order of their grains
+    std::vector<AcrossContact> across;
+    std::vector<OutlineShare> outline;
+};
+
 /// What a user should know of the specimen before trusting it.
 struct SpecimenQuality {
     int grains = 0;
@@ -118,6 +153,9 @@ struct SpecimenQuality {
     double mean_diameter_m = 0.0;
     double width_over_largest_grain = 0.0;
     double area_error = 0.0;      ///< |sum of the cells - outline| / outline
+    int inner_particles = 0;      ///< small discs in all grains, if these are filled
+    int inside_contacts = 0;      ///< between particles of one grain
+    int across_contacts = 0;      ///< between particles of neighbouring grains
     std::vector<std::string> warnings;
 };
 
@@ -129,6 +167,7 @@ struct Specimen {
     Packing packing;
     Tessellation cells;
     GrainMesh mesh;
+    Filling filling;          ///< empty unless the spec asks for inner particles
     SpecimenQuality quality;
 };
 

@@ -77,7 +77,7 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen) {
     if (brazilian) {
         result.diameter_m = brazilian_diameter(table, specimen);
         test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
-        test.plate_mu = table.number("plate_mu", not_negative, test.plate_mu);
+        test.plate_mu = table.number("plate_mu", not_negative, 0.4);
     }
     if (test.kind != TestKind::biaxial) {
         result.tests.push_back(test);

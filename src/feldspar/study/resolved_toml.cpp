@@ -151,7 +151,7 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
     if (test.kind == TestKind::brazilian) {
         out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
         out.number("plate_stiffness_factor", test.plate_stiffness_factor);
-        out.number("plate_mu", test.plate_mu);
+        out.number("plate_mu", test.plate_mu.value_or(0.4));
     }
     out.raw("snapshots", std::to_string(test.snapshots));
     if (!test.seeds.empty()) out.raw("seeds", seed_list(test.seeds));
