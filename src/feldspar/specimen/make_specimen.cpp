@@ -10,6 +10,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -35,6 +36,11 @@ void check_numbers(const SpecimenSpec& spec) {
     if (spec.triangles_per_grain < 0) {
         throw InputError({"", 0, 0, "specimen.grains.triangles_per_grain"}, fmt::format("{}", spec.triangles_per_grain),
                          "0 for the fixed topology, or a number of triangles");
+    }
+    const double particles = spec.particles_per_grain;
+    if (particles != 0.0 && !(particles >= 7.0 && particles <= 500.0)) {
+        throw InputError({"", 0, 0, "specimen.grains.particles_per_grain"}, fmt::format("{:g}", particles),
+                         "0 for grains that are not filled, or from 7 to 500");
     }
 }
 
@@ -161,6 +167,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed) {
     const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
     specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
     specimen.mesh = mesh_grains(specimen.cells, spec.triangles_per_grain);
+    if (spec.particles_per_grain > 0.0) specimen.filling = fill_grains(specimen.cells, spec.particles_per_grain, seed);
 
     quality.grains = static_cast<int>(specimen.packing.centres.size());
     quality.merged_edges = specimen.cells.merged_edges;
@@ -171,6 +178,9 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed) {
         smaller_side(specimen.outline) / (2.0 * *std::max_element(specimen.packing.radii_m.begin(), specimen.packing.radii_m.end()));
     measure_cells(specimen, quality);
     measure_mesh(specimen.mesh, quality);
+    quality.inner_particles = static_cast<int>(specimen.filling.centres.size());
+    quality.inside_contacts = static_cast<int>(specimen.filling.inside.size());
+    quality.across_contacts = static_cast<int>(specimen.filling.across.size());
     quality.warnings = warnings_about(quality);
     return specimen;
 }

@@ -1,0 +1,216 @@
+#include "feldspar/specimen/settle_particles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "feldspar/geometry/polygon.hpp"
+
+namespace feldspar {
+namespace {
+
+/// Discs push each other apart below these distances / diameter: first far, which spreads them, then near, which lets them
+/// keep what room they have.
+constexpr double spreading_reach = 1.25, settling_reach = 1.04;
+constexpr int tries_per_disc = 12;
+
+class Settling {
+public:
+    Settling(GrainRing& ring, std::span<const Vec2> corners)
+        : ring_(ring), corners_(corners), force_(ring.centres.size()), velocity_(ring.centres.size()) {}
+
+    /// FIRE with unit masses and stiffness until the largest force falls under 1e-3 diameters, or after so many steps.
+    void run(double reach, int steps);
+
+private:
+    void find_neighbours(double reach);
+    bool list_is_stale() const;
+    double forces(double reach);
+    void push_from_walls(int i);
+    void hold(int i);
+    void advance();
+
+    GrainRing& ring_;
+    std::span<const Vec2> corners_;
+    std::vector<Vec2> force_, velocity_, listed_at_;
+    std::vector<std::pair<int, int>> near_;
+    double skin_ = 0.0, time_step_ = 0.1, mixing_ = 0.1;
+    int steps_downhill_ = 0;
+};
+
+void Settling::find_neighbours(double reach) {
+    skin_ = 0.4 * ring_.diameter_m;
+    near_.clear();
+    const double far = reach + skin_;
+    for (int i = 0; i < std::ssize(ring_.centres); ++i) {
+        for (int j = i + 1; j < std::ssize(ring_.centres); ++j) {
+            const Vec2 apart = ring_.centres[j] - ring_.centres[i];
+            if (dot(apart, apart) < far * far) near_.emplace_back(i, j);
+        }
+    }
+    listed_at_ = ring_.centres;
+}
+
+bool Settling::list_is_stale() const {
+    for (std::size_t i = 0; i < ring_.centres.size(); ++i) {
+        const Vec2 moved = ring_.centres[i] - listed_at_[i];
+        if (dot(moved, moved) > 0.25 * skin_ * skin_) return true;
+    }
+    return false;
+}
+
+void Settling::push_from_walls(int i) {
+    const double radius = 0.5 * ring_.diameter_m;
+    for (std::size_t k = 0; k < corners_.size(); ++k) {
+        const Vec2 out = ring_.centres[i] - closest_on_segment(ring_.centres[i], corners_[k], corners_[(k + 1) % corners_.size()]);
+        const double distance = norm(out);
+        if (distance < radius && distance > 0.0) force_[i] += ((radius - distance) / distance) * out;
+    }
+}
+
+/// Keeps the force on a ring disc along the edge that it may slide on; a corner disc has none.
+void Settling::hold(int i) { force_[i] = dot(force_[i], ring_.along[i]) * ring_.along[i]; }
+
+/// @returns the square of the largest force (m^2, stiffness 1)
+double Settling::forces(double reach) {
+    if (listed_at_.empty() || list_is_stale()) find_neighbours(reach);
+    std::fill(force_.begin(), force_.end(), Vec2{});
+    for (const auto& [i, j] : near_) {
+        const Vec2 apart = ring_.centres[j] - ring_.centres[i];
+        const double distance2 = dot(apart, apart);
+        if (distance2 >= reach * reach) continue;
+        const double distance = std::sqrt(distance2);
+        const Vec2 push = distance > 0.0 ? ((reach - distance) / distance) * apart : Vec2{reach, 0.0};
+        force_[i] -= push;
+        force_[j] += push;
+    }
+    double largest2 = 0.0;
+    for (int i = 0; i < std::ssize(ring_.centres); ++i) {
+        if (ring_.places[i] == ParticlePlace::interior) {
+            push_from_walls(i);
+        } else {
+            hold(i);
+        }
+        largest2 = std::max(largest2, dot(force_[i], force_[i]));
+    }
+    return largest2;
+}
+
+void Settling::advance() {
+    double power = 0.0, speed2 = 0.0, force2 = 0.0;
+    for (std::size_t i = 0; i < force_.size(); ++i) power += dot(force_[i], velocity_[i]);
+    if (power > 0.0) {
+        if (++steps_downhill_ > 5) {
+            time_step_ = std::min(1.1 * time_step_, 0.4);
+            mixing_ *= 0.99;
+        }
+    } else {
+        std::fill(velocity_.begin(), velocity_.end(), Vec2{});
+        steps_downhill_ = 0;
+        time_step_ = std::max(0.5 * time_step_, 0.05);
+        mixing_ = 0.1;
+    }
+    for (std::size_t i = 0; i < force_.size(); ++i) {
+        velocity_[i] += time_step_ * force_[i];
+        speed2 += dot(velocity_[i], velocity_[i]);
+        force2 += dot(force_[i], force_[i]);
+    }
+    const double turn = force2 > 0.0 ? mixing_ * std::sqrt(speed2 / force2) : 0.0;
+    const double farthest = 0.1 * ring_.diameter_m;
+    for (std::size_t i = 0; i < force_.size(); ++i) {
+        velocity_[i] = (1.0 - mixing_) * velocity_[i] + turn * force_[i];
+        Vec2 move = time_step_ * velocity_[i];
+        const double length = norm(move);
+        if (length > farthest) move *= farthest / length;
+        ring_.centres[i] += move;
+    }
+}
+
+void Settling::run(double reach, int steps) {
+    listed_at_.clear();
+    const double enough = 1e-3 * ring_.diameter_m;
+    for (int step = 0; step < steps; ++step) {
+        if (forces(reach) < enough * enough) return;
+        advance();
+    }
+}
+
+/// A random place in the cell that keeps clear of the walls and of all discs as well as any of some tries.
+Vec2 roomiest_place(const GrainRing& ring, std::span<const Vec2> corners, const Box& box, RandomStream& random) {
+    Vec2 best = ring.centres.front();
+    double most = -1.0;
+    for (int trial = 0; trial < tries_per_disc;) {
+        const double x = random.uniform(box.lower.x, box.upper.x), y = random.uniform(box.lower.y, box.upper.y);
+        if (!contains(corners, {x, y})) continue;
+        ++trial;
+        double room2 = std::numeric_limits<double>::infinity();
+        for (const Vec2 c : ring.centres) {
+            const Vec2 apart = c - Vec2{x, y};
+            room2 = std::min(room2, dot(apart, apart));
+        }
+        if (room2 > most) {
+            most = room2;
+            best = {x, y};
+        }
+    }
+    return best;
+}
+
+/// The disc to take away: of the pair that overlaps most, the one that is held least; or an inner disc in the wall; or -1.
+int worst_disc(const GrainRing& ring, std::span<const Vec2> corners) {
+    int worst = -1;
+    double nearest = ring.diameter_m * (1.0 - largest_particle_overlap) * (1.0 - 1e-6);
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
+            const double distance = norm(ring.centres[j] - ring.centres[i]);
+            if (distance >= nearest) continue;
+            nearest = distance;
+            worst = ring.places[j] < ring.places[i] ? j : i;
+        }
+    }
+    if (worst >= 0) return worst;
+    const double radius = 0.5 * ring.diameter_m * (1.0 - 1e-10);
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        const Vec2 p = ring.centres[i];
+        if (!contains(corners, p) || distance_to_boundary(corners, p) < radius) return i;
+    }
+    return -1;
+}
+
+/// Moves inner discs that still press into a wall off it.
+void clear_walls(GrainRing& ring, std::span<const Vec2> corners) {
+    const double radius = 0.5 * ring.diameter_m;
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        if (ring.places[i] != ParticlePlace::interior) continue;
+        for (int sweep = 0; sweep < 20; ++sweep) {
+            for (std::size_t k = 0; k < corners.size(); ++k) {
+                Vec2& p = ring.centres[i];
+                const Vec2 nearest = closest_on_segment(p, corners[k], corners[(k + 1) % corners.size()]);
+                const double distance = norm(p - nearest);
+                if (distance < radius && distance > 0.0) p = nearest + (radius / distance) * (p - nearest);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random) {
+    const Box box = bounding_box(corners);
+    for (int i = 0; i < count; ++i) {
+        const Vec2 place = roomiest_place(ring, corners, box, random);
+        ring.centres.push_back(place);
+        ring.places.push_back(ParticlePlace::interior);
+        ring.along.push_back({});
+    }
+    Settling(ring, corners).run(spreading_reach * ring.diameter_m, 60);
+    while (true) {
+        Settling(ring, corners).run(settling_reach * ring.diameter_m, 300);
+        clear_walls(ring, corners);
+        const int worst = worst_disc(ring, corners);
+        if (worst < 0 || ring.places[worst] == ParticlePlace::vertex) return;
+        erase_disc(ring, worst);
+    }
+}
+
+}  // namespace feldspar
