@@ -5,6 +5,8 @@
 
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
+#include "feldspar/model/platens.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/step/step.hpp"
 
@@ -28,49 +30,49 @@ Assembly granite(bool disc) {
     contact.mu = 0.4;
     contact.Gfn_J_m2 = 20.0;
     contact.Gfs_J_m2 = 800.0;
-    Assembly body = assemble(make_specimen(spec, 1), ModelSpec{}, {25.8e9, 0.23, 2650.0}, contact);
-    set_scaled_masses(body, MassBound::tensor, 1.0);
-    for (int n = 0; n < body.nodes.count(); ++n) body.nodes.displacement[n] = 1e-4 * body.nodes.reference[n];
-    return body;
+    Assembly assembly = assemble(make_specimen(spec, 1), ModelSpec{}, {25.8e9, 0.23, 2650.0}, contact);
+    set_scaled_masses(assembly, MassBound::tensor, 1.0);
+    for (int n = 0; n < assembly.nodes.count(); ++n) assembly.nodes.displacement[n] = 1e-4 * assembly.nodes.reference[n];
+    return assembly;
 }
 
-void label(benchmark::State& state, const Assembly& body) {
+void label(benchmark::State& state, const Assembly& assembly) {
     const double steps = static_cast<double>(state.iterations());
     using Counter = benchmark::Counter;
     const auto per = [&](std::size_t count) { return Counter(steps * static_cast<double>(count), Counter::kIsRate | Counter::kInvert); };
-    state.counters["s/triangle"] = per(body.triangles.size());
-    state.counters["s/point"] = per(body.points.size());
-    state.counters["B/grain"] = body.memory_bytes() / static_cast<double>(body.grains.size());
+    state.counters["s/triangle"] = per(assembly.triangles.size());
+    state.counters["s/point"] = per(assembly.points.size());
+    state.counters["B/grain"] = assembly.memory_bytes() / static_cast<double>(assembly.bodies.size());
 }
 
 void contact_stage(benchmark::State& state) {
-    Assembly body = granite(false);
-    for (auto _ : state) contact_forces(body, {0, static_cast<int>(body.contacts.size())}, StepSettings{}, 0);
-    label(state, body);
+    Assembly assembly = granite(false);
+    for (auto _ : state) contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, StepSettings{}, 0);
+    label(state, assembly);
 }
 
 void grain_stage(benchmark::State& state) {
-    Assembly body = granite(false);
+    Assembly assembly = granite(false);
     StepSettings settings;
     settings.dt = 0.0;   // the same state every time
-    for (auto _ : state) grain_forces(body, {0, static_cast<int>(body.grains.size())}, settings);
-    label(state, body);
+    for (auto _ : state) body_forces(assembly, {0, static_cast<int>(assembly.bodies.size())}, settings);
+    label(state, assembly);
 }
 
 void whole_step(benchmark::State& state, bool disc) {
-    Assembly body = granite(disc);
+    Assembly assembly = granite(disc);
     Team team(static_cast<int>(state.range(0)));
     StepSettings settings;
     settings.viscous = 0.01;
     settings.strength = Strength::unlimited;
     PlatenWork work;
-    for (auto _ : state) advance(body, team, settings, 0, 10, work);
+    for (auto _ : state) advance(assembly, team, settings, 0, 10, work);
     state.SetItemsProcessed(state.iterations() * 10);   // steps
 }
 
 void energy_sums(benchmark::State& state) {
-    const Assembly body = granite(false);
-    for (auto _ : state) benchmark::DoNotOptimize(stored_energy(body));
+    const Assembly assembly = granite(false);
+    for (auto _ : state) benchmark::DoNotOptimize(stored_energy(assembly));
 }
 
 BENCHMARK(contact_stage)->Unit(benchmark::kMicrosecond);

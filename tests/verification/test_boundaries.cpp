@@ -7,6 +7,8 @@
 
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
+#include "feldspar/model/platens.hpp"
 #include "fixtures.hpp"
 
 namespace feldspar {
@@ -14,21 +16,21 @@ namespace {
 
 TEST(Boundaries, PressureActsNormalToTheInitialFacesOverTheirCurrentLength) {   // (L1)
     const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.04));
-    Assembly body = assemble(*specimen, ModelSpec{}, fixtures::granite(), fixtures::table7());
-    attach_platen_rows(body, *specimen);
+    Assembly assembly = assemble(*specimen, ModelSpec{}, fixtures::granite(), fixtures::table7());
+    attach_platen_rows(assembly, *specimen);
     const double c = 1.1 * std::cos(0.2), s = 1.1 * std::sin(0.2), pressure = 5e6;   // turned by 0.2 and stretched by 1.1
-    for (int n = 0; n < body.nodes.count(); ++n) {
-        const Vec2 X = body.nodes.reference[n];
-        body.nodes.displacement[n] = Vec2{c * X.x - s * X.y, s * X.x + c * X.y} - X;
+    for (int n = 0; n < assembly.nodes.count(); ++n) {
+        const Vec2 X = assembly.nodes.reference[n];
+        assembly.nodes.displacement[n] = Vec2{c * X.x - s * X.y, s * X.x + c * X.y} - X;
     }
     Team team(1);
-    evaluate_forces(body, team, Strength::unlimited);
-    const std::vector<Vec2> without = body.nodes.force;
-    body.pressure_Pa = pressure;
-    evaluate_forces(body, team, Strength::unlimited);
+    evaluate_forces(assembly, team, Strength::unlimited);
+    const std::vector<Vec2> without = assembly.nodes.force;
+    assembly.pressure_Pa = pressure;
+    evaluate_forces(assembly, team, Strength::unlimited);
     Vec2 on_left, on_right;
-    for (int n = 0; n < body.nodes.count(); ++n) (body.nodes.reference[n].x < 0.01 ? on_left : on_right) += body.nodes.force[n] - without[n];
-    const double expected = pressure * 1.1 * 0.04 * body.thickness_m;   // both sides are 0.04 m high
+    for (int n = 0; n < assembly.nodes.count(); ++n) (assembly.nodes.reference[n].x < 0.01 ? on_left : on_right) += assembly.nodes.force[n] - without[n];
+    const double expected = pressure * 1.1 * 0.04 * assembly.thickness_m;   // both sides are 0.04 m high
     // The stretch's own forces, about 1e5 N a node, are taken away again and leave their rounding, 1e-11 N a node.
     EXPECT_NEAR(on_left.x / expected, 1.0, 1e-9);
     EXPECT_NEAR(on_right.x / expected, -1.0, 1e-9);
@@ -37,8 +39,8 @@ TEST(Boundaries, PressureActsNormalToTheInitialFacesOverTheirCurrentLength) {   
 }
 
 TEST(Boundaries, DampingOfTheDeviationLeavesTheLoadingMotionAlone) {   // (M3)
-    Assembly body = assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
-    set_scaled_masses(body, MassBound::tensor, 1.0);
+    Assembly assembly = assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    set_scaled_masses(assembly, MassBound::tensor, 1.0);
     Team team(1);
     StepSettings settings;
     settings.viscous = 0.1;
@@ -49,17 +51,17 @@ TEST(Boundaries, DampingOfTheDeviationLeavesTheLoadingMotionAlone) {   // (M3)
     // deviation loses the factor (1 - c/2) / (1 + c/2) a step.
     const double factor = 0.95 / 1.05;
     for (const double start : {1.0, 2.0}) {
-        for (int n = 0; n < body.nodes.count(); ++n) {
-            body.nodes.displacement[n] = {};
-            body.nodes.loading_mode[n] = mode;
-            body.nodes.velocity[n] = start * loading;
+        for (int n = 0; n < assembly.nodes.count(); ++n) {
+            assembly.nodes.displacement[n] = {};
+            assembly.nodes.loading_mode[n] = mode;
+            assembly.nodes.velocity[n] = start * loading;
         }
-        for (GrainWork& work : body.grain_work) work = {};
-        const double before = kinetic_energy(body, settings.speed).total_J;
-        advance(body, team, settings, 0, 10, none);
+        for (BodyWork& work : assembly.body_work) work = {};
+        const double before = kinetic_energy(assembly, settings.speed).total_J;
+        advance(assembly, team, settings, 0, 10, none);
         const double left = 1.0 + (start - 1.0) * std::pow(factor, 10);
-        for (const Vec2 V : body.nodes.velocity) EXPECT_LT(norm(V - left * loading), 1e-6 * norm(loading));   // rounding of the shapes
-        EXPECT_NEAR(stored_energy(body).damping_J / before, 1.0 - left * left / (start * start), 1e-6);
+        for (const Vec2 V : assembly.nodes.velocity) EXPECT_LT(norm(V - left * loading), 1e-6 * norm(loading));   // rounding of the shapes
+        EXPECT_NEAR(stored_energy(assembly).damping_J / before, 1.0 - left * left / (start * start), 1e-6);
     }
 }
 
@@ -69,18 +71,17 @@ TEST(Boundaries, PlateContactsHaveTheirStiffnessFrictionAndFirstTouch) {   // (C
     s.test.plate_mu = 0.25;
     const RunControl control = fixtures::threads(1);
     const Experiment e(s, control);
-    const BondLaw& law = e.body.laws.at(1);
+    const BondLaw& law = e.assembly.laws.at(at_plates);
     EXPECT_DOUBLE_EQ(law.Kn_Pa_m, 0.5 * s.contact.Kn_Pa_m);
     EXPECT_DOUBLE_EQ(law.Ks_Pa_m, s.contact.eta * 0.5 * s.contact.Kn_Pa_m);
     EXPECT_DOUBLE_EQ(law.mu, 0.25);
-    for (const Platen& platen : e.body.platens) {
-        ASSERT_FALSE(platen.contacts.empty());
+    for (const Platen& platen : e.assembly.platens) {
         double smallest = INFINITY;
-        for (const int c : platen.contacts) {
-            const Contact& contact = e.body.contacts[c];
+        for (const Contact& contact : e.assembly.contacts) {
+            if (contact.b.body != platen.plate) continue;
             ASSERT_EQ(contact.points, 1);
-            const ContactPoint& point = e.body.points[contact.first_point];
-            EXPECT_DOUBLE_EQ(point.area_m2, 2.0 * e.body.grains[contact.a.grain].radius_m * e.body.thickness_m);
+            const ContactPoint& point = e.assembly.points[contact.first_point];
+            EXPECT_DOUBLE_EQ(point.area_m2, 2.0 * e.assembly.bodies[contact.a.body].radius_m * e.assembly.thickness_m);
             EXPECT_EQ(point.bond.damage, 1.0);
             smallest = std::min(smallest, point.bond.un_m);
         }
@@ -106,8 +107,8 @@ double share_of_first_damage(double tau_Pa, double sigma_nt_Pa) {
     choose_step(e);
     prepare(e);
     double share = 0.0;
-    for (const ContactPoint& point : e.body.points) {
-        const BondLaw& law = e.body.laws[0];
+    for (const ContactPoint& point : e.assembly.points) {
+        const BondLaw& law = e.assembly.laws[0];
         share = std::max({share, point.bond.un_m / law.normal.x0, std::abs(point.bond.us_m) / law.shear.x0});
     }
     return share;

@@ -41,14 +41,14 @@ TEST(ElasticBodies, BrazilianStressAroundTheCentreIsTheClosedForm) {
     Experiment e(s, control);
     choose_step(e);
     prepare(e);
-    const Reactions reactions = platen_reactions(e.body);
-    const double P = 0.5 * (reactions.loading - reactions.rest), D = 0.08, t = e.body.thickness_m;
+    const Reactions reactions = platen_reactions(e.assembly);
+    const double P = 0.5 * (reactions.loading - reactions.rest), D = 0.08, t = e.assembly.thickness_m;
     double sxx = 0.0, syy = 0.0, volume = 0.0;
-    for (const Triangle& triangle : e.body.triangles) {
-        const Vec2 centre = (1.0 / 3.0) * (e.body.nodes.reference[triangle.node[0]] + e.body.nodes.reference[triangle.node[1]] +
-                                           e.body.nodes.reference[triangle.node[2]]);
+    for (const Triangle& triangle : e.assembly.triangles) {
+        const Vec2 centre = (1.0 / 3.0) * (e.assembly.nodes.reference[triangle.node[0]] + e.assembly.nodes.reference[triangle.node[1]] +
+                                           e.assembly.nodes.reference[triangle.node[2]]);
         if (norm(centre) > 0.008) continue;
-        const Mat2 stress = cauchy_stress(e.body.elasticity, displacement_gradient(e.body.nodes.displacement, triangle));
+        const Mat2 stress = cauchy_stress(e.assembly.elasticity, displacement_gradient(e.assembly.nodes.displacement, triangle));
         sxx += stress.xx * triangle.volume_m3;
         syy += stress.yy * triangle.volume_m3;
         volume += triangle.volume_m3;

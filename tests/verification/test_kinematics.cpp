@@ -6,6 +6,8 @@
 #include "feldspar/base/rng.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
+#include "feldspar/model/platens.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 
@@ -17,85 +19,83 @@ using fixtures::make;
 using fixtures::rectangle;
 using fixtures::table7;
 
-Vec2 turned(Vec2 x, double angle) { return {std::cos(angle) * x.x - std::sin(angle) * x.y, std::sin(angle) * x.x + std::cos(angle) * x.y}; }
-
-double largest_force(const Assembly& body) {
+double largest_force(const Assembly& assembly) {
     double largest = 0.0;
-    for (const Vec2 f : body.nodes.force) largest = std::max(largest, norm(f));
+    for (const Vec2 f : assembly.nodes.force) largest = std::max(largest, norm(f));
     return largest;
 }
 
 Assembly small_body() { return assemble(*make(rectangle(0.02, 0.04)), ModelSpec{}, granite(), table7()); }
 
 // Force scale of the guide's check: E t x 1 mm.
-double force_scale(const Assembly& body) { return 25.8e9 * body.thickness_m * 1e-3; }
+double force_scale(const Assembly& assembly) { return 25.8e9 * assembly.thickness_m * 1e-3; }
 
 TEST(Kinematics, RigidRotationMakesNoForceInTheTriangles) {
-    Assembly body = small_body();
+    Assembly assembly = small_body();
     Team team(1);
-    for (int n = 0; n < body.nodes.count(); ++n) body.nodes.displacement[n] = turned(body.nodes.reference[n], 0.3) - body.nodes.reference[n];
-    evaluate_forces(body, team, Strength::real);
-    EXPECT_LT(largest_force(body) / force_scale(body), 1e-9);
+    for (int n = 0; n < assembly.nodes.count(); ++n) assembly.nodes.displacement[n] = turned(assembly.nodes.reference[n], 0.3) - assembly.nodes.reference[n];
+    evaluate_forces(assembly, team, Strength::real);
+    EXPECT_LT(largest_force(assembly) / force_scale(assembly), 1e-9);
 }
 
 TEST(Kinematics, RigidRotationInAThousandStepsOpensNoContact) {
-    Assembly body = small_body();
+    Assembly assembly = small_body();
     constexpr int kSteps = 1000;
     StepSettings settings;
     for (int k = 1; k <= kSteps; ++k) {
-        for (int n = 0; n < body.nodes.count(); ++n) {
-            const Vec2 X = body.nodes.reference[n], after = turned(X, 0.3 * k / kSteps) - X;
-            body.nodes.velocity[n] = after - body.nodes.displacement[n];
-            body.nodes.displacement[n] = after;
+        for (int n = 0; n < assembly.nodes.count(); ++n) {
+            const Vec2 X = assembly.nodes.reference[n], after = turned(X, 0.3 * k / kSteps) - X;
+            assembly.nodes.velocity[n] = after - assembly.nodes.displacement[n];
+            assembly.nodes.displacement[n] = after;
         }
-        contact_forces(body, {0, static_cast<int>(body.contacts.size())}, settings, k);
+        contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, settings, k);
     }
     double largest = 0.0;
-    for (const ContactPoint& point : body.points) largest = std::max({largest, std::abs(point.bond.un_m), std::abs(point.bond.us_m)});
+    for (const ContactPoint& point : assembly.points) largest = std::max({largest, std::abs(point.bond.un_m), std::abs(point.bond.us_m)});
     EXPECT_LT(largest, 1e-15);
     EXPECT_GT(largest, 0.0);   // the points did move: an exact zero would mean that nothing was computed
 }
 
 TEST(Kinematics, HomogeneousStrainLeavesInteriorNodesAtRestAndHasItsClosedFormEnergy) {
-    Assembly body = small_body();
+    Assembly assembly = small_body();
     Team team(1);
     const double xx = 1e-6, yy = -2e-6, xy = 0.5e-6;
-    for (int n = 0; n < body.nodes.count(); ++n) {
-        const Vec2 X = body.nodes.reference[n];
-        body.nodes.displacement[n] = {xx * X.x + xy * X.y, xy * X.x + yy * X.y};
+    for (int n = 0; n < assembly.nodes.count(); ++n) {
+        const Vec2 X = assembly.nodes.reference[n];
+        assembly.nodes.displacement[n] = {xx * X.x + xy * X.y, xy * X.x + yy * X.y};
     }
-    evaluate_forces(body, team, Strength::real);
+    evaluate_forces(assembly, team, Strength::real);
     double largest = 0.0, volume = 0.0;
-    for (std::size_t g = 0; g < body.grains.size(); ++g) {
-        const Grain& grain = body.grains[g];
+    for (std::size_t g = 0; g < assembly.bodies.size(); ++g) {
+        const Body& grain = assembly.bodies[g];
         const int vertices = grain.edge_end - grain.edge_begin;
-        for (int n = grain.node_begin + vertices; n < grain.node_end; ++n) largest = std::max(largest, norm(body.nodes.force[n]));
+        for (int n = grain.node_begin + vertices; n < grain.node_end; ++n) largest = std::max(largest, norm(assembly.nodes.force[n]));
     }
-    for (const Triangle& t : body.triangles) volume += t.volume_m3;
-    EXPECT_LT(largest / (25.8e9 * 2e-6 * body.thickness_m * 1e-3), 1e-8);   // over the forces that cancel
+    for (const Triangle& t : assembly.triangles) volume += t.volume_m3;
+    EXPECT_LT(largest / (25.8e9 * 2e-6 * assembly.thickness_m * 1e-3), 1e-8);   // over the forces that cancel
     const PlaneElasticity D = plane_elasticity(25.8e9, 0.23, PlaneState::stress);
     const double density = 0.5 * (D.D11 * (xx * xx + yy * yy) + 2.0 * D.D12 * xx * yy + 2.0 * (D.D11 - D.D12) * xy * xy);
-    EXPECT_NEAR(stored_energy(body).grains_J / (density * volume), 1.0, 1e-5);   // the strain itself is 2e-6
+    EXPECT_NEAR(stored_energy(assembly).grains_J / (density * volume), 1.0, 1e-5);   // the strain itself is 2e-6
 }
 
 TEST(Kinematics, ContactForcesConserveLinearAndAngularMomentum) {
-    Assembly body = small_body();
+    Assembly assembly = small_body();
     RandomStream random(7, "momentum");
-    for (int n = 0; n < body.nodes.count(); ++n) {
-        const Vec2 X = body.nodes.reference[n];
+    for (int n = 0; n < assembly.nodes.count(); ++n) {
+        const Vec2 X = assembly.nodes.reference[n];
         const Vec2 strain = {1e-4 * random.normal(), 1e-4 * random.normal()};   // large enough that shapes are extrapolated
-        body.nodes.displacement[n] = turned(X, 0.1) - X + 1e-3 * strain;
-        body.nodes.velocity[n] = {1e-9 * random.normal(), 1e-9 * random.normal()};
+        assembly.nodes.displacement[n] = turned(X, 0.1) - X + 1e-3 * strain;
+        assembly.nodes.velocity[n] = {1e-9 * random.normal(), 1e-9 * random.normal()};
     }
-    contact_forces(body, {0, static_cast<int>(body.contacts.size())}, StepSettings{}, 0);
-    for (std::size_t c = 0; c < body.contacts.size(); ++c) {
-        const Contact& contact = body.contacts[c];
+    contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, StepSettings{}, 0);
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+        const Contact& contact = assembly.contacts[c];
         Vec2 sum;
         double moment = 0.0, size = 0.0;
         for (int i = 0; i < 3; ++i) {
-            const Vec2 fa = body.slots[2 * c][i], fb = body.slots[2 * c + 1][i];
+            const Vec2 fa = assembly.slots[2 * c][i], fb = assembly.slots[2 * c + 1][i];
             sum += fa + fb;
-            moment += cross(body.nodes.position(contact.a.node[i]), fa) + cross(body.nodes.position(contact.b.node[i]), fb);
+            moment += cross(assembly.nodes.position(contact.a.node[i]), fa) + cross(assembly.nodes.position(contact.b.node[i]), fb);
             size += norm(fa) + norm(fb);
         }
         EXPECT_LT(norm(sum), 1e-12 * size);
@@ -104,17 +104,17 @@ TEST(Kinematics, ContactForcesConserveLinearAndAngularMomentum) {
 }
 
 TEST(Kinematics, FallBackShapesAreUsedOnlyFarFromTheStartAndTheirMomentLossIsMeasured) {
-    Assembly body = small_body();
-    EXPECT_EQ(choose_shape_functions(body, 0.0).fallback_sides, 0);
-    EXPECT_EQ(fallback_moment_loss(body), 0.0);
-    const Contact& contact = body.contacts[0];
-    for (int n = body.grains[contact.b.grain].node_begin; n < body.grains[contact.b.grain].node_end; ++n)
-        body.nodes.displacement[n] = {1.5e-3, 1.0e-3};   // half a grain away
-    EXPECT_GT(choose_shape_functions(body, 0.0).fallback_sides, 0);
-    ASSERT_TRUE(body.contacts[0].initial_shape);
-    for (int n = 0; n < body.nodes.count(); ++n) body.nodes.velocity[n] = {1e-9 * (n % 7), -1e-9 * (n % 5)};
-    contact_forces(body, {0, static_cast<int>(body.contacts.size())}, StepSettings{}, 0);
-    EXPECT_GT(fallback_moment_loss(body), 0.0);
+    Assembly assembly = small_body();
+    EXPECT_EQ(choose_shape_functions(assembly, 0.0).fallback_sides, 0);
+    EXPECT_EQ(fallback_moment_loss(assembly), 0.0);
+    const Contact& contact = assembly.contacts[0];
+    for (int n = assembly.bodies[contact.b.body].node_begin; n < assembly.bodies[contact.b.body].node_end; ++n)
+        assembly.nodes.displacement[n] = {1.5e-3, 1.0e-3};   // half a grain away
+    EXPECT_GT(choose_shape_functions(assembly, 0.0).fallback_sides, 0);
+    ASSERT_TRUE(assembly.contacts[0].initial_shape);
+    for (int n = 0; n < assembly.nodes.count(); ++n) assembly.nodes.velocity[n] = {1e-9 * (n % 7), -1e-9 * (n % 5)};
+    contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, StepSettings{}, 0);
+    EXPECT_GT(fallback_moment_loss(assembly), 0.0);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
+#include "feldspar/model/platens.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 
@@ -13,58 +15,58 @@ namespace {
 constexpr double kSide = 0.003, kSkin = 3e-4;
 
 Assembly bar() {
-    Assembly body = assemble(*fixtures::two_grain_bar(kSide), ModelSpec{}, fixtures::granite(), fixtures::table7());
-    set_scaled_masses(body, MassBound::tensor, 1.0);
-    return body;
+    Assembly assembly = assemble(*fixtures::two_grain_bar(kSide), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    set_scaled_masses(assembly, MassBound::tensor, 1.0);
+    return assembly;
 }
 
-void lift(Assembly& body, double by) {
-    for (int n = body.grains[1].node_begin; n < body.grains[1].node_end; ++n) body.nodes.displacement[n] = {0.0, by};
+void lift(Assembly& assembly, double by) {
+    for (int n = assembly.bodies[1].node_begin; n < assembly.bodies[1].node_end; ++n) assembly.nodes.displacement[n] = {0.0, by};
 }
 
 TEST(NewContacts, IntactContactsAreNeverDropped) {
-    Assembly body = bar();
-    ContactFinder finder(body, kSkin);
-    lift(body, 10.0 * kSkin);
-    EXPECT_EQ(finder.update(body, 1.0).dropped, 0);
+    Assembly assembly = bar();
+    ContactFinder finder(assembly, kSkin);
+    lift(assembly, 10.0 * kSkin);
+    EXPECT_EQ(finder.update(assembly, 1.0).dropped, 0);
 }
 
 TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
-    Assembly body = bar();
-    ContactFinder finder(body, kSkin);
-    for (ContactPoint& point : body.points) point.bond.damage = 1.0;
-    lift(body, 1.5 * kSkin);
-    ContactFinder::Changes changes = finder.update(body, 1.0);
+    Assembly assembly = bar();
+    ContactFinder finder(assembly, kSkin);
+    for (ContactPoint& point : assembly.points) point.bond.damage = 1.0;
+    lift(assembly, 1.5 * kSkin);
+    ContactFinder::Changes changes = finder.update(assembly, 1.0);
     EXPECT_EQ(changes.dropped, 1);
     EXPECT_EQ(changes.made, 0);
-    lift(body, 1e-9);   // circles of radius kSide / 2 just apart
-    EXPECT_EQ(finder.update(body, 1.0).made, 0);
-    const std::vector<double> mass_before = body.nodes.mass;
-    std::fill(body.nodes.velocity.begin(), body.nodes.velocity.end(), Vec2{3e-9, 4e-9});
-    lift(body, -1e-8);
-    changes = finder.update(body, 1.0);
+    lift(assembly, 1e-9);   // circles of radius kSide / 2 just apart
+    EXPECT_EQ(finder.update(assembly, 1.0).made, 0);
+    const std::vector<double> mass_before = assembly.nodes.mass;
+    std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{3e-9, 4e-9});
+    lift(assembly, -1e-8);
+    changes = finder.update(assembly, 1.0);
     EXPECT_EQ(changes.made, 1);
-    EXPECT_EQ(finder.update(body, 1.0).made, 0);   // only once
-    ASSERT_EQ(body.contacts.size(), 2U);
-    const ContactPoint& point = body.points.back();
+    EXPECT_EQ(finder.update(assembly, 1.0).made, 0);   // only once
+    ASSERT_EQ(assembly.contacts.size(), 2U);
+    const ContactPoint& point = assembly.points.back();
     EXPECT_NEAR(point.bond.un_m, -1e-8, 1e-12);
     EXPECT_NEAR(point.area_m2, kSide * 0.08, 1e-12);
     // The step stays stable: 0.25 (sum |N|)^2 kn = kn for a point on the edges, where |N| sums to 2; and what that costs is told.
     double added = 0.0;
-    for (int n = 0; n < body.nodes.count(); ++n) added += body.nodes.mass[n] - mass_before[n];
+    for (int n = 0; n < assembly.nodes.count(); ++n) added += assembly.nodes.mass[n] - mass_before[n];
     EXPECT_NEAR(added / (18e13 * point.area_m2), 1.0, 1e-4);   // the overlap shifts the point by 1e-8 of 3e-3 m
     EXPECT_NEAR(changes.kinetic_J / (0.5 * added * 25e-18), 1.0, 1e-9);
-    std::fill(body.nodes.velocity.begin(), body.nodes.velocity.end(), Vec2{});
+    std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{});
     Team team(1);
-    evaluate_forces(body, team, Strength::real);
+    evaluate_forces(assembly, team, Strength::real);
     EXPECT_NEAR(point.bond.Fn_N / (18e13 * kSide * 0.08 * 1e-8), 1.0, 1e-3);
     EXPECT_EQ(point.bond.Fs_N, 0.0);
 }
 
 TEST(NewContacts, PaperSizeSpecimenStartsWithoutAnyToMake) {
-    Assembly body = assemble(*fixtures::make(fixtures::rectangle(0.08, 0.16)), ModelSpec{}, fixtures::granite(), fixtures::table7());
-    ContactFinder finder(body, kSkin);
-    EXPECT_EQ(finder.update(body, 1.0).made, 0);
+    Assembly assembly = assemble(*fixtures::make(fixtures::rectangle(0.08, 0.16)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    ContactFinder finder(assembly, kSkin);
+    EXPECT_EQ(finder.update(assembly, 1.0).made, 0);
 }
 
 }  // namespace

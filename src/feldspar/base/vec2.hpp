@@ -31,6 +31,12 @@ constexpr Vec2 rot90(Vec2 a) { return {-a.y, a.x}; }
 
 inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
 
+/// a turned counter-clockwise by an angle, rad.
+inline Vec2 turned(Vec2 a, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * a.x - s * a.y, s * a.x + c * a.y};
+}
+
 /// A 2 x 2 matrix, row by row.
 struct Mat2 {
     double xx = 0.0, xy = 0.0;

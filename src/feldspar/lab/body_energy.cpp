@@ -4,29 +4,30 @@
 
 namespace feldspar {
 
-StoredEnergy stored_energy(const Assembly& body) {
+StoredEnergy stored_energy(const Assembly& assembly) {
     StoredEnergy sum;
-    for (const Triangle& triangle : body.triangles)
-        sum.grains_J += triangle.volume_m3 * strain_energy_density(body.elasticity, displacement_gradient(body.nodes.displacement, triangle));
-    for (const Contact& contact : body.contacts) {
-        const BondLaw& law = body.laws[contact.material];
+    for (const Triangle& triangle : assembly.triangles)
+        sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity, displacement_gradient(assembly.nodes.displacement, triangle));
+    for (const Contact& contact : assembly.contacts) {
+        const BondLaw& law = assembly.laws[contact.material];
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
-            const ContactPoint& point = body.points[p];
-            if (!contact.dropped) sum.contacts_J += elastic_energy(law, point.area_m2, point.bond);
+            const ContactPoint& point = assembly.points[p];
+            double& stored = contact.material == inside_grains ? sum.grains_J : sum.contacts_J;
+            if (!contact.dropped) stored += elastic_energy(law, point.area_m2, point.bond);
             sum.fracture_J += point.bond.fracture_J;
             sum.friction_J += point.bond.friction_J;
         }
     }
-    for (const GrainWork& work : body.grain_work) {
+    for (const BodyWork& work : assembly.body_work) {
         sum.damping_J += work.damping;
         sum.pressure_J += work.pressure;
     }
     return sum;
 }
 
-KineticEnergy kinetic_energy(const Assembly& body, double speed) {
+KineticEnergy kinetic_energy(const Assembly& assembly, double speed) {
     KineticEnergy sum;
-    const Nodes& nodes = body.nodes;
+    const Nodes& nodes = assembly.nodes;
     for (int n = 0; n < nodes.count(); ++n) {
         const Vec2 V = nodes.velocity[n], w = V - speed * nodes.loading_mode[n];
         const double free_x = nodes.inverse_mass[n].x != 0.0, free_y = nodes.inverse_mass[n].y != 0.0;
@@ -36,9 +37,9 @@ KineticEnergy kinetic_energy(const Assembly& body, double speed) {
     return sum;
 }
 
-double unbalanced_force(const Assembly& body) {
+double unbalanced_force(const Assembly& assembly) {
     double sum = 0.0;
-    const Nodes& nodes = body.nodes;
+    const Nodes& nodes = assembly.nodes;
     for (int n = 0; n < nodes.count(); ++n) {
         if (nodes.inverse_mass[n].x != 0.0) sum += std::abs(nodes.force[n].x);
         if (nodes.inverse_mass[n].y != 0.0) sum += std::abs(nodes.force[n].y);
@@ -46,26 +47,26 @@ double unbalanced_force(const Assembly& body) {
     return sum;
 }
 
-double mean_contact_force(const Assembly& body) {
+double mean_contact_force(const Assembly& assembly) {
     double sum = 0.0;
-    for (const ContactPoint& point : body.points) sum += std::hypot(point.bond.Fn_N, point.bond.Fs_N);
-    return sum / static_cast<double>(body.points.size());
+    for (const ContactPoint& point : assembly.points) sum += std::hypot(point.bond.Fn_N, point.bond.Fs_N);
+    return sum / static_cast<double>(assembly.points.size());
 }
 
-double fallback_moment_loss(const Assembly& body) {
+double fallback_moment_loss(const Assembly& assembly) {
     double lost = 0.0, carried = 0.0;
-    for (std::size_t c = 0; c < body.contacts.size(); ++c) {
-        const Contact& contact = body.contacts[c];
-        if (!contact.initial_shape || contact.dropped || contact.b.grain < 0) continue;
-        const Vec2 centre = body.centre(contact.a.grain);
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+        const Contact& contact = assembly.contacts[c];
+        if (!contact.initial_shape || contact.dropped || contact.plate) continue;
+        const Vec2 centre = assembly.centre(contact.a.body);
         double moment = 0.0, about_centres = 0.0;
         Vec2 force{};
         for (int i = 0; i < 3; ++i) {
-            const Vec2 fa = body.slots[2 * c][i], fb = body.slots[2 * c + 1][i];
-            moment += cross(body.nodes.position(contact.a.node[i]) - centre, fa) + cross(body.nodes.position(contact.b.node[i]) - centre, fb);
+            const Vec2 fa = assembly.slots[2 * c][i], fb = assembly.slots[2 * c + 1][i];
+            moment += cross(assembly.nodes.position(contact.a.node[i]) - centre, fa) + cross(assembly.nodes.position(contact.b.node[i]) - centre, fb);
             force += fb;
         }
-        about_centres = norm(force) * norm(body.centre(contact.b.grain) - centre);
+        about_centres = norm(force) * norm(assembly.centre(contact.b.body) - centre);
         lost += std::abs(moment);
         carried += about_centres;
     }

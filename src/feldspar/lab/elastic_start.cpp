@@ -29,19 +29,17 @@ double shear_with_friction(const BondLaw& law, const BondState& base, double dun
 
 }  // namespace
 
-BodyState capture(const Assembly& body, double platen_travel_m) {
-    BodyState state{platen_travel_m, body.nodes.displacement, {}, {}};
-    state.bonds.reserve(body.points.size());
-    for (const ContactPoint& point : body.points) state.bonds.push_back(point.bond);
-    for (const Platen& platen : body.platens) state.platen_positions_m.push_back(platen.position_m);
+BodyState capture(const Assembly& assembly, double platen_travel_m) {
+    BodyState state{platen_travel_m, assembly.nodes.displacement, {}};
+    state.bonds.reserve(assembly.points.size());
+    for (const ContactPoint& point : assembly.points) state.bonds.push_back(point.bond);
     return state;
 }
 
-void restore(Assembly& body, const BodyState& state) {
-    body.nodes.displacement = state.displacement_m;
-    std::fill(body.nodes.velocity.begin(), body.nodes.velocity.end(), Vec2{});
-    for (std::size_t p = 0; p < state.bonds.size(); ++p) body.points[p].bond = state.bonds[p];
-    for (std::size_t i = 0; i < body.platens.size(); ++i) body.platens[i].position_m = state.platen_positions_m[i];
+void restore(Assembly& assembly, const BodyState& state) {
+    assembly.nodes.displacement = state.displacement_m;
+    std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{});
+    for (std::size_t p = 0; p < state.bonds.size(); ++p) assembly.points[p].bond = state.bonds[p];
 }
 
 BodyState superpose(const BodyState& base, const BodyState& state, double factor) {
@@ -58,15 +56,13 @@ BodyState superpose(const BodyState& base, const BodyState& state, double factor
         bond.Fn_N = mix(bond.Fn_N, to.Fn_N);
         bond.Fs_N = mix(bond.Fs_N, to.Fs_N);
     }
-    for (std::size_t i = 0; i < sum.platen_positions_m.size(); ++i)
-        if (std::isfinite(sum.platen_positions_m[i])) sum.platen_positions_m[i] = mix(sum.platen_positions_m[i], state.platen_positions_m[i]);
     return sum;
 }
 
-double first_damage(const Assembly& body, const BodyState& base, const BodyState& state) {
+double first_damage(const Assembly& assembly, const BodyState& base, const BodyState& state) {
     double first = kNever;
-    for (const Contact& contact : body.contacts) {
-        const BondLaw& law = body.laws[contact.material];
+    for (const Contact& contact : assembly.contacts) {
+        const BondLaw& law = assembly.laws[contact.material];
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
             const BondState& b = base.bonds[p];
             if (b.damage >= 1.0) continue;
@@ -82,20 +78,20 @@ double first_damage(const Assembly& body, const BodyState& base, const BodyState
     return first;
 }
 
-Relaxation relax(Assembly& body, Team& team, Strength strength, double tolerance, long long maximum_steps,
+Relaxation relax(Assembly& assembly, Team& team, Strength strength, double tolerance, long long maximum_steps,
                  const std::function<bool()>& stop) {
     StepSettings settings;
     settings.strength = strength;
-    Nodes& nodes = body.nodes;
+    Nodes& nodes = assembly.nodes;
     std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
-    evaluate_forces(body, team, strength);
+    evaluate_forces(assembly, team, strength);
     std::vector<Vec2> force_before = nodes.force, velocity_before = nodes.velocity;
     PlatenWork none;
     Relaxation result;
     while (result.steps < maximum_steps && !(stop && stop())) {
         force_before = nodes.force;
         velocity_before = nodes.velocity;
-        advance(body, team, settings, -1, 1, none);
+        advance(assembly, team, settings, -1, 1, none);
         ++result.steps;
 
         double stiffness = 0.0, inertia = 0.0, force = 0.0;
@@ -108,7 +104,7 @@ Relaxation relax(Assembly& body, Team& team, Strength strength, double tolerance
         }
         if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9, 2.0 * std::sqrt(stiffness / inertia));
         if (result.steps % 10 == 0) {
-            const double contacts = mean_contact_force(body);
+            const double contacts = mean_contact_force(assembly);
             result.residual = contacts > 0.0 ? force / nodes.count() / contacts : kNever;
             if (!std::isfinite(force)) break;
             if (result.residual < tolerance) {
@@ -118,7 +114,7 @@ Relaxation relax(Assembly& body, Team& team, Strength strength, double tolerance
         }
     }
     std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
-    for (GrainWork& work : body.grain_work) work = {};   // relaxation is not part of the test's energy balance
+    for (BodyWork& work : assembly.body_work) work = {};   // relaxation is not part of the test's energy balance
     return result;
 }
 

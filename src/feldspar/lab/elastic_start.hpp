@@ -16,17 +16,16 @@ struct BodyState {
     double platen_travel_m = 0.0;               ///< along the loading platen's mode
     std::vector<Vec2> displacement_m;
     std::vector<BondState> bonds;
-    std::vector<double> platen_positions_m;
 };
 
-BodyState capture(const Assembly& body, double platen_travel_m);
-void restore(Assembly& body, const BodyState& state);
+BodyState capture(const Assembly& assembly, double platen_travel_m);
+void restore(Assembly& assembly, const BodyState& state);
 
 /// base + factor (state - base) in every displacement and force of intact points: exact for a linear body. Velocities become 0.
 BodyState superpose(const BodyState& base, const BodyState& state, double factor);
 
 /// Smallest factor > 0 at which base + factor (state - base) reaches the first damage; infinite if none is ever reached.
-double first_damage(const Assembly& body, const BodyState& base, const BodyState& state);
+double first_damage(const Assembly& assembly, const BodyState& base, const BodyState& state);
 
 struct Relaxation {
     long long steps = 0;
@@ -37,7 +36,7 @@ struct Relaxation {
 /// Dynamic relaxation with the platens at rest and adaptive viscous damping: critical for the slowest mode that is still
 /// moving, whose frequency is the Rayleigh quotient of the last step (after Underwood 1983).
 /// @param stop  asked every step; the relaxation ends early when it returns true
-Relaxation relax(Assembly& body, Team& team, Strength strength, double tolerance, long long maximum_steps,
+Relaxation relax(Assembly& assembly, Team& team, Strength strength, double tolerance, long long maximum_steps,
                  const std::function<bool()>& stop);
 
 }  // namespace feldspar

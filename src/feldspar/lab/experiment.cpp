@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -10,55 +9,108 @@
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
+#include "feldspar/model/platens.hpp"
 
 namespace feldspar {
 namespace {
 
-double volume(const Assembly& body) {
-    return std::accumulate(body.triangles.begin(), body.triangles.end(), 0.0, [](double sum, const Triangle& t) { return sum + t.volume_m3; });
+// Of the specimen that moves, with the masses of the motion; turns and plates do not count.
+double mass(const Assembly& assembly) {
+    double sum = 0.0;
+    for (const Body& body : assembly.bodies) {
+        if (body.kind == BodyKind::rigid) sum += assembly.nodes.mass[body.centre_node];
+        if (body.kind != BodyKind::flexible) continue;
+        for (int n = body.node_begin; n < body.node_end; ++n) sum += assembly.nodes.mass[n];
+    }
+    return sum;
 }
 
-double mass(const Assembly& body) { return std::accumulate(body.nodes.mass.begin(), body.nodes.mass.end(), 0.0); }
+double volume(const Specimen& specimen) {
+    double area = 0.0;
+    for (const auto& t : specimen.mesh.triangles) {
+        const auto& X = specimen.mesh.nodes;
+        area += 0.5 * cross(X[t[1]] - X[t[0]], X[t[2]] - X[t[0]]);
+    }
+    return area * specimen.spec.thickness_m;
+}
+
+// What the specimen's elastic constants may be, before they are measured. Rigid bodies with contacts of stiffness Kn per area,
+// a diameter apart, have about Kn times it.
+ElasticGuess guess(const TestSetup& setup, const Assembly& assembly) {
+    if (setup.model.kind == GrainKind::flexible) return {setup.grain.E_Pa, setup.grain.nu};
+    return {setup.contact.Kn_Pa_m * mean_body_diameter(assembly), 0.2};
+}
+
+PlateContact plate_contact(const TestSetup& setup) {
+    const TestSpec& test = setup.test;
+    PlateContact contact;
+    contact.Kn_Pa_m = test.plate_stiffness_factor * setup.contact.Kn_Pa_m;
+    contact.eta = setup.contact.eta;
+    contact.mu = test.plate_mu.value_or(test.kind == TestKind::brazilian ? 0.4 : 0.0);
+    contact.glued = test.kind == TestKind::direct_tension;
+    return contact;
+}
+
+void attach_platens(Assembly& assembly, const TestSetup& setup) {
+    const Specimen& specimen = *setup.specimen;
+    const PlateContact contact = plate_contact(setup);
+    if (setup.test.kind == TestKind::brazilian) {
+        attach_brazilian_plates(assembly, specimen, contact);
+    } else if (setup.model.kind == GrainKind::flexible) {
+        attach_platen_rows(assembly, specimen);
+    } else {
+        attach_end_plates(assembly, specimen, contact);
+        if (setup.test.kind == TestKind::biaxial && setup.test.sigma3_Pa > 0.0)
+            attach_membranes(assembly, specimen, {setup.contact.Kn_Pa_m, setup.contact.eta, 0.0, false}, setup.test.membrane_plates);
+    }
+}
 
 }  // namespace
+
+double mean_body_diameter(const Assembly& assembly) {
+    double sum = 0.0;
+    int count = 0;
+    for (const Body& body : assembly.bodies) {
+        if (body.kind == BodyKind::plate) continue;
+        sum += 2.0 * body.radius_m;
+        ++count;
+    }
+    return sum / count;
+}
 
 Experiment::Experiment(const TestSetup& s, const RunControl& c)
     : setup(s),
       control(c),
-      body(assemble(*s.specimen, s.model, s.grain, s.contact)),
+      assembly(assemble(*s.specimen, s.model, s.grain, s.contact)),
       team(c.threads),
-      gauge(body, *s.specimen),
-      direction(s.test.kind == TestKind::direct_tension ? -1.0 : 1.0) {
+      gauge(assembly, *s.specimen),
+      direction(s.test.kind == TestKind::direct_tension ? -1.0 : 1.0),
+      elastic_guess(guess(s, assembly)) {
     const Box box = bounding_box(s.specimen->mesh.nodes);
+    if (brazilian() && !s.specimen->outline.is_disc) throw InputError({}, "a Brazilian test needs a disc");
+    attach_platens(assembly, s);
     if (brazilian()) {
-        if (!s.specimen->outline.is_disc) throw InputError({}, "a Brazilian test needs a disc");
         height_m = 2.0 * s.specimen->outline.radius_m;
-        section_m2 = 0.5 * std::numbers::pi * height_m * body.thickness_m;
-        attach_plates(body, *s.specimen, s.contact, s.test.plate_stiffness_factor, s.test.plate_mu.value_or(0.4));
+        section_m2 = 0.5 * std::numbers::pi * height_m * assembly.thickness_m;
     } else {
         height_m = box.upper.y - box.lower.y;
-        attach_platen_rows(body, *s.specimen);
-        double left = box.upper.x, right = box.lower.x;
-        for (const int node : body.platens[0].nodes) {
-            left = std::min(left, body.nodes.reference[node].x);
-            right = std::max(right, body.nodes.reference[node].x);
-        }
-        section_m2 = (right - left) * body.thickness_m;
-        body.platens[0].mode = {0.0, -direction};
+        section_m2 = loaded_width_m(assembly, *s.specimen) * assembly.thickness_m;
+        assembly.platens[0].mode = {0.0, -direction};
     }
-    axial_stiffness = s.grain.E_Pa * section_m2 / height_m;
-    for (const int node : body.platens[0].nodes) body.nodes.loading_mode[node] = body.platens[0].mode;
+    axial_stiffness = elastic_guess.E_Pa * section_m2 / height_m;
+    for (const int node : assembly.platens[0].nodes) assembly.nodes.loading_mode[node] = assembly.platens[0].mode;
 }
 
 void Experiment::run(int count) {
-    advance(body, team, settings, step, count, platen_work);
+    advance(assembly, team, settings, step, count, platen_work);
     platen_travel_m += count * settings.dt * settings.speed;
     step += count;
 }
 
 void Experiment::change_speed(double speed) {
     const double dv = speed - settings.speed;
-    Nodes& nodes = body.nodes;
+    Nodes& nodes = assembly.nodes;
     for (int n = 0; n < nodes.count(); ++n) {
         const Vec2 B = nodes.loading_mode[n], before = nodes.velocity[n];
         nodes.velocity[n] += dv * B;
@@ -74,18 +126,18 @@ void choose_step(Experiment& e) {
     if (n.kind == NumericsKind::adaptive) {
         e.settings.damping = Damping::deviation;
         e.mass_factor = n.mass_factor.value_or(1.0);
-        set_scaled_masses(e.body, MassBound::tensor, e.mass_factor);
+        set_scaled_masses(e.assembly, MassBound::tensor, e.mass_factor);
     } else if (n.kind == NumericsKind::paper) {
         e.settings.damping = Damping::local;
         e.settings.alpha = n.damping;
         e.mass_factor = n.mass_factor.value_or(1.0 + n.damping);
-        set_scaled_masses(e.body, MassBound::row_sum, e.mass_factor);
+        set_scaled_masses(e.assembly, MassBound::row_sum, e.mass_factor);
     } else {
         e.settings.damping = Damping::local;
         e.settings.alpha = n.damping;
-        set_real_masses(e.body, e.setup.grain.density_kg_m3);
+        set_real_masses(e.assembly, e.setup.grain.density_kg_m3);
     }
-    e.omega2 = largest_omega2(e.body, e.team);
+    e.omega2 = largest_omega2(e.assembly, e.team);
     e.omega2_bound = omega2_limit(e.settings.damping, e.settings.alpha);
     if (n.kind == NumericsKind::dynamic) {
         const double stable = std::sqrt(e.omega2_bound / e.omega2);
@@ -104,8 +156,8 @@ void choose_step(Experiment& e) {
                          n.kind == NumericsKind::paper ? fmt::format("leave the key out: 1 + damping = {:.4g} is then used", 1.0 + n.damping)
                                                        : "leave the key out: 1 is then used");
     }
-    const double density = mass(e.body) / volume(e.body);
-    e.travel_time = e.height_m * std::sqrt(density / e.setup.grain.E_Pa);   // refined by the elastic start
+    const double density = mass(e.assembly) / volume(*e.setup.specimen);
+    e.travel_time = e.height_m * std::sqrt(density / e.elastic_guess.E_Pa);   // refined by the elastic start
     if (n.kind == NumericsKind::adaptive) e.settings.viscous = (e.brazilian() ? 1.0 : 2.0) * std::numbers::pi / e.travel_time;
 }
 

@@ -15,13 +15,19 @@ namespace feldspar {
 /// Platen speed of the paper's own numerics, m a step, unless the user gives one (docs/decisions: loading rate).
 inline constexpr double kPaperSpeed = 6.25e-9;
 
+/// Elastic constants of the specimen that the start reckons with until it has measured them.
+struct ElasticGuess {
+    double E_Pa = 0.0;
+    double nu = 0.0;
+};
+
 /// Everything that the stages of a test share. Each stage (prepare, load) is a function of its own.
 struct Experiment {
     Experiment(const TestSetup& setup, const RunControl& control);
 
     const TestSetup& setup;
     const RunControl& control;
-    Assembly body;
+    Assembly assembly;
     Team team;
     StrainGauge gauge;
     StepSettings settings;
@@ -29,6 +35,7 @@ struct Experiment {
     double height_m = 0.0;        ///< between the platens (Brazilian: the diameter)
     double section_m2 = 0.0;      ///< initial, loaded (Brazilian: pi D t / 2, so that stress = 2P / (pi D t))
     double direction = 1.0;       ///< +1 compression, -1 tension
+    ElasticGuess elastic_guess;
     double mass_factor = 0.0;     ///< of the scaled masses; 0 with real masses
     double omega2 = 0.0;          ///< largest omega^2 dt^2 of the initial state
     double omega2_bound = 4.0;    ///< its limit
@@ -53,6 +60,9 @@ struct Experiment {
     /// Changes the speed of the loading, and with it the velocity of the whole body by dv B; books the work.
     void change_speed(double speed);
 };
+
+/// Mean diameter of the contact circles of grains or inner particles, m.
+double mean_body_diameter(const Assembly& assembly);
 
 /// Damping, masses and time step as the numerics ask; refuses an unstable setting (@throws InputError).
 void choose_step(Experiment& experiment);

@@ -12,15 +12,15 @@ namespace feldspar {
 /// disc's radius. All grains whose centre lies in it take part with equal weight.
 class StrainGauge {
 public:
-    StrainGauge(const Assembly& body, const Specimen& specimen);
+    StrainGauge(const Assembly& assembly, const Specimen& specimen);
 
     /// Strain along y, compression positive.
-    double axial(const Assembly& body) const { return -fit(body, axial_weights_, &Vec2::y); }
+    double axial(const Assembly& assembly) const { return -fit(assembly, axial_weights_, &Vec2::y); }
     /// Strain along x, compression positive.
-    double lateral(const Assembly& body) const { return -fit(body, lateral_weights_, &Vec2::x); }
+    double lateral(const Assembly& assembly) const { return -fit(assembly, lateral_weights_, &Vec2::x); }
 
 private:
-    double fit(const Assembly& body, const std::vector<double>& weights, double Vec2::*component) const;
+    double fit(const Assembly& assembly, const std::vector<double>& weights, double Vec2::*component) const;
 
     std::vector<int> centre_nodes_;
     std::vector<double> axial_weights_;

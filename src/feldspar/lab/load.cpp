@@ -85,19 +85,13 @@ private:
 
 // Contacts between grains, looked after every few steps.
 void maintain_contacts(Experiment& e, ContactFinder& finder, TestResult& result, int steps) {
-    const ContactFinder::Changes changes = finder.update(e.body, e.mass_factor);
+    const ContactFinder::Changes changes = finder.update(e.assembly, e.mass_factor);
     e.rate_control_J += changes.kinetic_J;   // nodes that became heavier took their speed with them
     result.new_contacts += changes.made;
-    const ShapeChoice shapes = choose_shape_functions(e.body, e.mass_factor);
+    const ShapeChoice shapes = choose_shape_functions(e.assembly, e.mass_factor);
     e.rate_control_J += shapes.kinetic_J;
     result.shape_fallbacks += static_cast<long long>(shapes.fallback_sides) * steps;
-    if (shapes.fallback_sides > 0) result.angular_momentum_loss = std::max(result.angular_momentum_loss, fallback_moment_loss(e.body));
-}
-
-double mean_diameter(const Assembly& body) {
-    double sum = 0.0;
-    for (const Grain& grain : body.grains) sum += 2.0 * grain.radius_m;
-    return sum / static_cast<double>(body.grains.size());
+    if (shapes.fallback_sides > 0) result.angular_momentum_loss = std::max(result.angular_momentum_loss, fallback_moment_loss(e.assembly));
 }
 
 }  // namespace
@@ -117,7 +111,7 @@ double typical_steps(const Experiment& e) {
 void load(Experiment& e, Recorder& recorder, TestResult& result) {
     const bool adaptive = e.setup.numerics.kind == NumericsKind::adaptive;
     const int block = adaptive ? 10 : 50;   // steps between records
-    ContactFinder finder(e.body, 0.1 * mean_diameter(e.body));
+    ContactFinder finder(e.assembly, 0.1 * mean_body_diameter(e.assembly));
     const double target = residual_target(e.setup.numerics, e.setup.test.kind);
     RateControl control(target, target / residual_target(NumericsSpec{}, e.setup.test.kind), e.height_m, e.travel_time,
                         expected_strength(e.setup.contact, e.setup.test) * e.section_m2);
@@ -144,8 +138,8 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
         if (adaptive) {
             const double force = std::abs(row.axial_stress_Pa) * e.section_m2;
             const bool past_peak = e.direction * row.axial_stress_Pa < 0.98 * stop.peak();
-            const double unbalanced = unbalanced_force(e.body);
-            mode_update.observe(e.body, e.step, e.platen_travel_m, control.residual(unbalanced, force));
+            const double unbalanced = unbalanced_force(e.assembly);
+            mode_update.observe(e.assembly, e.step, e.platen_travel_m, control.residual(unbalanced, force));
             const double speed = control.next(e.settings.speed, unbalanced, force, e.platen_travel_m, past_peak);
             if (speed != e.settings.speed) e.change_speed(speed);
         }

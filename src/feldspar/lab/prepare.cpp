@@ -19,48 +19,48 @@ constexpr long long kMaximumSteps = 20000;
 
 void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
     if (e.control.progress) e.control.progress({.stage = "elastic start", .step = e.preparation_steps});
-    const Relaxation r = relax(e.body, e.team, Strength::unlimited, tolerance, kMaximumSteps, [&] { return e.stopped(); });
+    const Relaxation r = relax(e.assembly, e.team, Strength::unlimited, tolerance, kMaximumSteps, [&] { return e.stopped(); });
     e.preparation_steps += r.steps;
     if (e.stopped()) throw Interrupted();
     if (!r.converged)
         throw NumericalError(fmt::format("the elastic start did not relax: residual {:.3g} after {} steps, wanted {:.3g}", r.residual, r.steps, tolerance));
 }
 
-// Moves platen and body by an affine field: shortening by `travel_m` over the height, widening by nu.
+// Moves everything by an affine field: shortening by `travel_m` over the height, widening by nu. The contacts follow the motion
+// as they do in a step, so that gaps that it opens or closes between rigid bodies and at plates are felt.
 void add_affine(Experiment& e, double travel_m) {
-    const Vec2 mode = e.body.platens[0].mode;
+    Assembly& assembly = e.assembly;
+    Nodes& nodes = assembly.nodes;
     double bottom = std::numeric_limits<double>::infinity(), left = bottom, right = -bottom;
-    for (const Vec2 x : e.body.nodes.reference) {
+    for (const Vec2 x : nodes.reference) {
         bottom = std::min(bottom, x.y);
         left = std::min(left, x.x);
         right = std::max(right, x.x);
     }
     double held = 0.5 * (left + right);
-    for (int n = 0; n < e.body.nodes.count(); ++n)
-        if (e.body.nodes.inverse_mass[n].x == 0.0) held = e.body.nodes.reference[n].x;
-    const double strain = mode.y * travel_m / e.height_m;
-    for (int n = 0; n < e.body.nodes.count(); ++n) {
-        const Vec2 x = e.body.nodes.reference[n];
-        e.body.nodes.displacement[n] += Vec2{-e.setup.grain.nu * strain * (x.x - held), strain * (x.y - bottom)};
-    }
-    e.body.platens[0].position_m += mode.y * travel_m;
+    for (const Body& body : assembly.bodies)   // the node that a row of nodes holds
+        for (int n = body.node_begin; body.kind == BodyKind::flexible && n < body.node_end; ++n)
+            if (nodes.inverse_mass[n].x == 0.0) held = nodes.reference[n].x;
+    const double strain = assembly.platens[0].mode.y * travel_m / e.height_m;
+    const std::vector<Vec2> velocity = nodes.velocity;
+    for (const Body& body : assembly.bodies)
+        for (int n = body.node_begin; n < body.node_end; ++n) {
+            const Vec2 x = nodes.reference[n];
+            nodes.velocity[n] = {-e.elastic_guess.nu * strain * (x.x - held), strain * (x.y - bottom)};
+            if (body.kind == BodyKind::rigid && n > body.centre_node) nodes.velocity[n] = {};   // it does not turn
+            if (body.kind == BodyKind::plate && nodes.inverse_mass[n].x == 0.0) nodes.velocity[n] = {};
+            if (body.kind == BodyKind::plate && nodes.inverse_mass[n].x != 0.0) nodes.velocity[n].y = 0.0;
+        }
+    for (const int node : assembly.platens[0].nodes) nodes.velocity[node].y = assembly.platens[0].mode.y * travel_m;
+    StepSettings elastic;
+    elastic.strength = Strength::unlimited;
+    contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, elastic, -1);
+    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] += nodes.velocity[n];
+    nodes.velocity = velocity;
     e.platen_travel_m += travel_m;
 }
 
-// The gaps of plate contacts follow plate and body when these are moved outside of the step.
-void refresh_plate_gaps(Experiment& e) {
-    for (const Platen& platen : e.body.platens)
-        for (const int c : platen.contacts) {
-            const Contact& contact = e.body.contacts[c];
-            ContactPoint& point = e.body.points[contact.first_point];
-            const InitialShape& N = e.body.initial_shapes[contact.first_point];
-            double y = 0.0;   // where the material under the plate has gone
-            for (int i = 0; i < 3; ++i) y += N.a[i] * e.body.nodes.position(contact.a.node[i]).y;
-            point.bond.un_m = platen.normal.y * (platen.position_m - y);
-        }
-}
-
-double platen_force(const Experiment& e) { return platen_reactions(e.body).loading; }
+double platen_force(const Experiment& e) { return platen_reactions(e.assembly).loading; }
 
 // Stiffness, travel time and damping as the relaxed body shows them.
 void learn_from(Experiment& e, double force_change, double travel_change) {
@@ -72,17 +72,17 @@ void learn_from(Experiment& e, double force_change, double travel_change) {
 }
 
 void go_to(Experiment& e, const BodyState& state) {
-    restore(e.body, state);
+    restore(e.assembly, state);
     e.platen_travel_m = state.platen_travel_m;
 }
 
 // B = change of displacement per platen travel between two relaxed states.
 void set_loading_mode(Experiment& e, const BodyState& from, const BodyState& to) {
     const double travel = to.platen_travel_m - from.platen_travel_m;
-    Nodes& nodes = e.body.nodes;
+    Nodes& nodes = e.assembly.nodes;
     for (int n = 0; n < nodes.count(); ++n) nodes.loading_mode[n] = (1.0 / travel) * (to.displacement_m[n] - from.displacement_m[n]);
-    for (const int node : e.body.platens[0].nodes) nodes.loading_mode[node].y = e.body.platens[0].mode.y;
-    for (const int node : e.body.platens[1].nodes) nodes.loading_mode[node].y = 0.0;
+    for (const int node : e.assembly.platens[0].nodes) nodes.loading_mode[node].y = e.assembly.platens[0].mode.y;
+    for (const int node : e.assembly.platens[1].nodes) nodes.loading_mode[node].y = 0.0;
 }
 
 // Axial loading of the relaxed state `base` up to just below the first damage; sets B. Rows of nodes as platens.
@@ -92,48 +92,47 @@ void elastic_loading(Experiment& e, const BodyState& base) {
     relax_or_throw(e);
     learn_from(e, platen_force(e) - force_before, e.platen_travel_m - base.platen_travel_m);
     for (int attempt = 0; attempt < 4; ++attempt) {
-        const BodyState reached = capture(e.body, e.platen_travel_m);
-        const double factor = first_damage(e.body, base, reached);
+        const BodyState reached = capture(e.assembly, e.platen_travel_m);
+        const double factor = first_damage(e.assembly, base, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded");
         if (attempt > 0 && factor > 1.0 && factor < 1.05) break;
         go_to(e, superpose(base, reached, kBelowDamage * factor));
         relax_or_throw(e);
     }
-    set_loading_mode(e, base, capture(e.body, e.platen_travel_m));
+    set_loading_mode(e, base, capture(e.assembly, e.platen_travel_m));
 }
 
 // The Brazilian start: plate contact is not linear, so scale and relax several times; B from the last two states.
 void elastic_plates(Experiment& e) {
-    const BodyState unloaded = capture(e.body, 0.0);
+    const BodyState unloaded = capture(e.assembly, 0.0);
     const auto settle = [&] {
-        refresh_plate_gaps(e);
         relax_or_throw(e);
-        return capture(e.body, e.platen_travel_m);
+        return capture(e.assembly, e.platen_travel_m);
     };
     add_affine(e, 2e-5 * e.height_m);
     BodyState reached = settle();
     for (int round = 0; round < 6; ++round) {
-        const double factor = first_damage(e.body, unloaded, reached);
+        const double factor = first_damage(e.assembly, unloaded, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the disc is loaded");
         if (round > 0 && factor > 1.0 && factor < 1.04) break;
         go_to(e, superpose(unloaded, reached, std::min(kBelowDamage * factor, 20.0)));
         reached = settle();
     }
-    if (first_damage(e.body, unloaded, reached) <= 1.0) {   // the rounds did not settle below the first damage
-        go_to(e, superpose(unloaded, reached, 0.9 * first_damage(e.body, unloaded, reached)));
+    if (first_damage(e.assembly, unloaded, reached) <= 1.0) {   // the rounds did not settle below the first damage
+        go_to(e, superpose(unloaded, reached, 0.9 * first_damage(e.assembly, unloaded, reached)));
         reached = settle();
     }
     go_to(e, superpose(unloaded, reached, 0.95));
     const BodyState below = settle();
     go_to(e, reached);
     relax_or_throw(e);
-    set_loading_mode(e, below, capture(e.body, e.platen_travel_m));
+    set_loading_mode(e, below, capture(e.assembly, e.platen_travel_m));
 }
 
 // Isotropic stress by superposition: lateral pressure, and platen travel until the platens carry the same stress.
 void consolidate_elastically(Experiment& e) {
     const double target = e.setup.test.sigma3_Pa * e.section_m2;
-    e.body.pressure_Pa = e.setup.test.sigma3_Pa;
+    e.assembly.pressure_Pa = e.setup.test.sigma3_Pa;
     relax_or_throw(e);
     for (int round = 0; round < 8; ++round) {
         const double missing = target - platen_force(e);
@@ -150,10 +149,10 @@ void consolidate_by_ramp(Experiment& e) {
     const double sigma3 = e.setup.test.sigma3_Pa, target = sigma3 * e.section_m2;
     const double period = e.travel_time / e.settings.dt;                    // in steps
     const long long ramp = std::llround(30.0 * period), most = 40 * ramp;
-    const double already = e.body.pressure_Pa / sigma3;
+    const double already = e.assembly.pressure_Pa / sigma3;
     for (long long k = 0;; k += 10) {
         const double share = std::min(1.0, already + (1.0 - already) * static_cast<double>(k) / static_cast<double>(ramp));
-        e.body.pressure_Pa = share * sigma3;
+        e.assembly.pressure_Pa = share * sigma3;
         const double force = platen_force(e);
         e.change_speed((share * target - force) / e.axial_stiffness / (2.0 * e.travel_time));
         e.run(10);
@@ -161,7 +160,7 @@ void consolidate_by_ramp(Experiment& e) {
         if (e.stopped()) throw Interrupted();
         if (!std::isfinite(force)) throw NumericalError("a force is not a number during the consolidation");
         if (e.control.progress && k % 500 == 0) e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
-        if (share == 1.0 && std::abs(force - target) < 2e-3 * target && unbalanced_force(e.body) < 0.01 * target) break;
+        if (share == 1.0 && std::abs(force - target) < 2e-3 * target && unbalanced_force(e.assembly) < 0.01 * target) break;
         if (k > most) throw NumericalError("the specimen does not come to rest under the isotropic stress: it fails before it is sheared");
     }
     e.change_speed(0.0);
@@ -169,18 +168,18 @@ void consolidate_by_ramp(Experiment& e) {
 
 // The state when shearing starts, for the history.
 void note_isotropic(Experiment& e) {
-    const Reactions reactions = platen_reactions(e.body);
-    const StoredEnergy stored = stored_energy(e.body);
+    const Reactions reactions = platen_reactions(e.assembly);
+    const StoredEnergy stored = stored_energy(e.assembly);
     HistoryRow& row = e.isotropic;
     row.step = e.step;
     row.platen_displacement_m = e.direction * e.platen_travel_m;
     row.axial_strain = row.platen_displacement_m / e.height_m;
-    row.axial_strain_gauge = e.gauge.axial(e.body);
-    row.lateral_strain_gauge = e.gauge.lateral(e.body);
+    row.axial_strain_gauge = e.gauge.axial(e.assembly);
+    row.lateral_strain_gauge = e.gauge.lateral(e.assembly);
     row.stress_top_Pa = e.stress(reactions.loading);
     row.stress_bottom_Pa = e.stress(-reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
-    row.sigma3_Pa = e.body.pressure_Pa;
+    row.sigma3_Pa = e.assembly.pressure_Pa;
     row.energy.elastic_grains = stored.grains_J;
     row.energy.elastic_contacts = stored.contacts_J;
     row.energy.elastic_start = stored.grains_J + stored.contacts_J;
@@ -188,12 +187,12 @@ void note_isotropic(Experiment& e) {
 
 // Does the isotropic state stay below the first damage?
 bool isotropic_is_elastic(const Experiment& e, const BodyState& unloaded) {
-    return first_damage(e.body, unloaded, capture(e.body, e.platen_travel_m)) > 1.0;
+    return first_damage(e.assembly, unloaded, capture(e.assembly, e.platen_travel_m)) > 1.0;
 }
 
 void forget_relaxation_work(Experiment& e) {
-    for (GrainWork& work : e.body.grain_work) work = {};
-    for (ContactPoint& point : e.body.points) point.bond.fracture_J = point.bond.friction_J = 0.0;
+    for (BodyWork& work : e.assembly.body_work) work = {};
+    for (ContactPoint& point : e.assembly.points) point.bond.fracture_J = point.bond.friction_J = 0.0;
     e.platen_work = {};
     e.rate_control_J = 0.0;
 }
@@ -202,39 +201,39 @@ void prepare_adaptive(Experiment& e) {
     if (e.brazilian()) {
         elastic_plates(e);
     } else {
-        const BodyState unloaded = capture(e.body, 0.0);
+        const BodyState unloaded = capture(e.assembly, 0.0);
         bool elastic = true;
         if (e.setup.test.kind == TestKind::biaxial && e.setup.test.sigma3_Pa > 0.0) {
             consolidate_elastically(e);
             elastic = isotropic_is_elastic(e, unloaded);
             if (!elastic) {   // go as far as it is elastic, then ramp with the real law
-                const BodyState full = capture(e.body, e.platen_travel_m);
-                const double share = 0.9 * first_damage(e.body, unloaded, full);
+                const BodyState full = capture(e.assembly, e.platen_travel_m);
+                const double share = 0.9 * first_damage(e.assembly, unloaded, full);
                 go_to(e, superpose(unloaded, full, share));
-                e.body.pressure_Pa = share * e.setup.test.sigma3_Pa;
+                e.assembly.pressure_Pa = share * e.setup.test.sigma3_Pa;
                 relax_or_throw(e);
             }
         }
         forget_relaxation_work(e);
         if (elastic) {
             note_isotropic(e);
-            elastic_loading(e, capture(e.body, e.platen_travel_m));
+            elastic_loading(e, capture(e.assembly, e.platen_travel_m));
         } else {
-            const StoredEnergy before = stored_energy(e.body);
+            const StoredEnergy before = stored_energy(e.assembly);
             e.elastic_start_J = before.grains_J + before.contacts_J;
             consolidate_by_ramp(e);
             note_isotropic(e);
             const double travel = e.platen_travel_m;   // B from an affine guess on the damaged body
             add_affine(e, 1e-9 * e.height_m);
-            const BodyState moved = capture(e.body, e.platen_travel_m);
+            const BodyState moved = capture(e.assembly, e.platen_travel_m);
             add_affine(e, travel - e.platen_travel_m);
-            set_loading_mode(e, capture(e.body, travel), moved);
+            set_loading_mode(e, capture(e.assembly, travel), moved);
             return;
         }
     }
     forget_relaxation_work(e);
     e.computed_start = true;
-    const StoredEnergy start = stored_energy(e.body);
+    const StoredEnergy start = stored_energy(e.assembly);
     e.elastic_start_J = start.grains_J + start.contacts_J;
 }
 
@@ -248,17 +247,17 @@ void prepare_plainly(Experiment& e) {
         return;
     }
     const double travel = e.platen_travel_m, unit = 1e-6 * e.height_m;
-    const BodyState before = capture(e.body, travel);
-    const std::vector<Vec2> velocity = e.body.nodes.velocity;
+    const BodyState before = capture(e.assembly, travel);
+    const std::vector<Vec2> velocity = e.assembly.nodes.velocity;
     add_affine(e, unit);
-    const BodyState moved = capture(e.body, e.platen_travel_m);
+    const BodyState moved = capture(e.assembly, e.platen_travel_m);
     go_to(e, before);
-    e.body.nodes.velocity = velocity;
+    e.assembly.nodes.velocity = velocity;
     set_loading_mode(e, before, moved);
     e.change_speed(speed);
-    Nodes& nodes = e.body.nodes;   // from here on the mode only says what is imposed: local damping acts on the total velocity
+    Nodes& nodes = e.assembly.nodes;   // from here on the mode only says what is imposed: local damping acts on the total velocity
     std::fill(nodes.loading_mode.begin(), nodes.loading_mode.end(), Vec2{});
-    for (const int node : e.body.platens[0].nodes) nodes.loading_mode[node] = e.body.platens[0].mode;
+    for (const int node : e.assembly.platens[0].nodes) nodes.loading_mode[node] = e.assembly.platens[0].mode;
 }
 
 }  // namespace

@@ -51,27 +51,27 @@ double RateControl::residual(double unbalanced_N, double platen_force_N) const {
     return unbalanced_N / std::max(platen_force_N, 0.5 * largest_force_N_);
 }
 
-void LoadingModeUpdate::begin(const Assembly& body, long long step, double platen_travel_m) {
+void LoadingModeUpdate::begin(const Assembly& assembly, long long step, double platen_travel_m) {
     start_step_ = step;
     start_travel_m_ = platen_travel_m;
     largest_residual_ = 0.0;
-    start_displacement_m_ = body.nodes.displacement;
+    start_displacement_m_ = assembly.nodes.displacement;
 }
 
-void LoadingModeUpdate::observe(Assembly& body, long long step, double platen_travel_m, double residual) {
-    if (start_step_ < 0) return begin(body, step, platen_travel_m);
+void LoadingModeUpdate::observe(Assembly& assembly, long long step, double platen_travel_m, double residual) {
+    if (start_step_ < 0) return begin(assembly, step, platen_travel_m);
     largest_residual_ = std::max(largest_residual_, residual);
     if (static_cast<double>(step - start_step_) < window_) return;
     if (largest_residual_ <= quiet_ && platen_travel_m > start_travel_m_) {
         const double per_travel = 1.0 / (platen_travel_m - start_travel_m_);
-        Nodes& nodes = body.nodes;
+        Nodes& nodes = assembly.nodes;
         for (int n = 0; n < nodes.count(); ++n) {
             const Vec2 mean = per_travel * (nodes.displacement[n] - start_displacement_m_[n]);
             if (nodes.inverse_mass[n].x != 0.0) nodes.loading_mode[n].x += kBlend * (mean.x - nodes.loading_mode[n].x);
             if (nodes.inverse_mass[n].y != 0.0) nodes.loading_mode[n].y += kBlend * (mean.y - nodes.loading_mode[n].y);
         }
     }
-    begin(body, step, platen_travel_m);
+    begin(assembly, step, platen_travel_m);
 }
 
 }  // namespace feldspar

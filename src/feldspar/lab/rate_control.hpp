@@ -59,10 +59,10 @@ public:
     LoadingModeUpdate(double travel_time, double target) : window_(travel_time), quiet_(3.0 * target) {}
 
     /// To be called after every block of steps. @param residual  R* now
-    void observe(Assembly& body, long long step, double platen_travel_m, double residual);
+    void observe(Assembly& assembly, long long step, double platen_travel_m, double residual);
 
 private:
-    void begin(const Assembly& body, long long step, double platen_travel_m);
+    void begin(const Assembly& assembly, long long step, double platen_travel_m);
 
     double window_;
     double quiet_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "feldspar/lab/body_energy.hpp"
+#include "feldspar/lab/grain_fields.hpp"
 
 namespace feldspar {
 namespace {
@@ -26,24 +27,24 @@ Recorder::Recorder(const Experiment& experiment, TestResult& result) : e_(experi
 
 HistoryRow Recorder::present(Phase phase) const {
     HistoryRow row;
-    const Reactions reactions = platen_reactions(e_.body);
+    const Reactions reactions = platen_reactions(e_.assembly);
     row.phase = phase;
     row.step = e_.step;
     row.platen_displacement_m = e_.direction * e_.platen_travel_m;
     row.axial_strain = row.platen_displacement_m / e_.height_m;
-    row.axial_strain_gauge = e_.gauge.axial(e_.body);
-    row.lateral_strain_gauge = e_.gauge.lateral(e_.body);
+    row.axial_strain_gauge = e_.gauge.axial(e_.assembly);
+    row.lateral_strain_gauge = e_.gauge.lateral(e_.assembly);
     row.stress_top_Pa = e_.stress(reactions.loading);
     row.stress_bottom_Pa = e_.stress(-reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
-    row.sigma3_Pa = e_.body.pressure_Pa;
+    row.sigma3_Pa = e_.assembly.pressure_Pa;
     row.cracks_tensile = tensile_;
     row.cracks_shear = shear_;
     const double force = 0.5 * (std::abs(reactions.loading) + std::abs(reactions.rest));
-    row.residual = force > 0.0 ? unbalanced_force(e_.body) / force : 0.0;
+    row.residual = force > 0.0 ? unbalanced_force(e_.assembly) / force : 0.0;
     row.platen_speed = e_.settings.speed;
-    const StoredEnergy stored = stored_energy(e_.body);
-    const KineticEnergy kinetic = kinetic_energy(e_.body, e_.settings.speed);
+    const StoredEnergy stored = stored_energy(e_.assembly);
+    const KineticEnergy kinetic = kinetic_energy(e_.assembly, e_.settings.speed);
     row.kinetic_deviation = e_.settings.damping == Damping::deviation ? kinetic.deviation_J : kinetic.total_J;
     row.energy.external = e_.platen_work.loading + stored.pressure_J;
     row.energy.elastic_start = e_.elastic_start_J;
@@ -96,22 +97,22 @@ void Recorder::collect_cracks() {
         int contact, point;
     };
     std::vector<Found> found;
-    for (int c = 0; c < static_cast<int>(e_.body.contacts.size()); ++c) {
-        const Contact& contact = e_.body.contacts[c];
+    for (int c = 0; c < static_cast<int>(e_.assembly.contacts.size()); ++c) {
+        const Contact& contact = e_.assembly.contacts[c];
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
-            if (e_.body.points[p].broken_step >= std::max(0LL, cracks_seen_until_)) found.push_back({e_.body.points[p].broken_step, c, p});
+            if (e_.assembly.points[p].broken_step >= std::max(0LL, cracks_seen_until_)) found.push_back({e_.assembly.points[p].broken_step, c, p});
     }
     std::stable_sort(found.begin(), found.end(), [](const Found& l, const Found& r) { return l.step < r.step; });
     for (const Found& f : found) {
-        const Contact& contact = e_.body.contacts[f.contact];
-        const ContactPoint& point = e_.body.points[f.point];
-        const Vec2 p0 = e_.body.nodes.reference[contact.a.node[0]], p1 = e_.body.nodes.reference[contact.a.node[1]];
+        const Contact& contact = e_.assembly.contacts[f.contact];
+        const ContactPoint& point = e_.assembly.points[f.point];
+        const auto [edge_a, edge_b, p0, p1] = e_.assembly.origins[f.contact];
         const EdgeShare share = share_of_edge(f.point - contact.first_point, contact.points);
         Crack crack;
         crack.step = f.step;
         crack.mode = point.broke_in_tension ? CrackMode::tensile : CrackMode::shear;
-        crack.grain_a = contact.a.grain;
-        crack.grain_b = contact.b.grain;
+        crack.grain_a = e_.assembly.bodies[contact.a.body].grain;
+        crack.grain_b = e_.assembly.bodies[contact.b.body].grain;
         crack.contact = f.contact;
         crack.point = f.point - contact.first_point;
         crack.from = p0 + share.from * (p1 - p0);
@@ -126,10 +127,11 @@ void Recorder::collect_cracks() {
 }
 
 Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& row) const {
-    Fields f{label, row, e_.body.nodes.displacement, {}, {}, static_cast<int>(result_.cracks.size())};
-    f.damage.reserve(e_.body.points.size());
-    f.opening.reserve(e_.body.points.size());
-    for (const ContactPoint& point : e_.body.points) {
+    Fields f{label, row, e_.assembly.nodes.displacement, {}, {}, {}, static_cast<int>(result_.cracks.size())};
+    if (e_.assembly.triangles.empty()) f.grain_stress = grain_stresses(e_.assembly, *result_.specimen);
+    f.damage.reserve(e_.assembly.points.size());
+    f.opening.reserve(e_.assembly.points.size());
+    for (const ContactPoint& point : e_.assembly.points) {
         f.damage.push_back(static_cast<float>(point.bond.damage));
         f.opening.push_back(point.bond.un_m);
     }
@@ -160,20 +162,24 @@ Snapshot Recorder::complete(const Fields& f) const {
     s.step = f.row.step;
     s.axial_strain = f.row.axial_strain;
     s.axial_stress_Pa = f.row.axial_stress_Pa;
-    s.displacement_m = f.displacement;
-    for (const Triangle& triangle : e_.body.triangles) {
-        const Mat2 stress = cauchy_stress(e_.body.elasticity, displacement_gradient(f.displacement, triangle));
+    s.displacement_m = mesh_displacements(e_.assembly, *result_.specimen, f.displacement);
+    const GrainMesh& mesh = result_.specimen->mesh;
+    const auto add_stress = [&](const Mat2& stress) {
         s.stress_xx_Pa.push_back(-stress.xx);
         s.stress_yy_Pa.push_back(-stress.yy);
         s.stress_xy_Pa.push_back(-stress.xy);
-    }
-    s.damage.assign(e_.body.triangles.size(), 0.0F);
-    const GrainMesh& mesh = result_.specimen->mesh;
-    for (const Contact& contact : e_.body.contacts) {
-        if (contact.b.grain < 0 || contact.new_contact) continue;
-        for (const ContactSide* side : {&contact.a, &contact.b}) {
-            const int edge = mesh.edge_begin[side->grain] + side->node[0] - mesh.node_begin[side->grain];
-            float& damage = s.damage[mesh.edge_triangle[edge]];
+    };
+    for (const Triangle& triangle : e_.assembly.triangles)
+        add_stress(cauchy_stress(e_.assembly.elasticity, displacement_gradient(f.displacement, triangle)));
+    for (std::size_t g = 0; g < f.grain_stress.size(); ++g)
+        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) add_stress(f.grain_stress[g]);
+    s.damage.assign(mesh.triangles.size(), 0.0F);
+    for (std::size_t c = 0; c < e_.assembly.contacts.size(); ++c) {
+        const Contact& contact = e_.assembly.contacts[c];
+        const ContactOrigin& origin = e_.assembly.origins[c];
+        if (origin.edge_a < 0) continue;
+        for (const auto& [side, edge] : {std::pair{contact.a, origin.edge_a}, std::pair{contact.b, origin.edge_b}}) {
+            float& damage = s.damage[mesh.edge_triangle[mesh.edge_begin[e_.assembly.bodies[side.body].grain] + edge]];
             for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) damage = std::max(damage, f.damage[p]);
         }
     }

@@ -10,7 +10,7 @@
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
 #include "feldspar/lab/stability.hpp"
-#include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
 
 namespace feldspar {
 namespace {
@@ -20,9 +20,9 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Compression left by unloading that vanished when the point broke (docs/theory/contacts.md).
-long long count_vanished(const Assembly& body) {
+long long count_vanished(const Assembly& assembly) {
     long long count = 0;
-    for (const ContactPoint& point : body.points) count += point.lost_compression;
+    for (const ContactPoint& point : assembly.points) count += point.lost_compression;
     return count;
 }
 
@@ -73,7 +73,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     }
     result.preparation_steps = e.preparation_steps;
     recorder.finish();
-    result.vanished_compressions = count_vanished(e.body);
+    result.vanished_compressions = count_vanished(e.assembly);
     if (!result.history.empty()) result.energy_at_end = result.history.back().energy;
     result.energy_residual = largest_energy_residual(result.history);
     result.properties = measure(result);
@@ -113,19 +113,20 @@ TestPreview preview_test(const TestSetup& setup, const RunControl& control) {
     Experiment e(setup, control);
     choose_step(e);
     TestPreview preview;
-    preview.grains = static_cast<int>(e.body.grains.size());
-    preview.contacts = static_cast<int>(e.body.contacts.size());
-    preview.contact_points = static_cast<int>(e.body.points.size());
-    preview.nodes = e.body.nodes.count();
-    preview.triangles = static_cast<int>(e.body.triangles.size());
-    preview.memory_bytes = e.body.memory_bytes();
+    preview.grains = static_cast<int>(setup.specimen->cells.cells.size());
+    preview.bodies = static_cast<int>(std::count_if(e.assembly.bodies.begin(), e.assembly.bodies.end(), [](const Body& b) { return b.kind != BodyKind::plate; }));
+    preview.contacts = static_cast<int>(e.assembly.contacts.size());
+    preview.contact_points = static_cast<int>(e.assembly.points.size());
+    preview.nodes = e.assembly.nodes.count();
+    preview.triangles = static_cast<int>(e.assembly.triangles.size());
+    preview.memory_bytes = e.assembly.memory_bytes();
     preview.omega2 = e.omega2;
     preview.omega2_limit = e.omega2_bound;
-    Assembly real = e.body;
+    Assembly real = e.assembly;
     set_real_masses(real, setup.grain.density_kg_m3);
     preview.stable_time_step_s = std::sqrt(e.omega2_bound / largest_omega2(real, e.team));
     constexpr int kTrial = 20;
-    evaluate_forces(e.body, e.team, Strength::unlimited);
+    evaluate_forces(e.assembly, e.team, Strength::unlimited);
     const Clock::time_point start = Clock::now();
     e.run(kTrial);
     const double per_step = seconds_since(start) / kTrial;

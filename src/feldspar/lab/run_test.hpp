@@ -46,6 +46,7 @@ TestResult run_test(const TestSetup& setup, const RunControl& control);
 /// What `feldspar check` prints: built, judged and timed for a moment, but not run.
 struct TestPreview {
     int grains = 0, contacts = 0, contact_points = 0, nodes = 0, triangles = 0;
+    int bodies = 0;                  ///< that move by themselves: grains, or their inner particles
     double memory_bytes = 0.0;       ///< of the assembly while it runs
     double omega2 = 0.0;             ///< largest omega^2 dt^2 of the initial state
     double omega2_limit = 0.0;       ///< 4, or 4 / (1 + alpha) with local damping

@@ -10,21 +10,21 @@ namespace feldspar {
 namespace {
 
 // Force of the linearised body on the displacement field x (with the sign of -K x), by one step of zero length.
-void apply_stiffness(Assembly& body, Team& team, const Eigen::VectorXd& x, Eigen::VectorXd& Kx) {
+void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& x, Eigen::VectorXd& Kx) {
     constexpr double kAmplitude = 1e-12;   // m: rotations of 1e-8, far from both nonlinearity and rounding
-    Nodes& nodes = body.nodes;
+    Nodes& nodes = assembly.nodes;
     StepSettings settings;
     settings.strength = Strength::unlimited;
     const double scale = kAmplitude / x.lpNorm<Eigen::Infinity>();
-    for (ContactPoint& point : body.points) point.bond = {};
+    for (ContactPoint& point : assembly.points) point.bond = {};
     for (int n = 0; n < nodes.count(); ++n) {
         nodes.displacement[n] = {};
         nodes.velocity[n] = {scale * x[2 * n], scale * x[2 * n + 1]};
     }
-    team.run([&](int t) { contact_forces(body, team.share(static_cast<int>(body.contacts.size()), t), settings, -1); });
+    team.run([&](int t) { contact_forces(assembly, team.share(static_cast<int>(assembly.contacts.size()), t), settings, -1); });
     for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] = nodes.velocity[n];
     settings.dt = 0.0;
-    team.run([&](int t) { grain_forces(body, team.share(static_cast<int>(body.grains.size()), t), settings); });
+    team.run([&](int t) { body_forces(assembly, team.share(static_cast<int>(assembly.bodies.size()), t), settings); });
     for (int n = 0; n < nodes.count(); ++n) {
         Kx[2 * n] = -nodes.force[n].x / scale;
         Kx[2 * n + 1] = -nodes.force[n].y / scale;
@@ -33,13 +33,13 @@ void apply_stiffness(Assembly& body, Team& team, const Eigen::VectorXd& x, Eigen
 
 }  // namespace
 
-double largest_omega2(Assembly body, Team& team) {
-    const int dofs = 2 * body.nodes.count(), iterations = 80;
-    body.pressure_Pa = 0.0;
+double largest_omega2(Assembly assembly, Team& team) {
+    const int dofs = 2 * assembly.nodes.count(), iterations = 80;
+    assembly.pressure_Pa = 0.0;
     Eigen::VectorXd root_inverse_mass(dofs);   // 0 where the motion is imposed
-    for (int n = 0; n < body.nodes.count(); ++n) {
-        root_inverse_mass[2 * n] = std::sqrt(body.nodes.inverse_mass[n].x);
-        root_inverse_mass[2 * n + 1] = std::sqrt(body.nodes.inverse_mass[n].y);
+    for (int n = 0; n < assembly.nodes.count(); ++n) {
+        root_inverse_mass[2 * n] = std::sqrt(assembly.nodes.inverse_mass[n].x);
+        root_inverse_mass[2 * n + 1] = std::sqrt(assembly.nodes.inverse_mass[n].y);
     }
     RandomStream random(1, "stability");
     Eigen::VectorXd q(dofs), previous = Eigen::VectorXd::Zero(dofs), w(dofs);
@@ -50,7 +50,7 @@ double largest_omega2(Assembly body, Team& team) {
     double last_beta = 0.0;
     for (; steps < iterations; ++steps) {
         const Eigen::VectorXd x = root_inverse_mass.cwiseProduct(q);
-        apply_stiffness(body, team, x, w);
+        apply_stiffness(assembly, team, x, w);
         w = root_inverse_mass.cwiseProduct(w) - last_beta * previous;
         alpha[steps] = q.dot(w);
         w -= alpha[steps] * q;

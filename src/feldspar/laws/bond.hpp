@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "feldspar/laws/softening.hpp"
 #include "feldspar/model/spec.hpp"
@@ -49,6 +50,17 @@ struct BondLaw {
         law.secant_unloading = m.tension_unloading == TensionUnloading::secant;
         return law;
     }
+
+    /// Stays elastic whatever happens: contacts inside a grain of inner particles, glued plates. eta = 0: free in shear.
+    static BondLaw unbreakable(double Kn_Pa_m, double eta) {
+        constexpr double kNever = std::numeric_limits<double>::infinity();
+        BondLaw law;
+        law.Kn_Pa_m = Kn_Pa_m;
+        law.Ks_Pa_m = eta * Kn_Pa_m;
+        law.sigma_nt_Pa = law.tau_Pa = kNever;
+        law.normal.x0 = law.shear.x0 = kNever;
+        return law;
+    }
 };
 
 /// What a contact point remembers.
@@ -69,7 +81,7 @@ enum class BondEvent { none, broke_in_tension, broke_in_shear, broke_in_shear_lo
 
 /// Recoverable energy of a point, J.
 inline double elastic_energy(const BondLaw& law, double area_m2, const BondState& s) {
-    const double shear = 0.5 * s.Fs_N * s.Fs_N / (law.Ks_Pa_m * area_m2);
+    const double shear = law.Ks_Pa_m > 0.0 ? 0.5 * s.Fs_N * s.Fs_N / (law.Ks_Pa_m * area_m2) : 0.0;
     if (law.secant_unloading && s.un_m > 0.0 && s.damage > 0.0) return 0.5 * std::abs(s.Fn_N) * s.un_m + shear;
     return 0.5 * s.Fn_N * s.Fn_N / (law.Kn_Pa_m * area_m2) + shear;
 }

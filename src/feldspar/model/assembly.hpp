@@ -1,11 +1,12 @@
 // What is simulated and who owns it. Every array has one owner, the Assembly; stages take what they need of it.
 //
-// Layout: nodes and triangles belong to one grain each and are contiguous by grain, so that the grain stage works in a
-// few kilobytes at a time and never touches another grain. A contact reads both of its grains and writes only its own two
-// slots; a grain gathers its slots in a fixed order. So there are no atomics, and the same bits for any number of threads.
+// Layout: nodes and triangles belong to one body each and are contiguous by body, so that the body stage works in a
+// few kilobytes at a time and never touches another body. A contact reads both of its bodies and writes only its own two
+// slots; a body gathers its slots in a fixed order. So there are no atomics, and the same bits for any number of threads.
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -17,8 +18,13 @@
 namespace feldspar {
 
 /// Node arrays, all of the same length. Displacements are stored instead of positions: gaps of nanometres need the digits.
+///
+/// Everything that moves does so through nodes. A flexible grain has the nodes of its triangles. A rigid body has two: its centre, and
+/// its turn, whose x holds the rotation as an arc on the body's contact circle (rotation x radius, m) and whose y is never
+/// free. So forces, masses, damping, loading mode, stability and energy have one form for all bodies; a force on a turn is a
+/// moment over the radius, its mass the moment of inertia over the radius squared. A plate has one node, free where it may move.
 struct Nodes {
-    std::vector<Vec2> reference;      ///< m
+    std::vector<Vec2> reference;      ///< m; of a turn: that of its centre
     std::vector<Vec2> displacement;   ///< m
     std::vector<Vec2> velocity;       ///< m per unit of time (a step, or a second with real masses)
     std::vector<Vec2> force;          ///< N, of the last step: contacts, triangles and pressure, without damping
@@ -28,6 +34,9 @@ struct Nodes {
 
     int count() const { return static_cast<int>(reference.size()); }
     Vec2 position(int node) const { return reference[node] + displacement[node]; }
+
+    /// Adds a node at rest. @param free  1 in a direction that is free, 0 in one that is imposed. @return its number
+    int add(Vec2 place, Vec2 free);
 };
 
 /// Constant-strain triangle; the gradient of the first node's shape function is minus the sum of the other two.
@@ -37,40 +46,61 @@ struct Triangle {
     double volume_m3 = 0.0;           ///< area x thickness
 };
 
-struct Grain {
+enum class BodyKind : std::uint8_t { flexible, rigid, plate };
+
+/// What moves by itself: a flexible grain, a rigid grain, an inner particle (a rigid disc), a plate.
+struct Body {
+    BodyKind kind = BodyKind::flexible;
+    std::int32_t grain = -1;                         ///< the Laguerre cell that it is, or lies in; -1: a plate
     std::int32_t node_begin = 0, node_end = 0;
     std::int32_t triangle_begin = 0, triangle_end = 0;
-    std::int32_t edge_begin = 0, edge_end = 0;       ///< into Assembly::grain_edges
-    std::int32_t slot_begin = 0, slot_end = 0;       ///< into Assembly::slots_of_grains
+    std::int32_t edge_begin = 0, edge_end = 0;       ///< into Assembly::edges; none of a disc or a plate
+    std::int32_t slot_begin = 0, slot_end = 0;       ///< into Assembly::slots_of_bodies
     std::int32_t pressure_begin = 0, pressure_end = 0;
     std::int32_t centre_node = 0;                    ///< the node at the centroid: centre of the contact circle
     double radius_m = 0.0;                           ///< of the contact circle
+    Vec2 normal;                                     ///< of a plate: from the specimen into it
+    double volume_m3 = 0.0;                          ///< of a rigid body, for its real mass; of a disc its share of the grain
+    double gyration_m2 = 0.0;                        ///< of a rigid body: moment of inertia over mass
 };
 
-/// The triangle behind a grain's edge: first two nodes are the edge, counter-clockwise.
-using EdgeNodes = std::array<std::int32_t, 3>;
+/// Where a contact hangs on a body: a flexible one by the triangle behind the edge (its first two nodes are the edge), a
+/// rigid one by {centre, turn}, a plate by its only node.
+using SideNodes = std::array<std::int32_t, 3>;
 
-/// One side of a contact: a grain through the triangle that owns its edge, or a platen.
+/// An edge of a grain's outline, counter-clockwise.
+struct GrainEdge {
+    SideNodes node{};
+    Vec2 from, to;             ///< m, undeformed
+};
+
 struct ContactSide {
-    EdgeNodes node{};          ///< of the triangle behind the edge; unused by a platen
-    std::int32_t grain = -1;   ///< < 0: a platen
-    std::int32_t platen = 0;   ///< which, if it is one
+    SideNodes node{};
+    std::int32_t body = -1;
 };
 
-/// Two facing grain edges, or a grain and a platen (always side B).
-/// Frame: n from A to B; reference point at the distance s along n from A's centre,
-///     s = d/2 + offset (grains; offset = (RA - RB)/2 + dv, equation (7)),   s = offset (platen).
+/// Two facing edges, or an edge and a plate (always side B).
+/// Frame: n from A to B; reference point at the distance s along the line of centres from A's centre,
+///     s = d/2 + offset (offset = (RA - RB)/2 + dv, equation (7)),   s = offset along the plate's normal (plate).
 struct Contact {
     ContactSide a, b;
     double offset_m = 0.0;
-    Vec2 tangent{0.0, 1.0};        ///< the edge's tangent in the frame (n, rot90(n)): it turns with n
+    Vec2 tangent{0.0, 1.0};          ///< the edge's tangent in the frame (n, rot90(n)): it turns with n
+    Vec2 edge_normal{0.0, 0.0};      ///< not zero: n is this undeformed direction, turned by the mean rotation of two rigid bodies
     double closing_distance_m = 0.0; ///< once broken, the contact is dropped beyond this distance of the centres
     std::int32_t first_point = 0;
     std::int32_t points = 0;
-    std::int32_t material = 0;     ///< into Assembly::laws
-    bool initial_shape = false;    ///< uses the shape functions of the undeformed state (fall-back)
-    bool dropped = false;          ///< carries nothing any more
-    bool new_contact = false;      ///< made after detachment
+    std::int32_t material = 0;       ///< into Assembly::laws
+    bool plate = false;              ///< side B is a plate
+    bool initial_shape = false;      ///< uses the shape functions of the undeformed state (fall-back)
+    bool dropped = false;            ///< carries nothing any more
+    bool new_contact = false;        ///< made after detachment
+};
+
+/// Where a contact lay on the tessellation, for cracks and fields; the step never reads it.
+struct ContactOrigin {
+    std::int32_t edge_a = -1, edge_b = -1;   ///< edge of each side's grain, in the cell's own count; -1: none
+    Vec2 from, to;                           ///< m, undeformed: the part of the grain edge that the contact stands for
 };
 
 /// A quadrature point of a contact: its constants and its bond.
@@ -83,55 +113,61 @@ struct ContactPoint {
     bool lost_compression = false; ///< compression left at an open gap vanished when it broke
 };
 
-/// What a contact point keeps of its shape functions, read only between steps and by the fall-back.
+/// What a contact point between flexible bodies keeps of its shape functions, read only between steps and by the fall-back.
 struct InitialShape {
     std::array<double, 3> a{}, b{};              ///< of the undeformed state
     std::array<double, 3> covered_a{}, covered_b{};  ///< |N_i| sum|N_j| that the masses of the nodes already allow for
 };
 
-using SlotForces = std::array<Vec2, 3>;   ///< forces on the three nodes of a contact side (a platen uses the first)
+/// Generalised forces on the nodes of a contact's side: on three corners; on centre and turn; on a plate's node.
+using SlotForces = std::array<Vec2, 3>;
 
-/// A rigid plate, or the rows of nodes that stand for it.
+/// What loads the specimen: rows of its own nodes (flexible grains between platens), or the node of a plate in contact with it.
 struct Platen {
-    Vec2 normal;                               ///< from the specimen into the platen
     Vec2 mode;                                 ///< its motion per unit of platen motion: (0, -1) for the loading platen, (0, 0) at rest
-    double position_m = 0.0;                   ///< along y, of a plate in contact
-    std::vector<std::int32_t> nodes;           ///< nodes whose y motion it imposes (flexible specimens)
-    std::vector<std::int32_t> contacts;        ///< plate contacts (Brazilian)
+    std::vector<std::int32_t> nodes;           ///< whose y motion it imposes, and whose forces make its reaction
+    std::int32_t plate = -1;                   ///< body of the plate, if it is one
 };
 
-/// A boundary edge under pressure.
+/// A boundary edge under pressure, or a plate of a membrane.
 struct PressureEdge {
-    std::int32_t node_a = 0, node_b = 0;
+    std::int32_t node_a = 0, node_b = 0;       ///< a plate's node twice
     Vec2 outward;                              ///< unit normal of the undeformed edge
+    double plate_length_m = 0.0;               ///< of a plate; 0: the pressure acts over the current distance of the nodes
 };
 
-/// Work done on a grain, accumulated every step (J).
-struct GrainWork {
+/// Work done on a body, accumulated every step (J).
+struct BodyWork {
     double damping = 0.0;    ///< taken out by damping
     double pressure = 0.0;   ///< put in by the lateral pressure
 };
 
-/// The whole body.
+/// Materials of contacts, by Contact::material.
+enum ContactRole : std::int32_t { between_grains = 0, at_plates = 1, inside_grains = 2, at_membranes = 3, contact_roles = 4 };
+
+/// Everything that a test moves.
 struct Assembly {
     double thickness_m = 0.0;
     PlaneElasticity elasticity;
-    std::vector<BondLaw> laws;                 ///< by Contact::material: 0 between grains, 1 at plates
+    std::array<BondLaw, contact_roles> laws;
     Nodes nodes;
     std::vector<Triangle> triangles;
-    std::vector<Grain> grains;
-    std::vector<EdgeNodes> grain_edges;
+    std::vector<Body> bodies;                  ///< the grains, or their inner particles; then the plates
+    std::vector<GrainEdge> edges;
     std::vector<Contact> contacts;
+    std::vector<ContactOrigin> origins;        ///< a contact
     std::vector<ContactPoint> points;
-    std::vector<InitialShape> initial_shapes;  ///< a contact point
+    std::vector<InitialShape> initial_shapes;  ///< a contact point; empty where no body is flexible
     std::vector<SlotForces> slots;             ///< 2 x contact + side
-    std::vector<std::int32_t> slots_of_grains; ///< slot numbers, contiguous by grain
-    std::vector<PressureEdge> pressure_edges;  ///< contiguous by grain
-    std::vector<GrainWork> grain_work;
+    std::vector<std::int32_t> slots_of_bodies; ///< slot numbers, contiguous by body
+    std::vector<PressureEdge> pressure_edges;  ///< contiguous by body
+    std::vector<BodyWork> body_work;
     std::array<Platen, 2> platens;             ///< 0 loading (top), 1 at rest (bottom)
     double pressure_Pa = 0.0;                  ///< on the pressure edges, compression positive
 
-    Vec2 centre(int grain) const { return nodes.position(grains[grain].centre_node); }
+    Vec2 centre(int body) const { return nodes.position(bodies[body].centre_node); }
+    /// Rotation of a rigid body, rad.
+    double rotation(int body) const { return nodes.displacement[bodies[body].centre_node + 1].x / bodies[body].radius_m; }
     double memory_bytes() const;
 };
 
@@ -145,39 +181,29 @@ inline Mat2 displacement_gradient(const std::vector<Vec2>& u, const Triangle& tr
 
 /// Direction and length of a contact's frame in the current configuration.
 struct ContactFrame {
-    Vec2 n;
+    Vec2 n;                    ///< of the law
     Vec2 reference_point;
     Vec2 edge_tangent;
-    double distance_m = 0.0;   ///< of the centres; 0 for a platen
+    double distance_m = 0.0;   ///< of the centres; 0 for a plate
 };
 
-inline ContactFrame contact_frame(const Assembly& body, const Contact& contact) {
+inline ContactFrame contact_frame(const Assembly& assembly, const Contact& contact) {
     ContactFrame f;
-    const Vec2 xa = body.centre(contact.a.grain);
+    const Vec2 xa = assembly.centre(contact.a.body);
     double s = contact.offset_m;
-    if (contact.b.grain >= 0) {
-        const Vec2 line = body.centre(contact.b.grain) - xa;
+    if (contact.plate) {
+        f.n = assembly.bodies[contact.b.body].normal;
+    } else {
+        const Vec2 line = assembly.centre(contact.b.body) - xa;
         f.distance_m = norm(line);
         f.n = (1.0 / f.distance_m) * line;
         s += 0.5 * f.distance_m;
-    } else {
-        f.n = body.platens[contact.b.platen].normal;
     }
     f.reference_point = xa + s * f.n;
     f.edge_tangent = contact.tangent.x * f.n + contact.tangent.y * rot90(f.n);
+    if (contact.edge_normal != Vec2{})
+        f.n = turned(contact.edge_normal, 0.5 * (assembly.rotation(contact.a.body) + assembly.rotation(contact.b.body)));
     return f;
-}
-
-/// Linear shape functions of the triangle with current corners p at the point x (equation (10)); x may lie outside.
-inline std::array<double, 3> shape_functions(const std::array<Vec2, 3>& p, Vec2 x) {
-    const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0], r = x - p[0];
-    const double inverse = 1.0 / cross(e1, e2);
-    const double N1 = cross(r, e2) * inverse, N2 = cross(e1, r) * inverse;
-    return {1.0 - N1 - N2, N1, N2};
-}
-
-inline std::array<Vec2, 3> corners(const Nodes& nodes, const EdgeNodes& t) {
-    return {nodes.position(t[0]), nodes.position(t[1]), nodes.position(t[2])};
 }
 
 }  // namespace feldspar

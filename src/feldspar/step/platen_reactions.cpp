@@ -2,15 +2,12 @@
 
 namespace feldspar {
 
-// Nodes under a platen feel the internal forces and, imposed in y, do not obey them: their sum is what the body does to the
-// platen. A plate in contact feels the second slots of its contacts.
-Reactions platen_reactions(const Assembly& body) {
+// Nodes under a platen, and the node of a plate, feel their forces and, imposed in y, do not obey them: their sum is what the
+// specimen does to the platen.
+Reactions platen_reactions(const Assembly& assembly) {
     std::array<double, 2> sum{};
-    for (int side = 0; side < 2; ++side) {
-        const Platen& platen = body.platens[side];
-        for (const int node : platen.nodes) sum[side] += body.nodes.force[node].y;
-        for (const int contact : platen.contacts) sum[side] += body.slots[2 * contact + 1][0].y;
-    }
+    for (int side = 0; side < 2; ++side)
+        for (const int node : assembly.platens[side].nodes) sum[side] += assembly.nodes.force[node].y;
     return {sum[0], sum[1]};
 }
 

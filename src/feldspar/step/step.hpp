@@ -1,11 +1,11 @@
 // One explicit step, stage by stage. What each stage reads and writes:
 //
-//   contact_forces     reads node displacements and velocities, platen velocities; writes contact points and slots
-//   grain_forces       reads slots; writes node forces, velocities, displacements, grain work
-//   platen_reactions   reads node forces and slots of the platens; writes nothing
+//   contact_forces     reads node displacements and velocities; writes contact points and slots
+//   body_forces        reads slots; writes node forces, velocities, displacements, work of each body
+//   platen_reactions   reads node forces of the platens; writes nothing
 //   find_contacts      (between steps) makes and drops frictional contacts, chooses the fall-back shape functions
 //
-// advance() runs contact_forces and grain_forces for a number of steps on a team, with a barrier after each stage.
+// advance() runs contact_forces and body_forces for a number of steps on a team, with a barrier after each stage.
 #pragma once
 
 #include <array>
@@ -45,41 +45,41 @@ struct Reactions {
 };
 
 /// Stage 1: relative velocity, law, forces of the contacts [begin, end). `step` is written into points that break.
-void contact_forces(Assembly& body, IndexRange contacts, const StepSettings& settings, long long step);
+void contact_forces(Assembly& assembly, IndexRange contacts, const StepSettings& settings, long long step);
 
-/// Stage 2: gather, triangles, pressure, damping, velocity and displacement of the grains [begin, end).
-void grain_forces(Assembly& body, IndexRange grains, const StepSettings& settings);
+/// Stage 2: gather, triangles, pressure, damping, velocity and displacement of the bodies [begin, end).
+void body_forces(Assembly& assembly, IndexRange bodies, const StepSettings& settings);
 
 /// Stage 3: ordered sums.
-Reactions platen_reactions(const Assembly& body);
+Reactions platen_reactions(const Assembly& assembly);
 
-/// `count` steps; moves plates, accumulates the platens' work.
-void advance(Assembly& body, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work);
+/// `count` steps; accumulates the platens' work.
+void advance(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work);
 
 /// Forces at the present state without moving anything: one step of zero length.
-void evaluate_forces(Assembly& body, Team& team, Strength strength);
+void evaluate_forces(Assembly& assembly, Team& team, Strength strength);
 
-/// Finds pairs of grains that come to overlap without having a contact, and drops open broken ones.
+/// Finds pairs of bodies that come to overlap without having a contact, and drops open broken ones.
 class ContactFinder {
 public:
     /// @param skin_m  pairs are looked for this far apart; contacts are dropped this far open
-    ContactFinder(const Assembly& body, double skin_m);
+    ContactFinder(const Assembly& assembly, double skin_m);
 
     struct Changes {
         int made = 0;
         int dropped = 0;
         double kinetic_J = 0.0;   ///< gained because nodes became heavier (scaled masses only)
     };
-    /// To be called every few steps: looks for candidates again only when some grain has moved by half the skin.
+    /// To be called every few steps: looks for candidates again only when some body has moved by half the skin.
     /// @param mass_factor  factor of the scaled masses; 0 with real masses
-    Changes update(Assembly& body, double mass_factor);
+    Changes update(Assembly& assembly, double mass_factor);
 
 private:
     struct Candidate {
         int a, b;
         double rest_overlap_m;
     };
-    void search(const Assembly& body);
+    void search(const Assembly& assembly);
 
     double skin_m_;
     std::vector<Vec2> centres_at_search_;
@@ -93,10 +93,10 @@ struct ShapeChoice {
     double kinetic_J = 0.0;     ///< gained because nodes became heavier (scaled masses only)
 };
 
-/// Chooses for each contact between current and initial shape functions: the initial ones where any current value departs
+/// Chooses for each contact of flexible bodies between current and initial shape functions: the initial ones where any current value departs
 /// from its initial one by more than 0.5. Where extrapolation makes a point stiffer than the scaled masses allow for, the
 /// masses follow, so that the step stays stable.
 /// @param mass_factor  factor of the scaled masses; 0 with real masses, which stay
-ShapeChoice choose_shape_functions(Assembly& body, double mass_factor);
+ShapeChoice choose_shape_functions(Assembly& assembly, double mass_factor);
 
 }  // namespace feldspar

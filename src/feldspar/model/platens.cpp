@@ -1,0 +1,249 @@
+#include "feldspar/model/platens.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/model/assemble.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Where the outline can be pressed: a grain's edge on it, or an inner particle's share of that edge. Counter-clockwise.
+struct OutlineSite {
+    int body = 0;
+    SideNodes node{};
+    Vec2 from, to;
+    int label = 0;   // into Outline::edge_labels
+
+    Vec2 outward() const { return (-1.0 / norm(to - from)) * rot90(to - from); }
+    double length() const { return norm(to - from); }
+};
+
+std::vector<OutlineSite> outline_sites(const Assembly& assembly, const Specimen& specimen) {
+    std::vector<OutlineSite> sites;
+    const std::vector<Cell>& cells = specimen.cells.cells;
+    for (const OutlineShare& share : specimen.filling.outline) {
+        const std::int32_t node = assembly.bodies[share.particle].node_begin;
+        if (assembly.edges.empty())   // the bodies are the particles
+            sites.push_back({share.particle, {node, node + 1, -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
+    }
+    std::stable_sort(sites.begin(), sites.end(), [](const OutlineSite& l, const OutlineSite& r) { return l.body < r.body; });
+    if (assembly.edges.empty()) return sites;
+    for (int g = 0; g < std::ssize(cells); ++g)
+        for (int k = 0; k < std::ssize(cells[g].vertices); ++k) {
+            if (cells[g].neighbours[k] >= 0) continue;
+            const GrainEdge& edge = assembly.edges[assembly.bodies[g].edge_begin + k];
+            sites.push_back({g, edge.node, edge.from, edge.to, cells[g].outline_edges[k]});
+        }
+    return sites;
+}
+
+BondLaw law_at_plates(const PlateContact& contact) {
+    if (contact.glued) return BondLaw::unbreakable(contact.Kn_Pa_m, 0.0);
+    BondLaw law;
+    law.Kn_Pa_m = contact.Kn_Pa_m;
+    law.Ks_Pa_m = contact.eta * contact.Kn_Pa_m;
+    law.mu = contact.mu;
+    return law;
+}
+
+int add_plate(Assembly& assembly, Vec2 place, Vec2 normal, Vec2 free) {
+    Body plate;
+    plate.kind = BodyKind::plate;
+    plate.normal = normal;
+    plate.node_begin = plate.centre_node = assembly.nodes.add(place, free);
+    plate.node_end = plate.node_begin + 1;
+    assembly.bodies.push_back(plate);
+    assembly.body_work.emplace_back();
+    return static_cast<int>(assembly.bodies.size()) - 1;
+}
+
+// A contact of the site with a plate at the point `touch` of the site's edge; `gap_m` is left between them.
+void add_plate_contact(Assembly& assembly, const OutlineSite& site, int plate, Vec2 touch, double area_m2, double gap_m, ContactRole material) {
+    const Vec2 normal = assembly.bodies[plate].normal, arm = touch - assembly.centre(site.body);
+    Contact contact;
+    contact.a = {site.node, site.body};
+    contact.b = {{assembly.bodies[plate].centre_node, -1, -1}, plate};
+    contact.plate = true;
+    contact.material = material;
+    contact.offset_m = dot(arm, normal);
+    contact.first_point = static_cast<std::int32_t>(assembly.points.size());
+    contact.points = 1;
+    ContactPoint point;
+    point.along_m = dot(arm, rot90(normal));
+    point.area_m2 = area_m2;
+    point.bond.un_m = gap_m;
+    if (assembly.laws[material].sigma_nt_Pa == 0.0) point.bond.damage = 1.0;   // not glued
+    assembly.points.push_back(point);
+    add_contact(assembly, contact, {-1, -1, site.from, site.to});
+}
+
+struct Touch {
+    OutlineSite site;
+    Vec2 place;
+};
+
+// One platen as a plate: at first touch with the highest of the places (lowest for the bottom).
+void attach_plate(Assembly& assembly, int side, const std::vector<Touch>& touches, const std::function<double(const OutlineSite&)>& area_m2) {
+    const double sign = side == 0 ? 1.0 : -1.0;
+    double level = -kInfinity, left = kInfinity, right = -kInfinity;
+    for (const Touch& touch : touches) {
+        level = std::max(level, sign * touch.place.y);
+        left = std::min(left, touch.place.x);
+        right = std::max(right, touch.place.x);
+    }
+    const int plate = add_plate(assembly, {0.5 * (left + right), sign * level}, {0.0, sign}, {0.0, 0.0});
+    for (const Touch& touch : touches)
+        add_plate_contact(assembly, touch.site, plate, touch.place, area_m2(touch.site), level - sign * touch.place.y, at_plates);
+    Platen& platen = assembly.platens[side];
+    platen.mode = {0.0, side == 0 ? -1.0 : 0.0};
+    platen.nodes = {assembly.bodies[plate].centre_node};
+    platen.plate = plate;
+}
+
+Vec2 at_x(const OutlineSite& site, double x) {
+    x = std::clamp(x, std::min(site.from.x, site.to.x), std::max(site.from.x, site.to.x));
+    return site.from + ((x - site.from.x) / (site.to.x - site.from.x)) * (site.to - site.from);
+}
+
+double distance_in_x(const OutlineSite& site, double x) {
+    return std::max({0.0, std::min(site.from.x, site.to.x) - x, x - std::max(site.from.x, site.to.x)});
+}
+
+const std::string& label_of(const OutlineSite& site, const Specimen& specimen) { return specimen.outline.edge_labels[site.label]; }
+
+void require_ends(const std::array<bool, 2>& found) {
+    if (!found[0] || !found[1]) throw InputError({}, "the outline has no edge labelled \"top\" or none labelled \"bottom\"");
+}
+
+struct Extent {
+    double lower = kInfinity, upper = -kInfinity;
+    void include(double value) {
+        lower = std::min(lower, value);
+        upper = std::max(upper, value);
+    }
+};
+
+}  // namespace
+
+void attach_platen_rows(Assembly& assembly, const Specimen& specimen) {
+    Platen& top = assembly.platens[0];
+    Platen& bottom = assembly.platens[1];
+    top.mode = {0.0, -1.0};
+    int begun = -1;   // sites come grain by grain
+    for (const OutlineSite& site : outline_sites(assembly, specimen)) {
+        const std::string& label = label_of(site, specimen);
+        if (label == "top" || label == "bottom") {
+            auto& row = label == "top" ? top.nodes : bottom.nodes;
+            row.insert(row.end(), {site.node[0], site.node[1]});
+            continue;
+        }
+        Body& grain = assembly.bodies[site.body];
+        if (begun != site.body) grain.pressure_begin = static_cast<std::int32_t>(assembly.pressure_edges.size());
+        begun = site.body;
+        assembly.pressure_edges.push_back({site.node[0], site.node[1], site.outward(), 0.0});
+        grain.pressure_end = static_cast<std::int32_t>(assembly.pressure_edges.size());
+    }
+    for (Platen* platen : {&top, &bottom}) {
+        std::sort(platen->nodes.begin(), platen->nodes.end());
+        platen->nodes.erase(std::unique(platen->nodes.begin(), platen->nodes.end()), platen->nodes.end());
+        for (const int node : platen->nodes) assembly.nodes.inverse_mass[node].y = 0.0;
+    }
+    require_ends({!top.nodes.empty(), !bottom.nodes.empty()});
+    double centre = 0.0;
+    for (const int node : bottom.nodes) centre += assembly.nodes.reference[node].x / static_cast<double>(bottom.nodes.size());
+    const auto held = std::min_element(bottom.nodes.begin(), bottom.nodes.end(), [&](int i, int j) {
+        return std::abs(assembly.nodes.reference[i].x - centre) < std::abs(assembly.nodes.reference[j].x - centre);
+    });
+    assembly.nodes.inverse_mass[*held].x = 0.0;
+}
+
+void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const PlateContact& contact) {
+    assembly.laws[at_plates] = law_at_plates(contact);
+    const std::vector<OutlineSite> sites = outline_sites(assembly, specimen);
+    for (int side = 0; side < 2; ++side) {
+        const double sign = side == 0 ? 1.0 : -1.0;
+        std::vector<Touch> touches;
+        for (std::size_t i = 0; i < sites.size();) {   // of each body the edge under the outermost point of its circle
+            const int body = sites[i].body;
+            const double x = assembly.centre(body).x;
+            const OutlineSite* best = nullptr;
+            for (; i < sites.size() && sites[i].body == body; ++i) {
+                if (sign * sites[i].outward().y < 0.5) continue;   // steeper than 60 degrees: no plate ever reaches it
+                if (best == nullptr || distance_in_x(sites[i], x) < distance_in_x(*best, x)) best = &sites[i];
+            }
+            if (best != nullptr) touches.push_back({*best, at_x(*best, x)});
+        }
+        if (touches.empty()) throw InputError({}, "no grain of the disc faces the plates");
+        attach_plate(assembly, side, touches, [&](const OutlineSite& site) { return 2.0 * assembly.bodies[site.body].radius_m * assembly.thickness_m; });
+    }
+    index_slots(assembly);
+}
+
+void attach_end_plates(Assembly& assembly, const Specimen& specimen, const PlateContact& contact) {
+    assembly.laws[at_plates] = law_at_plates(contact);
+    std::array<std::vector<Touch>, 2> touches;
+    for (const OutlineSite& site : outline_sites(assembly, specimen)) {
+        const std::string& label = label_of(site, specimen);
+        if (label != "top" && label != "bottom") continue;
+        touches[label == "top" ? 0 : 1].push_back({site, at_x(site, assembly.centre(site.body).x)});
+    }
+    require_ends({!touches[0].empty(), !touches[1].empty()});
+    for (int side = 0; side < 2; ++side)
+        attach_plate(assembly, side, touches[side], [&](const OutlineSite& site) { return site.length() * assembly.thickness_m; });
+    index_slots(assembly);
+}
+
+void attach_membranes(Assembly& assembly, const Specimen& specimen, const PlateContact& contact, int plates) {
+    assembly.laws[at_membranes] = law_at_plates(contact);
+    std::array<std::vector<OutlineSite>, 2> sides;   // left, right
+    std::array<Extent, 2> heights;
+    for (const OutlineSite& site : outline_sites(assembly, specimen)) {
+        const std::string& label = label_of(site, specimen);
+        if (label == "top" || label == "bottom") continue;
+        if (std::abs(site.outward().y) > 1e-6)
+            throw InputError({}, fmt::format("the side \"{}\" is not vertical, but the membrane of rigid grains and inner particles moves only horizontally", label),
+                             "a rectangle, or flexible grains");
+        const int side = site.outward().x < 0.0 ? 0 : 1;
+        sides[side].push_back(site);
+        for (const Vec2 end : {site.from, site.to}) heights[side].include(end.y);
+    }
+    for (int side = 0; side < 2; ++side) {
+        const double height = heights[side].upper - heights[side].lower, length = height / plates;
+        const Vec2 outward = {side == 0 ? -1.0 : 1.0, 0.0};
+        const int first = static_cast<int>(assembly.bodies.size());
+        for (int i = 0; i < plates; ++i) {
+            const Vec2 place = {sides[side].front().from.x, heights[side].lower + (i + 0.5) * length};
+            const int plate = add_plate(assembly, place, outward, {1.0, 0.0});
+            Body& body = assembly.bodies[plate];
+            body.pressure_begin = static_cast<std::int32_t>(assembly.pressure_edges.size());
+            assembly.pressure_edges.push_back({body.centre_node, body.centre_node, outward, length});
+            body.pressure_end = body.pressure_begin + 1;
+        }
+        for (const OutlineSite& site : sides[side]) {
+            const double y = std::clamp(assembly.centre(site.body).y, std::min(site.from.y, site.to.y), std::max(site.from.y, site.to.y));
+            const int i = std::clamp(static_cast<int>((y - heights[side].lower) / length), 0, plates - 1);
+            const int plate = first + i;
+            add_plate_contact(assembly, site, plate, {site.from.x, y}, site.length() * assembly.thickness_m, 0.0, at_membranes);
+        }
+    }
+    index_slots(assembly);
+}
+
+double loaded_width_m(const Assembly& assembly, const Specimen& specimen) {
+    Extent width;
+    for (const OutlineSite& site : outline_sites(assembly, specimen))
+        if (label_of(site, specimen) == "top")
+            for (const Vec2 end : {site.from, site.to}) width.include(end.x);
+    return width.upper - width.lower;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,124 @@
+#include <cmath>
+
+#include "feldspar/model/attachment.hpp"
+#include "feldspar/step/step.hpp"
+
+namespace feldspar {
+namespace {
+
+void gather_contacts(Assembly& assembly, const Body& body) {
+    const int nodes = side_nodes(body.kind);
+    for (int n = body.node_begin; n < body.node_end; ++n) assembly.nodes.force[n] = {};
+    for (int i = body.slot_begin; i < body.slot_end; ++i) {
+        const int slot = assembly.slots_of_bodies[i];
+        const Contact& contact = assembly.contacts[slot / 2];
+        const SideNodes& node = slot % 2 == 0 ? contact.a.node : contact.b.node;
+        for (int k = 0; k < nodes; ++k) assembly.nodes.force[node[k]] += assembly.slots[slot][k];
+    }
+}
+
+void add_triangles(Assembly& assembly, const Body& body) {
+    const std::vector<Vec2>& u = assembly.nodes.displacement;
+    for (int t = body.triangle_begin; t < body.triangle_end; ++t) {
+        const Triangle& triangle = assembly.triangles[t];
+        const auto [i, j, k] = triangle.node;
+        const Mat2 P = first_piola_stress(assembly.elasticity, displacement_gradient(u, triangle));
+        const Vec2 fj = -triangle.volume_m3 * (P * triangle.gradient[0]), fk = -triangle.volume_m3 * (P * triangle.gradient[1]);
+        assembly.nodes.force[j] += fj;
+        assembly.nodes.force[k] += fk;
+        assembly.nodes.force[i] -= fj + fk;
+    }
+}
+
+double pressed_length(const PressureEdge& edge, Vec2 from, Vec2 to) { return edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(to - from); }
+
+// The pressure keeps the direction of the undeformed face and acts over its current length. Its work is counted with the
+// mean of the velocities before and after (docs/theory/loading.md), the later one in integrate().
+void add_pressure(Assembly& assembly, const Body& body, BodyWork& work, double dt) {
+    if (assembly.pressure_Pa == 0.0) return;
+    for (int e = body.pressure_begin; e < body.pressure_end; ++e) {
+        const PressureEdge& edge = assembly.pressure_edges[e];
+        const double length = pressed_length(edge, assembly.nodes.position(edge.node_a), assembly.nodes.position(edge.node_b));
+        const Vec2 half = (-0.5 * assembly.pressure_Pa * length * assembly.thickness_m) * edge.outward;
+        assembly.nodes.force[edge.node_a] += half;
+        assembly.nodes.force[edge.node_b] += half;
+        work.pressure += 0.5 * dt * dot(half, assembly.nodes.velocity[edge.node_a] + assembly.nodes.velocity[edge.node_b]);
+    }
+}
+
+struct Motion {
+    double velocity;
+    double damping_work;
+};
+
+// m dV/dt = F - alpha |F| sign(V), one component; the work is taken with the mean velocity.
+Motion damp_locally(double V, double F, double inverse_mass, double alpha, double dt) {
+    const double drag = inverse_mass == 0.0 || V == 0.0 ? 0.0 : std::copysign(alpha * std::abs(F), V);
+    const double next = V + dt * inverse_mass * (F - drag);
+    return {next, 0.5 * dt * drag * (V + next)};
+}
+
+// w <- (w (1 - c dt/2) + dt F/m) / (1 + c dt/2), V = v B + w.
+Motion damp_deviation(double V, double F, double inverse_mass, double mass, double loading, double c, double dt) {
+    const double w = V - loading;
+    const double next = (w * (1.0 - 0.5 * c * dt) + dt * inverse_mass * F) / (1.0 + 0.5 * c * dt);
+    const double moving_mass = inverse_mass == 0.0 ? 0.0 : mass;
+    return {loading + next, 0.5 * dt * c * moving_mass * 0.5 * (w + next) * (V + loading + next)};
+}
+
+template <Damping damping>
+void integrate(Assembly& assembly, const Body& body, const StepSettings& settings, BodyWork& work) {
+    Nodes& nodes = assembly.nodes;
+    const double dt = settings.dt;
+    double dissipated = 0.0;
+    for (int n = body.node_begin; n < body.node_end; ++n) {
+        Vec2& V = nodes.velocity[n];
+        const Vec2 F = nodes.force[n], inverse_mass = nodes.inverse_mass[n], B = nodes.loading_mode[n];
+        if constexpr (damping == Damping::local) {
+            const Motion x = damp_locally(V.x, F.x, inverse_mass.x, settings.alpha, dt);
+            const Motion y = damp_locally(V.y, F.y, inverse_mass.y, settings.alpha, dt);
+            V = {x.velocity, y.velocity};
+            dissipated += x.damping_work + y.damping_work;
+        } else {
+            const double m = nodes.mass[n], c = settings.viscous, v = settings.speed;
+            const Motion x = damp_deviation(V.x, F.x, inverse_mass.x, m, v * B.x, c, dt);
+            const Motion y = damp_deviation(V.y, F.y, inverse_mass.y, m, v * B.y, c, dt);
+            V = {x.velocity, y.velocity};
+            dissipated += x.damping_work + y.damping_work;
+        }
+        nodes.displacement[n] += dt * V;
+    }
+    work.damping += dissipated;
+}
+
+// The second half of the pressure's work: the same forces with the new velocities.
+void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, double dt) {
+    if (assembly.pressure_Pa == 0.0) return;
+    for (int e = body.pressure_begin; e < body.pressure_end; ++e) {
+        const PressureEdge& edge = assembly.pressure_edges[e];
+        const Vec2 va = assembly.nodes.velocity[edge.node_a], vb = assembly.nodes.velocity[edge.node_b];
+        const Vec2 before_a = assembly.nodes.position(edge.node_a) - dt * va, before_b = assembly.nodes.position(edge.node_b) - dt * vb;
+        const Vec2 half = (-0.5 * assembly.pressure_Pa * pressed_length(edge, before_a, before_b) * assembly.thickness_m) * edge.outward;
+        work.pressure += 0.5 * dt * dot(half, va + vb);
+    }
+}
+
+}  // namespace
+
+void body_forces(Assembly& assembly, IndexRange bodies, const StepSettings& settings) {
+    for (int b = bodies.begin; b < bodies.end; ++b) {
+        const Body& body = assembly.bodies[b];
+        BodyWork& work = assembly.body_work[b];
+        gather_contacts(assembly, body);
+        add_triangles(assembly, body);
+        add_pressure(assembly, body, work, settings.dt);
+        if (settings.damping == Damping::local) {
+            integrate<Damping::local>(assembly, body, settings, work);
+        } else {
+            integrate<Damping::deviation>(assembly, body, settings, work);
+        }
+        finish_pressure_work(assembly, body, work, settings.dt);
+    }
+}
+
+}  // namespace feldspar
