@@ -4,10 +4,13 @@
 
 namespace feldspar {
 
-StoredEnergy stored_energy(const Assembly& assembly) {
+StoredEnergy stored_energy(const Assembly& assembly, double since) {
     StoredEnergy sum;
+    const Nodes& nodes = assembly.nodes;
+    std::vector<Vec2> u = nodes.displacement;
+    for (std::size_t n = 0; n < u.size(); ++n) u[n] -= since * nodes.velocity[n];
     for (const Triangle& triangle : assembly.triangles)
-        sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity, displacement_gradient(assembly.nodes.displacement, triangle));
+        sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity, displacement_gradient(u, triangle));
     for (const Contact& contact : assembly.contacts) {
         const BondLaw& law = assembly.laws[contact.material];
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
@@ -25,15 +28,45 @@ StoredEnergy stored_energy(const Assembly& assembly) {
     return sum;
 }
 
-KineticEnergy kinetic_energy(const Assembly& assembly, double speed) {
-    KineticEnergy sum;
-    const Nodes& nodes = assembly.nodes;
-    for (int n = 0; n < nodes.count(); ++n) {
-        const Vec2 V = nodes.velocity[n], w = V - speed * nodes.loading_mode[n];
-        const double free_x = nodes.inverse_mass[n].x != 0.0, free_y = nodes.inverse_mass[n].y != 0.0;
-        sum.total_J += 0.5 * nodes.mass[n] * (free_x * V.x * V.x + free_y * V.y * V.y);
-        sum.deviation_J += 0.5 * nodes.mass[n] * (free_x * w.x * w.x + free_y * w.y * w.y);
+namespace {
+
+// The velocity before the last step, from that after it: the inverse of what step/body_forces.cpp does to one component.
+double velocity_before(double after, double F, double inverse_mass, double loading, const StepSettings& settings) {
+    const double dt = settings.dt;
+    if (settings.damping == Damping::local) return after - dt * inverse_mass * (F - std::copysign(settings.alpha * F, after));
+    const double half = 0.5 * settings.viscous * dt, w = after - loading;
+    return loading + (w * (1.0 + half) - dt * inverse_mass * F) / (1.0 - half);
+}
+
+double pressure_power(const Assembly& assembly) {
+    double power = 0.0;
+    for (const PressureEdge& edge : assembly.pressure_edges) {
+        const Nodes& nodes = assembly.nodes;
+        const double length = edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(nodes.position(edge.node_b) - nodes.position(edge.node_a));
+        power -= 0.5 * assembly.pressure_Pa * length * assembly.thickness_m * dot(edge.outward, nodes.velocity[edge.node_a] + nodes.velocity[edge.node_b]);
     }
+    return power;
+}
+
+}  // namespace
+
+Motion motion(const Assembly& assembly, const StepSettings& settings) {
+    Motion sum;
+    const Nodes& nodes = assembly.nodes;
+    const auto add = [&](double V, double F, double inverse_mass, double mass, double loading) {
+        if (inverse_mass == 0.0) return;
+        const double before = velocity_before(V, F, inverse_mass, loading, settings);
+        sum.kinetic_J += 0.5 * mass * V * before;
+        sum.deviation_J += 0.5 * mass * (V - loading) * (V - loading);
+        sum.ahead_damping_J += 0.5 * V * (settings.dt * F - mass * (V - before));   // m (V - before) = dt (F - damping)
+    };
+    for (int n = 0; n < nodes.count(); ++n) {
+        const Vec2 V = nodes.velocity[n], F = nodes.force[n], inverse = nodes.inverse_mass[n], loading = settings.speed * nodes.loading_mode[n];
+        add(V.x, F.x, inverse.x, nodes.mass[n], loading.x);
+        add(V.y, F.y, inverse.y, nodes.mass[n], loading.y);
+    }
+    const double platen_power = -platen_reactions(assembly).loading * assembly.platens[0].mode.y * settings.speed;
+    sum.ahead_external_J = 0.5 * settings.dt * (platen_power + pressure_power(assembly));
     return sum;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "feldspar/model/assembly.hpp"
+#include "feldspar/step/step.hpp"
 
 namespace feldspar {
 
@@ -14,15 +15,22 @@ struct StoredEnergy {
     double pressure_J = 0.0;   ///< put in so far by the lateral pressure
 };
 
-StoredEnergy stored_energy(const Assembly& assembly);
+/// Of the state in which the last contact stage was. @param since  time since then: dt after a step, 0 for a state that has not
+/// been stepped; the triangles are taken that much earlier
+StoredEnergy stored_energy(const Assembly& assembly, double since);
 
-struct KineticEnergy {
-    double total_J = 0.0;
-    double deviation_J = 0.0;  ///< of w = V - v B, the motion that departs from the loading motion
+/// The motion at the state of stored_energy(). Velocities live half a step later, and so do the sums of work: with K = 1/2 m v- v+
+/// and without what the sums are ahead by, the balance of a linear body closes exactly (docs/theory/loading.md, (L13)).
+struct Motion {
+    double kinetic_J = 0.0;
+    double deviation_J = 0.0;        ///< of w = V - v B after the last step, the motion that departs from the loading motion
+    double ahead_external_J = 0.0;   ///< work of platens and pressure in the half step beyond the state
+    double ahead_damping_J = 0.0;    ///< and of the damping
 };
 
-/// Over the degrees of freedom whose motion is not imposed. @param speed  v, platen motion per unit of time
-KineticEnergy kinetic_energy(const Assembly& assembly, double speed);
+/// Over the degrees of freedom whose motion is not imposed.
+/// @param settings  those of the last step; dt = 0 for a state that has not been stepped
+Motion motion(const Assembly& assembly, const StepSettings& settings);
 
 /// Sum over free degrees of freedom of |F|, N: the numerator of R*.
 double unbalanced_force(const Assembly& assembly);

@@ -106,18 +106,25 @@ void Experiment::run(int count) {
     advance(assembly, team, settings, step, count, platen_work);
     platen_travel_m += count * settings.dt * settings.speed;
     step += count;
+    stepped = true;
 }
 
+// The next contact stage moves the contacts by the new velocities. So that bodies and contacts stay together, the bodies take the
+// difference too, as if the step behind had been made at the new speed; the platens' work is taken with the mean of the two steps.
 void Experiment::change_speed(double speed) {
+    stepped = false;
     const double dv = speed - settings.speed;
     Nodes& nodes = assembly.nodes;
+    platen_work.loading -= 0.5 * settings.dt * dv * platen_reactions(assembly).loading * assembly.platens[0].mode.y;
     for (int n = 0; n < nodes.count(); ++n) {
         const Vec2 B = nodes.loading_mode[n], before = nodes.velocity[n];
         nodes.velocity[n] += dv * B;
+        nodes.displacement[n] += settings.dt * dv * B;
         const Vec2 mean = 0.5 * (before + nodes.velocity[n]);
         if (nodes.inverse_mass[n].x != 0.0) rate_control_J += nodes.mass[n] * dv * B.x * mean.x;
         if (nodes.inverse_mass[n].y != 0.0) rate_control_J += nodes.mass[n] * dv * B.y * mean.y;
     }
+    platen_travel_m += settings.dt * dv;
     settings.speed = speed;
 }
 

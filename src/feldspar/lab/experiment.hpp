@@ -43,6 +43,7 @@ struct Experiment {
     double platen_travel_m = 0.0; ///< along the loading platen's mode since the start
     double axial_stiffness = 0.0; ///< N per m of platen travel, of the intact body (an estimate until the elastic start)
     long long step = 0;
+    bool stepped = false;         ///< the velocities are those of a step that was made, not set since
     long long preparation_steps = 0;
     PlatenWork platen_work;
     double elastic_start_J = 0.0;

@@ -169,7 +169,7 @@ void consolidate_by_ramp(Experiment& e) {
 // The state when shearing starts, for the history.
 void note_isotropic(Experiment& e) {
     const Reactions reactions = platen_reactions(e.assembly);
-    const StoredEnergy stored = stored_energy(e.assembly);
+    const StoredEnergy stored = stored_energy(e.assembly, 0.0);
     HistoryRow& row = e.isotropic;
     row.step = e.step;
     row.platen_displacement_m = e.direction * e.platen_travel_m;
@@ -219,7 +219,7 @@ void prepare_adaptive(Experiment& e) {
             note_isotropic(e);
             elastic_loading(e, capture(e.assembly, e.platen_travel_m));
         } else {
-            const StoredEnergy before = stored_energy(e.assembly);
+            const StoredEnergy before = stored_energy(e.assembly, 0.0);
             e.elastic_start_J = before.grains_J + before.contacts_J;
             consolidate_by_ramp(e);
             note_isotropic(e);
@@ -233,7 +233,7 @@ void prepare_adaptive(Experiment& e) {
     }
     forget_relaxation_work(e);
     e.computed_start = true;
-    const StoredEnergy start = stored_energy(e.assembly);
+    const StoredEnergy start = stored_energy(e.assembly, 0.0);
     e.elastic_start_J = start.grains_J + start.contacts_J;
 }
 

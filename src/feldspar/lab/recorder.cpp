@@ -43,18 +43,20 @@ HistoryRow Recorder::present(Phase phase) const {
     const double force = 0.5 * (std::abs(reactions.loading) + std::abs(reactions.rest));
     row.residual = force > 0.0 ? unbalanced_force(e_.assembly) / force : 0.0;
     row.platen_speed = e_.settings.speed;
-    const StoredEnergy stored = stored_energy(e_.assembly);
-    const KineticEnergy kinetic = kinetic_energy(e_.assembly, e_.settings.speed);
-    row.kinetic_deviation = e_.settings.damping == Damping::deviation ? kinetic.deviation_J : kinetic.total_J;
-    row.energy.external = e_.platen_work.loading + stored.pressure_J;
+    StepSettings last = e_.settings;
+    if (!e_.stepped) last.dt = 0.0;
+    const StoredEnergy stored = stored_energy(e_.assembly, last.dt);
+    const Motion moving = motion(e_.assembly, last);
+    row.kinetic_deviation = moving.deviation_J;   // local damping: the loading mode is zero, and this is all motion
+    row.energy.external = e_.platen_work.loading + stored.pressure_J - moving.ahead_external_J;
     row.energy.elastic_start = e_.elastic_start_J;
     row.energy.rate_control = e_.rate_control_J;
     row.energy.elastic_grains = stored.grains_J;
     row.energy.elastic_contacts = stored.contacts_J;
     row.energy.fracture = stored.fracture_J;
     row.energy.friction = stored.friction_J;
-    row.energy.damping = stored.damping_J;
-    row.energy.kinetic = kinetic.total_J;
+    row.energy.damping = stored.damping_J - moving.ahead_damping_J;
+    row.energy.kinetic = moving.kinetic_J;
     return row;
 }
 
