@@ -74,9 +74,11 @@ void append(const GrainRing& grain, Filling& filling, std::vector<std::vector<st
     const int first = filling.particle_begin.back();
     filling.centres.insert(filling.centres.end(), grain.centres.begin(), grain.centres.end());
     filling.places.insert(filling.places.end(), grain.places.begin(), grain.places.end());
-    filling.radii_m.insert(filling.radii_m.end(), grain.centres.size(), 0.5 * grain.diameter_m);
+    filling.radii_m.insert(filling.radii_m.end(), grain.radii_m.begin(), grain.radii_m.end());
     filling.particle_begin.push_back(static_cast<int>(filling.centres.size()));
-    for (const InsideContact& c : contacts_inside(grain.centres, grain.diameter_m)) filling.inside.push_back({first + c.a, first + c.b});
+    for (const InsideContact& c : contacts_inside(grain.centres, grain.radii_m, grain.diameter_m)) {
+        filling.inside.push_back({first + c.a, first + c.b});
+    }
     rows.push_back(grain.rows);
     for (auto& row : rows.back()) {
         for (int& p : row) p += first;

@@ -16,11 +16,11 @@ constexpr double smallest_share = 1e-3;
 /// touch each other and have one contact each with it.
 class RigidPart {
 public:
-    RigidPart(std::span<const Vec2> centres, double reach)
-        : centres_(centres), count_(static_cast<int>(centres.size())), touching_(centres.size() * centres.size(), 0), rigid_(centres.size(), 0) {
+    RigidPart(std::span<const Vec2> centres, std::span<const double> radii_m, double largest_gap)
+        : centres_(centres), radii_(radii_m), count_(static_cast<int>(centres.size())), touching_(centres.size() * centres.size(), 0), rigid_(centres.size(), 0) {
         for (int i = 0; i < count_; ++i) {
             for (int j = i + 1; j < count_; ++j) {
-                if (distance(i, j) <= reach) touch(i, j);
+                if (gap(i, j) <= largest_gap) touch(i, j);
             }
         }
     }
@@ -28,7 +28,7 @@ public:
     std::vector<InsideContact> contacts() const;
 
 private:
-    double distance(int i, int j) const { return norm(centres_[j] - centres_[i]); }
+    double gap(int i, int j) const { return norm(centres_[j] - centres_[i]) - radii_[i] - radii_[j]; }
     bool touches(int i, int j) const { return touching_[static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j)] != 0; }
     void touch(int i, int j) {
         touching_[static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j)] = 1;
@@ -40,6 +40,7 @@ private:
     void add_nearest();
 
     std::span<const Vec2> centres_;
+    std::span<const double> radii_;
     int count_;
     std::vector<char> touching_, rigid_;
 };
@@ -57,9 +58,9 @@ void RigidPart::start() {
     int a = 0, b = 1, c = 2;
     for (int i = 0; i < count_; ++i) {
         for (int j = i + 1; j < count_; ++j) {
-            if (distance(i, j) >= least) continue;
+            if (gap(i, j) >= least) continue;
             for (int k = j + 1; k < count_; ++k) {
-                const double longest = std::max({distance(i, j), distance(j, k), distance(k, i)});
+                const double longest = std::max({gap(i, j), gap(j, k), gap(k, i)});
                 if (longest >= least) continue;
                 least = longest;
                 a = i, b = j, c = k;
@@ -98,8 +99,8 @@ void RigidPart::add_nearest() {
     int a = -1, b = -1;
     for (int i = 0; i < count_; ++i) {
         for (int j = 0; j < count_; ++j) {
-            if (!rigid_[i] || rigid_[j] || touches(i, j) || distance(i, j) >= least) continue;
-            least = distance(i, j);
+            if (!rigid_[i] || rigid_[j] || touches(i, j) || gap(i, j) >= least) continue;
+            least = gap(i, j);
             a = i, b = j;
         }
     }
@@ -182,8 +183,8 @@ int facing_edge(const Cell& neighbour, int from, int to) {
 
 }  // namespace
 
-std::vector<InsideContact> contacts_inside(std::span<const Vec2> centres, double diameter_m) {
-    RigidPart part(centres, (1.0 + contact_gap) * diameter_m);
+std::vector<InsideContact> contacts_inside(std::span<const Vec2> centres, std::span<const double> radii_m, double diameter_m) {
+    RigidPart part(centres, radii_m, contact_gap * diameter_m);
     part.make_whole();
     return part.contacts();
 }

@@ -84,17 +84,17 @@ std::vector<CornerDisc> corner_discs(const CellEdges& edges, double radius) {
     return discs;
 }
 
-/// Appends the discs between two corner discs, evenly spread. A last disc may overlap its neighbours a little, but a row is
-/// never filled by spreading an extra disc's overlap over all of it: rows have room, as discs poured along a wall would.
+/// Appends the discs between two corner discs, evenly spread: as many as have room without overlap.
 void add_row(GrainRing& ring, const CellEdges& edges, const CornerDisc& from, const CornerDisc& to) {
     const int k = from.last;
     const double room = room_between(edges, from, to);
-    const int gaps = std::max(1, static_cast<int>(room / ring.diameter_m + largest_particle_overlap));
+    const int gaps = std::max(1, static_cast<int>(room / ring.diameter_m));
     const Vec2 first = edges.start(k) + dot(from.centre - edges.start(k), edges.direction(k)) * edges.direction(k) +
                        (0.5 * ring.diameter_m) * edges.inward(k);
     for (int i = 1; i < gaps; ++i) {
         ring.rows[k].push_back(static_cast<int>(ring.centres.size()));
         ring.centres.push_back(first + (room * i / gaps) * edges.direction(k));
+        ring.radii_m.push_back(0.5 * ring.diameter_m);
         ring.places.push_back(ParticlePlace::edge);
         ring.along.push_back(edges.direction(k));
     }
@@ -110,6 +110,7 @@ GrainRing ring_through(const CellEdges& edges, const std::vector<CornerDisc>& di
         const CornerDisc& disc = discs[i];
         const int number = static_cast<int>(ring.centres.size());
         ring.centres.push_back(disc.centre);
+        ring.radii_m.push_back(0.5 * diameter);
         ring.places.push_back(ParticlePlace::vertex);
         ring.along.push_back({});
         for (int k = disc.first; k != disc.last; k = (k + 1) % edges.count()) ring.rows[k] = {number};
@@ -155,6 +156,7 @@ bool lies_inside(std::span<const Vec2> corners, const GrainRing& ring) {
 
 void erase_disc(GrainRing& ring, int gone) {
     ring.centres.erase(ring.centres.begin() + gone);
+    ring.radii_m.erase(ring.radii_m.begin() + gone);
     ring.places.erase(ring.places.begin() + gone);
     ring.along.erase(ring.along.begin() + gone);
     for (auto& row : ring.rows) {

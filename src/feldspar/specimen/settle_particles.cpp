@@ -9,10 +9,11 @@
 namespace feldspar {
 namespace {
 
-/// Discs push each other apart below these distances / diameter: first far, which spreads them, then near, which lets them
-/// keep what room they have.
-constexpr double spreading_reach = 1.25, settling_reach = 1.04;
-constexpr int tries_per_disc = 12;
+/// Discs first push each other apart as if they were larger by this factor, which spreads them.
+constexpr double spreading = 1.25;
+/// Inner discs grow until the mean overlap of touching pairs is this share of their diameter, by at most as much as the last.
+constexpr double wanted_overlap = 0.025, largest_growth = 0.15;
+constexpr int tries_per_disc = 12, growth_steps = 16;
 
 class Settling {
 public:
@@ -20,13 +21,13 @@ public:
         : ring_(ring), corners_(corners), force_(ring.centres.size()), velocity_(ring.centres.size()) {}
 
     /// FIRE with unit masses and stiffness until the largest force falls under 1e-3 diameters, or after so many steps.
-    void run(double reach, int steps);
+    void run(double factor, int steps);
 
 private:
-    void find_neighbours(double reach);
+    void find_neighbours(double factor);
     bool list_is_stale() const;
-    double forces(double reach);
-    void push_from_walls(int i);
+    double forces(double factor);
+    void push_from_walls(int i, double factor);
     void hold(int i);
     void advance();
 
@@ -38,13 +39,13 @@ private:
     int steps_downhill_ = 0;
 };
 
-void Settling::find_neighbours(double reach) {
+void Settling::find_neighbours(double factor) {
     skin_ = 0.4 * ring_.diameter_m;
     near_.clear();
-    const double far = reach + skin_;
     for (int i = 0; i < std::ssize(ring_.centres); ++i) {
         for (int j = i + 1; j < std::ssize(ring_.centres); ++j) {
             const Vec2 apart = ring_.centres[j] - ring_.centres[i];
+            const double far = factor * (ring_.radii_m[i] + ring_.radii_m[j]) + skin_;
             if (dot(apart, apart) < far * far) near_.emplace_back(i, j);
         }
     }
@@ -59,9 +60,11 @@ bool Settling::list_is_stale() const {
     return false;
 }
 
-void Settling::push_from_walls(int i) {
-    const double radius = 0.5 * ring_.diameter_m;
+void Settling::push_from_walls(int i, double factor) {
+    const double radius = factor * factor * ring_.radii_m[i];
     for (std::size_t k = 0; k < corners_.size(); ++k) {
+        const Vec2 a = corners_[k], b = corners_[(k + 1) % corners_.size()], p = ring_.centres[i];
+        if (cross(b - a, p - a) > radius * norm(b - a)) continue;
         const Vec2 out = ring_.centres[i] - closest_on_segment(ring_.centres[i], corners_[k], corners_[(k + 1) % corners_.size()]);
         const double distance = norm(out);
         if (distance < radius && distance > 0.0) force_[i] += ((radius - distance) / distance) * out;
@@ -72,12 +75,13 @@ void Settling::push_from_walls(int i) {
 void Settling::hold(int i) { force_[i] = dot(force_[i], ring_.along[i]) * ring_.along[i]; }
 
 /// @returns the square of the largest force (m^2, stiffness 1)
-double Settling::forces(double reach) {
-    if (listed_at_.empty() || list_is_stale()) find_neighbours(reach);
+double Settling::forces(double factor) {
+    if (listed_at_.empty() || list_is_stale()) find_neighbours(factor);
     std::fill(force_.begin(), force_.end(), Vec2{});
     for (const auto& [i, j] : near_) {
         const Vec2 apart = ring_.centres[j] - ring_.centres[i];
         const double distance2 = dot(apart, apart);
+        const double reach = factor * (ring_.radii_m[i] + ring_.radii_m[j]);
         if (distance2 >= reach * reach) continue;
         const double distance = std::sqrt(distance2);
         const Vec2 push = distance > 0.0 ? ((reach - distance) / distance) * apart : Vec2{reach, 0.0};
@@ -87,7 +91,7 @@ double Settling::forces(double reach) {
     double largest2 = 0.0;
     for (int i = 0; i < std::ssize(ring_.centres); ++i) {
         if (ring_.places[i] == ParticlePlace::interior) {
-            push_from_walls(i);
+            push_from_walls(i, factor);
         } else {
             hold(i);
         }
@@ -126,11 +130,11 @@ void Settling::advance() {
     }
 }
 
-void Settling::run(double reach, int steps) {
+void Settling::run(double factor, int steps) {
     listed_at_.clear();
     const double enough = 1e-3 * ring_.diameter_m;
     for (int step = 0; step < steps; ++step) {
-        if (forces(reach) < enough * enough) return;
+        if (forces(factor) < enough * enough) return;
         advance();
     }
 }
@@ -159,29 +163,28 @@ Vec2 roomiest_place(const GrainRing& ring, std::span<const Vec2> corners, const 
 /// The disc to take away: of the pair that overlaps most, the one that is held least; or an inner disc in the wall; or -1.
 int worst_disc(const GrainRing& ring, std::span<const Vec2> corners) {
     int worst = -1;
-    double nearest = ring.diameter_m * (1.0 - largest_particle_overlap) * (1.0 - 1e-6);
+    double most = largest_particle_overlap * ring.diameter_m * (1.0 + 1e-6);
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
-            const double distance = norm(ring.centres[j] - ring.centres[i]);
-            if (distance >= nearest) continue;
-            nearest = distance;
+            const double overlap = ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]);
+            if (overlap <= most) continue;
+            most = overlap;
             worst = ring.places[j] < ring.places[i] ? j : i;
         }
     }
     if (worst >= 0) return worst;
-    const double radius = 0.5 * ring.diameter_m * (1.0 - 1e-10);
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         const Vec2 p = ring.centres[i];
-        if (!contains(corners, p) || distance_to_boundary(corners, p) < radius) return i;
+        if (!contains(corners, p) || distance_to_boundary(corners, p) < ring.radii_m[i] * (1.0 - 1e-10)) return i;
     }
     return -1;
 }
 
 /// Moves inner discs that still press into a wall off it.
 void clear_walls(GrainRing& ring, std::span<const Vec2> corners) {
-    const double radius = 0.5 * ring.diameter_m;
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         if (ring.places[i] != ParticlePlace::interior) continue;
+        const double radius = ring.radii_m[i];
         for (int sweep = 0; sweep < 20; ++sweep) {
             for (std::size_t k = 0; k < corners.size(); ++k) {
                 Vec2& p = ring.centres[i];
@@ -193,6 +196,36 @@ void clear_walls(GrainRing& ring, std::span<const Vec2> corners) {
     }
 }
 
+/// Sum of the overlaps of inner discs (m) over twice their number, which is how many contacts it takes to hold them.
+double mean_overlap(const GrainRing& ring) {
+    double sum = 0.0;
+    long count = 0;
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        if (ring.places[i] != ParticlePlace::interior) continue;
+        count += 2;
+        for (int j = 0; j < std::ssize(ring.centres); ++j) {
+            if (j == i || (ring.places[j] == ParticlePlace::interior && j > i)) continue;
+            const double overlap = ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]);
+            sum += std::max(0.0, overlap);
+        }
+    }
+    return count > 0 ? sum / static_cast<double>(count) : 0.0;
+}
+
+/// Gives the inner discs the size at which they just fill the room, and lets them settle.
+void grow_inner_discs(GrainRing& ring, std::span<const Vec2> corners) {
+    double size = 0.92;
+    for (int step = 0; step < growth_steps; ++step) {
+        for (std::size_t i = 0; i < ring.centres.size(); ++i) {
+            if (ring.places[i] == ParticlePlace::interior) ring.radii_m[i] = 0.5 * size * ring.diameter_m;
+        }
+        Settling(ring, corners).run(1.0, 80);
+        const double missing = wanted_overlap - mean_overlap(ring) / ring.diameter_m;
+        if (std::abs(missing) < 0.25 * wanted_overlap) return;
+        size = std::clamp(size + std::clamp(2.0 * missing, -0.03, 0.02), 1.0 - largest_growth, 1.0 + largest_growth);
+    }
+}
+
 }  // namespace
 
 void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random) {
@@ -200,16 +233,22 @@ void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, Random
     for (int i = 0; i < count; ++i) {
         const Vec2 place = roomiest_place(ring, corners, box, random);
         ring.centres.push_back(place);
+        ring.radii_m.push_back(0.5 * ring.diameter_m);
         ring.places.push_back(ParticlePlace::interior);
         ring.along.push_back({});
     }
-    Settling(ring, corners).run(spreading_reach * ring.diameter_m, 60);
-    while (true) {
-        Settling(ring, corners).run(settling_reach * ring.diameter_m, 300);
+    Settling(ring, corners).run(spreading, 60);
+    for (int moves = count;; --moves) {
+        grow_inner_discs(ring, corners);
         clear_walls(ring, corners);
         const int worst = worst_disc(ring, corners);
         if (worst < 0 || ring.places[worst] == ParticlePlace::vertex) return;
-        erase_disc(ring, worst);
+        if (moves > 0 && ring.places[worst] == ParticlePlace::interior) {
+            ring.centres[worst] = {1e3, 1e3};
+            ring.centres[worst] = roomiest_place(ring, corners, box, random);
+        } else {
+            erase_disc(ring, worst);
+        }
     }
 }
 
