@@ -15,7 +15,7 @@ namespace feldspar {
 namespace {
 
 /// Mean distance of neighbouring discs / diameter, which sets how many fit into a ring.
-constexpr double mean_spacing = 1.04;
+constexpr double mean_spacing = 1.0;
 
 using Polygons = std::vector<std::vector<Vec2>>;
 

@@ -12,8 +12,9 @@ namespace {
 /// Discs first push each other apart as if they were larger by this factor, which spreads them.
 constexpr double spreading = 1.25;
 /// Inner discs grow until the mean overlap of touching pairs is this share of their diameter, by at most as much as the last.
-constexpr double wanted_overlap = 0.025, largest_growth = 0.15;
+constexpr double wanted_overlap = 0.016, largest_growth = 0.15;
 constexpr int tries_per_disc = 12, growth_steps = 16;
+constexpr double first_size = 0.92;
 
 class Settling {
 public:
@@ -196,34 +197,37 @@ void clear_walls(GrainRing& ring, std::span<const Vec2> corners) {
     }
 }
 
-/// Sum of the overlaps of inner discs (m) over twice their number, which is how many contacts it takes to hold them.
-double mean_overlap(const GrainRing& ring) {
-    double sum = 0.0;
-    long count = 0;
-    for (int i = 0; i < std::ssize(ring.centres); ++i) {
-        if (ring.places[i] != ParticlePlace::interior) continue;
-        count += 2;
-        for (int j = 0; j < std::ssize(ring.centres); ++j) {
-            if (j == i || (ring.places[j] == ParticlePlace::interior && j > i)) continue;
-            const double overlap = ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]);
-            sum += std::max(0.0, overlap);
-        }
-    }
-    return count > 0 ? sum / static_cast<double>(count) : 0.0;
+/// Changes the radius of a free disc; an edge disc stays in touch with its edge.
+void resize(GrainRing& ring, int i, double radius) {
+    ring.centres[i] += (radius - ring.radii_m[i]) * rot90(ring.along[i]);
+    ring.radii_m[i] = radius;
 }
 
-/// Gives the inner discs the size at which they just fill the room, and lets them settle.
-void grow_inner_discs(GrainRing& ring, std::span<const Vec2> corners) {
-    double size = 0.92;
-    for (int step = 0; step < growth_steps; ++step) {
-        for (std::size_t i = 0; i < ring.centres.size(); ++i) {
-            if (ring.places[i] == ParticlePlace::interior) ring.radii_m[i] = 0.5 * size * ring.diameter_m;
-        }
-        Settling(ring, corners).run(1.0, 80);
-        const double missing = wanted_overlap - mean_overlap(ring) / ring.diameter_m;
-        if (std::abs(missing) < 0.25 * wanted_overlap) return;
-        size = std::clamp(size + std::clamp(2.0 * missing, -0.03, 0.02), 1.0 - largest_growth, 1.0 + largest_growth);
+/// Gives each free disc the size at which it is just held by its neighbours, and lets all settle.
+void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
+    const double d = ring.diameter_m;
+    std::vector<double> overlap(ring.centres.size());
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        if (ring.places[i] == ParticlePlace::interior) resize(ring, i, 0.5 * first_size * d);
     }
+    for (int step = 0; step < growth_steps; ++step) {
+        Settling(ring, corners).run(1.0, 60);
+        std::fill(overlap.begin(), overlap.end(), 0.0);
+        for (int i = 0; i < std::ssize(ring.centres); ++i) {
+            for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
+                const double deep = std::max(0.0, ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]));
+                overlap[i] += deep;
+                overlap[j] += deep;
+            }
+        }
+        for (int i = 0; i < std::ssize(ring.centres); ++i) {
+            if (ring.places[i] == ParticlePlace::vertex) continue;
+            const double missing = wanted_overlap - overlap[i] / (4.0 * d);
+            const double size = 2.0 * ring.radii_m[i] / d + std::clamp(missing, -0.03, 0.02);
+            resize(ring, i, 0.5 * d * std::clamp(size, 1.0 - largest_growth, 1.0 + largest_growth));
+        }
+    }
+    Settling(ring, corners).run(1.0, 200);
 }
 
 }  // namespace
@@ -239,7 +243,7 @@ void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, Random
     }
     Settling(ring, corners).run(spreading, 60);
     for (int moves = count;; --moves) {
-        grow_inner_discs(ring, corners);
+        grow_discs(ring, corners);
         clear_walls(ring, corners);
         const int worst = worst_disc(ring, corners);
         if (worst < 0 || ring.places[worst] == ParticlePlace::vertex) return;
