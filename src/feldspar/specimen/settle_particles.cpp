@@ -13,8 +13,10 @@ namespace {
 constexpr double spreading = 1.25;
 /// Inner discs grow until the mean overlap of touching pairs is this share of their diameter, by at most as much as the last.
 constexpr double wanted_overlap = 0.016, largest_growth = 0.15;
-constexpr int tries_per_disc = 12, growth_steps = 16;
+constexpr int tries_per_disc = 12, growth_steps = 20;
+constexpr int most_moves = 5;
 constexpr double first_size = 0.92;
+constexpr double wall_clearance = 1.5;
 
 class Settling {
 public:
@@ -62,7 +64,7 @@ bool Settling::list_is_stale() const {
 }
 
 void Settling::push_from_walls(int i, double factor) {
-    const double radius = factor * factor * ring_.radii_m[i];
+    const double radius = std::max(factor * factor, wall_clearance) * ring_.radii_m[i];
     for (std::size_t k = 0; k < corners_.size(); ++k) {
         const Vec2 a = corners_[k], b = corners_[(k + 1) % corners_.size()], p = ring_.centres[i];
         if (cross(b - a, p - a) > radius * norm(b - a)) continue;
@@ -210,8 +212,9 @@ void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         if (ring.places[i] == ParticlePlace::interior) resize(ring, i, 0.5 * first_size * d);
     }
+    Settling settling(ring, corners);
     for (int step = 0; step < growth_steps; ++step) {
-        Settling(ring, corners).run(1.0, 60);
+        settling.run(1.0, 20);
         std::fill(overlap.begin(), overlap.end(), 0.0);
         for (int i = 0; i < std::ssize(ring.centres); ++i) {
             for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
@@ -227,7 +230,7 @@ void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
             resize(ring, i, 0.5 * d * std::clamp(size, 1.0 - largest_growth, 1.0 + largest_growth));
         }
     }
-    Settling(ring, corners).run(1.0, 200);
+    settling.run(1.0, 100);
 }
 
 }  // namespace
@@ -242,7 +245,7 @@ void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, Random
         ring.along.push_back({});
     }
     Settling(ring, corners).run(spreading, 60);
-    for (int moves = count;; --moves) {
+    for (int moves = most_moves;; --moves) {
         grow_discs(ring, corners);
         clear_walls(ring, corners);
         const int worst = worst_disc(ring, corners);
