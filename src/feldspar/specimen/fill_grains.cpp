@@ -14,7 +14,7 @@
 namespace feldspar {
 namespace {
 
-/// Mean distance of neighbouring discs / diameter, which sets how many fit into a ring.
+/// c in (S8): sides of the triangles between neighbouring discs / diameter, which sets how many fit into a ring.
 constexpr double mean_spacing = 1.0;
 
 using Polygons = std::vector<std::vector<Vec2>>;
@@ -28,7 +28,7 @@ Polygons polygons_of(const Tessellation& cells) {
     return polygons;
 }
 
-/// How many discs belong inside a ring, as a real number: m points inside a polygon with b points on it make 2 m + b - 2
+/// (S8): how many discs belong inside a ring, as a real number. m points inside a polygon with b points on it make 2 m + b - 2
 /// triangles, here nearly equilateral ones with sides of the mean spacing. b counts the ring as if it had no loose places.
 double discs_inside(const GrainRing& ring) {
     const double spacing = mean_spacing * ring.diameter_m;

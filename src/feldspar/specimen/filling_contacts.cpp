@@ -132,14 +132,14 @@ struct EdgeLine {
     EdgeLine(Vec2 from, Vec2 to) : start(from), end(to), length(norm(to - from)) { along = (1.0 / length) * (to - from); }
     double place_of(Vec2 p) const { return dot(p - start, along); }
     double height_of(Vec2 p) const { return cross(along, p - start); }
-    /// Where the line from a to b crosses the edge's line; a and b lie on its two sides.
+    /// (S10): where the line from a to b crosses the edge's line; a and b lie on its two sides.
     double crossing(Vec2 a, Vec2 b) const {
         const double above = height_of(a), below = -height_of(b);
         return (place_of(a) * below + place_of(b) * above) / (above + below);
     }
 };
 
-/// Bounds of the shares of successive places: the edge's two ends and, between, the midpoints, none nearer than the smallest
+/// (S11): bounds of the shares of successive places: the edge's two ends and, between, the midpoints, none nearer than the smallest
 /// share. Neighbouring shares get the same point, so no part of the edge is left out or counted twice.
 std::vector<Vec2> share_bounds(const EdgeLine& edge, std::vector<double> places) {
     const int count = static_cast<int>(places.size());

@@ -8,7 +8,7 @@
 
 namespace feldspar {
 
-/// Discs of one grain are in contact if the gap between them is at most this share of the diameter.
+/// (S9): discs of one grain are in contact if the gap between them is at most this share of the diameter.
 constexpr double contact_gap = 0.05;
 
 /// Pairs of discs of one grain in contact, by their numbers in the grain, ascending. Where these would leave a mechanism (discs

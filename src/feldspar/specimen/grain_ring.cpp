@@ -145,6 +145,17 @@ bool clear_overlaps(GrainRing& ring) {
     return true;
 }
 
+/// Leaves out of each row the discs that stand behind the edge or nearly so, as a disc shared with a neighbouring edge may
+/// where the cell bends around a corner.
+/// @returns false if a row has none left
+bool clear_rows(GrainRing& ring, const CellEdges& edges) {
+    for (int k = 0; k < edges.count(); ++k) {
+        std::erase_if(ring.rows[k], [&](int i) { return dot(ring.centres[i] - edges.start(k), edges.inward(k)) < 0.25 * ring.diameter_m; });
+        if (ring.rows[k].empty()) return false;
+    }
+    return true;
+}
+
 bool lies_inside(std::span<const Vec2> corners, const GrainRing& ring) {
     const double radius = 0.5 * ring.diameter_m;
     return std::all_of(ring.centres.begin(), ring.centres.end(), [&](Vec2 p) {
@@ -171,7 +182,7 @@ GrainRing place_ring(std::span<const Vec2> corners, double diameter_m) {
         const std::vector<CornerDisc> discs = corner_discs(edges, 0.5 * diameter_m);
         if (discs.size() < 3) continue;
         GrainRing ring = ring_through(edges, discs, diameter_m);
-        if (ring.area_m2 > 0.0 && clear_overlaps(ring) && lies_inside(corners, ring)) return ring;
+        if (ring.area_m2 > 0.0 && clear_overlaps(ring) && clear_rows(ring, edges) && lies_inside(corners, ring)) return ring;
     }
     throw NumericalError("a grain has no room for three inner particles");
 }

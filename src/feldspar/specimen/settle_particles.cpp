@@ -11,12 +11,15 @@ namespace {
 
 /// Discs first push each other apart as if they were larger by this factor, which spreads them.
 constexpr double spreading = 1.25;
-/// Inner discs grow until the mean overlap of touching pairs is this share of their diameter, by at most as much as the last.
+/// A free disc grows, by at most `largest_growth`, until its overlaps add up to four contacts (what it takes to hold a disc
+/// without friction) of this overlap / diameter.
 constexpr double wanted_overlap = 0.016, largest_growth = 0.15;
-constexpr int tries_per_disc = 12, growth_steps = 20;
-constexpr int most_moves = 5;
 constexpr double first_size = 0.92;
+constexpr int growth_steps = 20;
+/// Inner discs keep this many radii from the cell's edges: nearer, they would stand in a row without belonging to it.
 constexpr double wall_clearance = 1.5;
+/// Random places among which a disc takes the roomiest, and how often a disc that does not fit is put elsewhere.
+constexpr int tries_per_disc = 12, most_moves = 5;
 
 class Settling {
 public:
@@ -163,6 +166,13 @@ Vec2 roomiest_place(const GrainRing& ring, std::span<const Vec2> corners, const 
     return best;
 }
 
+void add_inner_disc(GrainRing& ring, Vec2 place) {
+    ring.centres.push_back(place);
+    ring.radii_m.push_back(0.5 * ring.diameter_m);
+    ring.places.push_back(ParticlePlace::interior);
+    ring.along.push_back({});
+}
+
 /// The disc to take away: of the pair that overlaps most, the one that is held least; or an inner disc in the wall; or -1.
 int worst_disc(const GrainRing& ring, std::span<const Vec2> corners) {
     int worst = -1;
@@ -205,24 +215,29 @@ void resize(GrainRing& ring, int i, double radius) {
     ring.radii_m[i] = radius;
 }
 
+/// Sums of each disc's overlaps with all others, in m.
+std::vector<double> overlaps(const GrainRing& ring) {
+    std::vector<double> sums(ring.centres.size());
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
+            const double overlap = std::max(0.0, ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]));
+            sums[i] += overlap;
+            sums[j] += overlap;
+        }
+    }
+    return sums;
+}
+
 /// Gives each free disc the size at which it is just held by its neighbours, and lets all settle.
 void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
     const double d = ring.diameter_m;
-    std::vector<double> overlap(ring.centres.size());
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         if (ring.places[i] == ParticlePlace::interior) resize(ring, i, 0.5 * first_size * d);
     }
     Settling settling(ring, corners);
     for (int step = 0; step < growth_steps; ++step) {
         settling.run(1.0, 20);
-        std::fill(overlap.begin(), overlap.end(), 0.0);
-        for (int i = 0; i < std::ssize(ring.centres); ++i) {
-            for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
-                const double deep = std::max(0.0, ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]));
-                overlap[i] += deep;
-                overlap[j] += deep;
-            }
-        }
+        const std::vector<double> overlap = overlaps(ring);
         for (int i = 0; i < std::ssize(ring.centres); ++i) {
             if (ring.places[i] == ParticlePlace::vertex) continue;
             const double missing = wanted_overlap - overlap[i] / (4.0 * d);
@@ -237,25 +252,16 @@ void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
 
 void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random) {
     const Box box = bounding_box(corners);
-    for (int i = 0; i < count; ++i) {
-        const Vec2 place = roomiest_place(ring, corners, box, random);
-        ring.centres.push_back(place);
-        ring.radii_m.push_back(0.5 * ring.diameter_m);
-        ring.places.push_back(ParticlePlace::interior);
-        ring.along.push_back({});
-    }
+    for (int i = 0; i < count; ++i) add_inner_disc(ring, roomiest_place(ring, corners, box, random));
     Settling(ring, corners).run(spreading, 60);
     for (int moves = most_moves;; --moves) {
         grow_discs(ring, corners);
         clear_walls(ring, corners);
         const int worst = worst_disc(ring, corners);
         if (worst < 0 || ring.places[worst] == ParticlePlace::vertex) return;
-        if (moves > 0 && ring.places[worst] == ParticlePlace::interior) {
-            ring.centres[worst] = {1e3, 1e3};
-            ring.centres[worst] = roomiest_place(ring, corners, box, random);
-        } else {
-            erase_disc(ring, worst);
-        }
+        const bool inner = ring.places[worst] == ParticlePlace::interior;
+        erase_disc(ring, worst);
+        if (inner && moves > 0) add_inner_disc(ring, roomiest_place(ring, corners, box, random));
     }
 }
 
