@@ -17,7 +17,11 @@ constexpr double smallest_share = 1e-3;
 class RigidPart {
 public:
     RigidPart(std::span<const Vec2> centres, std::span<const double> radii_m, double largest_gap)
-        : centres_(centres), radii_(radii_m), count_(static_cast<int>(centres.size())), touching_(centres.size() * centres.size(), 0), rigid_(centres.size(), 0) {
+        : centres_(centres),
+          radii_(radii_m),
+          count_(static_cast<int>(centres.size())),
+          touching_(centres.size() * centres.size(), 0),
+          rigid_(centres.size(), 0) {
         for (int i = 0; i < count_; ++i) {
             for (int j = i + 1; j < count_; ++j) {
                 if (gap(i, j) <= largest_gap) touch(i, j);
@@ -29,10 +33,10 @@ public:
 
 private:
     double gap(int i, int j) const { return norm(centres_[j] - centres_[i]) - radii_[i] - radii_[j]; }
-    bool touches(int i, int j) const { return touching_[static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j)] != 0; }
+    std::size_t pair(int i, int j) const { return static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j); }
+    bool touches(int i, int j) const { return touching_[pair(i, j)] != 0; }
     void touch(int i, int j) {
-        touching_[static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j)] = 1;
-        touching_[static_cast<std::size_t>(j) * centres_.size() + static_cast<std::size_t>(i)] = 1;
+        touching_[pair(i, j)] = touching_[pair(j, i)] = 1;
     }
     int holds_on(int i) const;
     void start();
