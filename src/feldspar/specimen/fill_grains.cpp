@@ -14,8 +14,8 @@
 namespace feldspar {
 namespace {
 
-/// Mean distance of neighbouring discs / diameter, which sets how many fit into a ring.
-constexpr double mean_spacing = 1.04;
+/// c in (S8): sides of the triangles between neighbouring discs / diameter, which sets how many fit into a ring.
+constexpr double mean_spacing = 1.0;
 
 using Polygons = std::vector<std::vector<Vec2>>;
 
@@ -28,7 +28,7 @@ Polygons polygons_of(const Tessellation& cells) {
     return polygons;
 }
 
-/// How many discs belong inside a ring, as a real number: m points inside a polygon with b points on it make 2 m + b - 2
+/// (S8): how many discs belong inside a ring, as a real number. m points inside a polygon with b points on it make 2 m + b - 2
 /// triangles, here nearly equilateral ones with sides of the mean spacing. b counts the ring as if it had no loose places.
 double discs_inside(const GrainRing& ring) {
     const double spacing = mean_spacing * ring.diameter_m;
@@ -74,9 +74,11 @@ void append(const GrainRing& grain, Filling& filling, std::vector<std::vector<st
     const int first = filling.particle_begin.back();
     filling.centres.insert(filling.centres.end(), grain.centres.begin(), grain.centres.end());
     filling.places.insert(filling.places.end(), grain.places.begin(), grain.places.end());
-    filling.radii_m.insert(filling.radii_m.end(), grain.centres.size(), 0.5 * grain.diameter_m);
+    filling.radii_m.insert(filling.radii_m.end(), grain.radii_m.begin(), grain.radii_m.end());
     filling.particle_begin.push_back(static_cast<int>(filling.centres.size()));
-    for (const InsideContact& c : contacts_inside(grain.centres, grain.diameter_m)) filling.inside.push_back({first + c.a, first + c.b});
+    for (const InsideContact& c : contacts_inside(grain.centres, grain.radii_m, grain.diameter_m)) {
+        filling.inside.push_back({first + c.a, first + c.b});
+    }
     rows.push_back(grain.rows);
     for (auto& row : rows.back()) {
         for (int& p : row) p += first;

@@ -7,12 +7,12 @@
 
 namespace feldspar {
 
-/// Fills every cell with discs of one diameter: a disc in each corner, rows of discs along the edges, and the rest inside.
-/// The diameter is the one for which a grain of mean area holds `particles_per_grain` discs; only in a grain too small for
-/// three of them are they smaller. Neighbouring discs of a grain are in contact, and so are the rows on the two sides of an
-/// edge. Each grain places its discs for itself, so that facing rows do not mirror each other.
-/// Source: M. Azevedo et al. 2022, section 3.1 and figure 5e,f. Same input, same bits.
-/// @param particles_per_grain  mean over the grains; the total comes within a few discs of it
+/// Fills every cell with nearly equal discs: one in each corner, rows along the edges, and the rest inside. Corner discs have
+/// the common diameter for which the grains hold `particles_per_grain` on average, the others up to 15 % more or less, as they
+/// find room; only a grain too small for three of them gets smaller ones. Neighbouring discs of a grain are in contact, and so
+/// are the rows on the two sides of an edge. Each grain places its discs for itself, so that facing rows are no mirror images.
+/// Theory: specimen.md, section 6. Source: the paper, section 3.1 and figure 5e,f. Same input, same bits.
+/// @param particles_per_grain  mean over the grains, from 7 to 500; with some tens, the total comes within 0.1 % of it
 Filling fill_grains(const Tessellation& cells, double particles_per_grain, std::uint64_t seed);
 
 }  // namespace feldspar

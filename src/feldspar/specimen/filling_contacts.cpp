@@ -16,11 +16,15 @@ constexpr double smallest_share = 1e-3;
 /// touch each other and have one contact each with it.
 class RigidPart {
 public:
-    RigidPart(std::span<const Vec2> centres, double reach)
-        : centres_(centres), count_(static_cast<int>(centres.size())), touching_(centres.size() * centres.size(), 0), rigid_(centres.size(), 0) {
+    RigidPart(std::span<const Vec2> centres, std::span<const double> radii_m, double largest_gap)
+        : centres_(centres),
+          radii_(radii_m),
+          count_(static_cast<int>(centres.size())),
+          touching_(centres.size() * centres.size(), 0),
+          rigid_(centres.size(), 0) {
         for (int i = 0; i < count_; ++i) {
             for (int j = i + 1; j < count_; ++j) {
-                if (distance(i, j) <= reach) touch(i, j);
+                if (gap(i, j) <= largest_gap) touch(i, j);
             }
         }
     }
@@ -28,11 +32,11 @@ public:
     std::vector<InsideContact> contacts() const;
 
 private:
-    double distance(int i, int j) const { return norm(centres_[j] - centres_[i]); }
-    bool touches(int i, int j) const { return touching_[static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j)] != 0; }
+    double gap(int i, int j) const { return norm(centres_[j] - centres_[i]) - radii_[i] - radii_[j]; }
+    std::size_t pair(int i, int j) const { return static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j); }
+    bool touches(int i, int j) const { return touching_[pair(i, j)] != 0; }
     void touch(int i, int j) {
-        touching_[static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j)] = 1;
-        touching_[static_cast<std::size_t>(j) * centres_.size() + static_cast<std::size_t>(i)] = 1;
+        touching_[pair(i, j)] = touching_[pair(j, i)] = 1;
     }
     int holds_on(int i) const;
     void start();
@@ -40,6 +44,7 @@ private:
     void add_nearest();
 
     std::span<const Vec2> centres_;
+    std::span<const double> radii_;
     int count_;
     std::vector<char> touching_, rigid_;
 };
@@ -57,9 +62,9 @@ void RigidPart::start() {
     int a = 0, b = 1, c = 2;
     for (int i = 0; i < count_; ++i) {
         for (int j = i + 1; j < count_; ++j) {
-            if (distance(i, j) >= least) continue;
+            if (gap(i, j) >= least) continue;
             for (int k = j + 1; k < count_; ++k) {
-                const double longest = std::max({distance(i, j), distance(j, k), distance(k, i)});
+                const double longest = std::max({gap(i, j), gap(j, k), gap(k, i)});
                 if (longest >= least) continue;
                 least = longest;
                 a = i, b = j, c = k;
@@ -98,8 +103,8 @@ void RigidPart::add_nearest() {
     int a = -1, b = -1;
     for (int i = 0; i < count_; ++i) {
         for (int j = 0; j < count_; ++j) {
-            if (!rigid_[i] || rigid_[j] || touches(i, j) || distance(i, j) >= least) continue;
-            least = distance(i, j);
+            if (!rigid_[i] || rigid_[j] || touches(i, j) || gap(i, j) >= least) continue;
+            least = gap(i, j);
             a = i, b = j;
         }
     }
@@ -131,14 +136,14 @@ struct EdgeLine {
     EdgeLine(Vec2 from, Vec2 to) : start(from), end(to), length(norm(to - from)) { along = (1.0 / length) * (to - from); }
     double place_of(Vec2 p) const { return dot(p - start, along); }
     double height_of(Vec2 p) const { return cross(along, p - start); }
-    /// Where the line from a to b crosses the edge's line; a and b lie on its two sides.
+    /// (S10): where the line from a to b crosses the edge's line; a and b lie on its two sides.
     double crossing(Vec2 a, Vec2 b) const {
         const double above = height_of(a), below = -height_of(b);
         return (place_of(a) * below + place_of(b) * above) / (above + below);
     }
 };
 
-/// Bounds of the shares of successive places: the edge's two ends and, between, the midpoints, none nearer than the smallest
+/// (S11): bounds of the shares of successive places: the edge's two ends and, between, the midpoints, none nearer than the smallest
 /// share. Neighbouring shares get the same point, so no part of the edge is left out or counted twice.
 std::vector<Vec2> share_bounds(const EdgeLine& edge, std::vector<double> places) {
     const int count = static_cast<int>(places.size());
@@ -182,8 +187,8 @@ int facing_edge(const Cell& neighbour, int from, int to) {
 
 }  // namespace
 
-std::vector<InsideContact> contacts_inside(std::span<const Vec2> centres, double diameter_m) {
-    RigidPart part(centres, (1.0 + contact_gap) * diameter_m);
+std::vector<InsideContact> contacts_inside(std::span<const Vec2> centres, std::span<const double> radii_m, double diameter_m) {
+    RigidPart part(centres, radii_m, contact_gap * diameter_m);
     part.make_whole();
     return part.contacts();
 }

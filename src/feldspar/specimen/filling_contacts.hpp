@@ -8,13 +8,13 @@
 
 namespace feldspar {
 
-/// Discs of one grain are in contact if the gap between them is at most this share of their diameter.
+/// (S9): discs of one grain are in contact if the gap between them is at most this share of the diameter.
 constexpr double contact_gap = 0.05;
 
 /// Pairs of discs of one grain in contact, by their numbers in the grain, ascending. Where these would leave a mechanism (discs
 /// that hang on one contact, or pieces that turn against each other), the nearest pairs are added, so that the grain is rigid
 /// when each contact holds its two discs together at one point, as a pin does.
-std::vector<InsideContact> contacts_inside(std::span<const Vec2> centres, double diameter_m);
+std::vector<InsideContact> contacts_inside(std::span<const Vec2> centres, std::span<const double> radii_m, double diameter_m);
 
 /// Fills `across` and `outline`.
 /// @param rows  for each cell and each of its edges: the particles along it, from the edge's first vertex to its last

@@ -84,17 +84,17 @@ std::vector<CornerDisc> corner_discs(const CellEdges& edges, double radius) {
     return discs;
 }
 
-/// Appends the discs between two corner discs, evenly spread. A last disc may overlap its neighbours a little, but a row is
-/// never filled by spreading an extra disc's overlap over all of it: rows have room, as discs poured along a wall would.
+/// Appends the discs between two corner discs, evenly spread: as many as have room without overlap.
 void add_row(GrainRing& ring, const CellEdges& edges, const CornerDisc& from, const CornerDisc& to) {
     const int k = from.last;
     const double room = room_between(edges, from, to);
-    const int gaps = std::max(1, static_cast<int>(room / ring.diameter_m + largest_particle_overlap));
+    const int gaps = std::max(1, static_cast<int>(room / ring.diameter_m));
     const Vec2 first = edges.start(k) + dot(from.centre - edges.start(k), edges.direction(k)) * edges.direction(k) +
                        (0.5 * ring.diameter_m) * edges.inward(k);
     for (int i = 1; i < gaps; ++i) {
         ring.rows[k].push_back(static_cast<int>(ring.centres.size()));
         ring.centres.push_back(first + (room * i / gaps) * edges.direction(k));
+        ring.radii_m.push_back(0.5 * ring.diameter_m);
         ring.places.push_back(ParticlePlace::edge);
         ring.along.push_back(edges.direction(k));
     }
@@ -110,6 +110,7 @@ GrainRing ring_through(const CellEdges& edges, const std::vector<CornerDisc>& di
         const CornerDisc& disc = discs[i];
         const int number = static_cast<int>(ring.centres.size());
         ring.centres.push_back(disc.centre);
+        ring.radii_m.push_back(0.5 * diameter);
         ring.places.push_back(ParticlePlace::vertex);
         ring.along.push_back({});
         for (int k = disc.first; k != disc.last; k = (k + 1) % edges.count()) ring.rows[k] = {number};
@@ -144,6 +145,18 @@ bool clear_overlaps(GrainRing& ring) {
     return true;
 }
 
+/// Leaves out of each row the discs that stand behind the edge or nearly so, as a disc shared with a neighbouring edge may
+/// where the cell bends around a corner.
+/// @returns false if a row has none left
+bool clear_rows(GrainRing& ring, const CellEdges& edges) {
+    for (int k = 0; k < edges.count(); ++k) {
+        const auto behind = [&](int i) { return dot(ring.centres[i] - edges.start(k), edges.inward(k)) < 0.25 * ring.diameter_m; };
+        std::erase_if(ring.rows[k], behind);
+        if (ring.rows[k].empty()) return false;
+    }
+    return true;
+}
+
 bool lies_inside(std::span<const Vec2> corners, const GrainRing& ring) {
     const double radius = 0.5 * ring.diameter_m;
     return std::all_of(ring.centres.begin(), ring.centres.end(), [&](Vec2 p) {
@@ -155,6 +168,7 @@ bool lies_inside(std::span<const Vec2> corners, const GrainRing& ring) {
 
 void erase_disc(GrainRing& ring, int gone) {
     ring.centres.erase(ring.centres.begin() + gone);
+    ring.radii_m.erase(ring.radii_m.begin() + gone);
     ring.places.erase(ring.places.begin() + gone);
     ring.along.erase(ring.along.begin() + gone);
     for (auto& row : ring.rows) {
@@ -169,7 +183,7 @@ GrainRing place_ring(std::span<const Vec2> corners, double diameter_m) {
         const std::vector<CornerDisc> discs = corner_discs(edges, 0.5 * diameter_m);
         if (discs.size() < 3) continue;
         GrainRing ring = ring_through(edges, discs, diameter_m);
-        if (ring.area_m2 > 0.0 && clear_overlaps(ring) && lies_inside(corners, ring)) return ring;
+        if (ring.area_m2 > 0.0 && clear_overlaps(ring) && clear_rows(ring, edges) && lies_inside(corners, ring)) return ring;
     }
     throw NumericalError("a grain has no room for three inner particles");
 }

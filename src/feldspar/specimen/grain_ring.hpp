@@ -9,10 +9,11 @@
 
 namespace feldspar {
 
-/// Discs along a grain's edges, all of one diameter.
+/// Discs along a grain's edges, all of one diameter; later also those inside.
 struct GrainRing {
     double diameter_m = 0.0;
     std::vector<Vec2> centres;              ///< m, counter-clockwise
+    std::vector<double> radii_m;            ///< half the diameter, until inner discs are added
     std::vector<ParticlePlace> places;      ///< vertex or edge
     std::vector<Vec2> along;                ///< edge discs: direction of their edge, on which they may slide; vertex discs: zero
     std::vector<std::vector<int>> rows;     ///< for each edge of the cell: the discs along it, from its first vertex to its last

@@ -9,10 +9,17 @@
 namespace feldspar {
 namespace {
 
-/// Discs push each other apart below these distances / diameter: first far, which spreads them, then near, which lets them
-/// keep what room they have.
-constexpr double spreading_reach = 1.25, settling_reach = 1.04;
-constexpr int tries_per_disc = 12;
+/// Discs first push each other apart as if they were larger by this factor, which spreads them.
+constexpr double spreading = 1.25;
+/// A free disc grows, by at most `largest_growth`, until its overlaps add up to four contacts (what it takes to hold a disc
+/// without friction) of this overlap / diameter.
+constexpr double wanted_overlap = 0.016, largest_growth = 0.15;
+constexpr double first_size = 0.92;
+constexpr int growth_steps = 20;
+/// Inner discs keep this many radii from the cell's edges: nearer, they would stand in a row without belonging to it.
+constexpr double wall_clearance = 1.5;
+/// Random places among which a disc takes the roomiest, and how often a disc that does not fit is put elsewhere.
+constexpr int tries_per_disc = 12, most_moves = 5;
 
 class Settling {
 public:
@@ -20,13 +27,13 @@ public:
         : ring_(ring), corners_(corners), force_(ring.centres.size()), velocity_(ring.centres.size()) {}
 
     /// FIRE with unit masses and stiffness until the largest force falls under 1e-3 diameters, or after so many steps.
-    void run(double reach, int steps);
+    void run(double factor, int steps);
 
 private:
-    void find_neighbours(double reach);
+    void find_neighbours(double factor);
     bool list_is_stale() const;
-    double forces(double reach);
-    void push_from_walls(int i);
+    double forces(double factor);
+    void push_from_walls(int i, double factor);
     void hold(int i);
     void advance();
 
@@ -38,13 +45,13 @@ private:
     int steps_downhill_ = 0;
 };
 
-void Settling::find_neighbours(double reach) {
+void Settling::find_neighbours(double factor) {
     skin_ = 0.4 * ring_.diameter_m;
     near_.clear();
-    const double far = reach + skin_;
     for (int i = 0; i < std::ssize(ring_.centres); ++i) {
         for (int j = i + 1; j < std::ssize(ring_.centres); ++j) {
             const Vec2 apart = ring_.centres[j] - ring_.centres[i];
+            const double far = factor * (ring_.radii_m[i] + ring_.radii_m[j]) + skin_;
             if (dot(apart, apart) < far * far) near_.emplace_back(i, j);
         }
     }
@@ -59,9 +66,11 @@ bool Settling::list_is_stale() const {
     return false;
 }
 
-void Settling::push_from_walls(int i) {
-    const double radius = 0.5 * ring_.diameter_m;
+void Settling::push_from_walls(int i, double factor) {
+    const double radius = std::max(factor * factor, wall_clearance) * ring_.radii_m[i];
     for (std::size_t k = 0; k < corners_.size(); ++k) {
+        const Vec2 a = corners_[k], b = corners_[(k + 1) % corners_.size()], p = ring_.centres[i];
+        if (cross(b - a, p - a) > radius * norm(b - a)) continue;
         const Vec2 out = ring_.centres[i] - closest_on_segment(ring_.centres[i], corners_[k], corners_[(k + 1) % corners_.size()]);
         const double distance = norm(out);
         if (distance < radius && distance > 0.0) force_[i] += ((radius - distance) / distance) * out;
@@ -72,12 +81,13 @@ void Settling::push_from_walls(int i) {
 void Settling::hold(int i) { force_[i] = dot(force_[i], ring_.along[i]) * ring_.along[i]; }
 
 /// @returns the square of the largest force (m^2, stiffness 1)
-double Settling::forces(double reach) {
-    if (listed_at_.empty() || list_is_stale()) find_neighbours(reach);
+double Settling::forces(double factor) {
+    if (listed_at_.empty() || list_is_stale()) find_neighbours(factor);
     std::fill(force_.begin(), force_.end(), Vec2{});
     for (const auto& [i, j] : near_) {
         const Vec2 apart = ring_.centres[j] - ring_.centres[i];
         const double distance2 = dot(apart, apart);
+        const double reach = factor * (ring_.radii_m[i] + ring_.radii_m[j]);
         if (distance2 >= reach * reach) continue;
         const double distance = std::sqrt(distance2);
         const Vec2 push = distance > 0.0 ? ((reach - distance) / distance) * apart : Vec2{reach, 0.0};
@@ -87,7 +97,7 @@ double Settling::forces(double reach) {
     double largest2 = 0.0;
     for (int i = 0; i < std::ssize(ring_.centres); ++i) {
         if (ring_.places[i] == ParticlePlace::interior) {
-            push_from_walls(i);
+            push_from_walls(i, factor);
         } else {
             hold(i);
         }
@@ -126,11 +136,11 @@ void Settling::advance() {
     }
 }
 
-void Settling::run(double reach, int steps) {
+void Settling::run(double factor, int steps) {
     listed_at_.clear();
     const double enough = 1e-3 * ring_.diameter_m;
     for (int step = 0; step < steps; ++step) {
-        if (forces(reach) < enough * enough) return;
+        if (forces(factor) < enough * enough) return;
         advance();
     }
 }
@@ -156,32 +166,38 @@ Vec2 roomiest_place(const GrainRing& ring, std::span<const Vec2> corners, const 
     return best;
 }
 
+void add_inner_disc(GrainRing& ring, Vec2 place) {
+    ring.centres.push_back(place);
+    ring.radii_m.push_back(0.5 * ring.diameter_m);
+    ring.places.push_back(ParticlePlace::interior);
+    ring.along.push_back({});
+}
+
 /// The disc to take away: of the pair that overlaps most, the one that is held least; or an inner disc in the wall; or -1.
 int worst_disc(const GrainRing& ring, std::span<const Vec2> corners) {
     int worst = -1;
-    double nearest = ring.diameter_m * (1.0 - largest_particle_overlap) * (1.0 - 1e-6);
+    double most = largest_particle_overlap * ring.diameter_m * (1.0 + 1e-6);
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
-            const double distance = norm(ring.centres[j] - ring.centres[i]);
-            if (distance >= nearest) continue;
-            nearest = distance;
+            const double overlap = ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]);
+            if (overlap <= most) continue;
+            most = overlap;
             worst = ring.places[j] < ring.places[i] ? j : i;
         }
     }
     if (worst >= 0) return worst;
-    const double radius = 0.5 * ring.diameter_m * (1.0 - 1e-10);
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         const Vec2 p = ring.centres[i];
-        if (!contains(corners, p) || distance_to_boundary(corners, p) < radius) return i;
+        if (!contains(corners, p) || distance_to_boundary(corners, p) < ring.radii_m[i] * (1.0 - 1e-10)) return i;
     }
     return -1;
 }
 
 /// Moves inner discs that still press into a wall off it.
 void clear_walls(GrainRing& ring, std::span<const Vec2> corners) {
-    const double radius = 0.5 * ring.diameter_m;
     for (int i = 0; i < std::ssize(ring.centres); ++i) {
         if (ring.places[i] != ParticlePlace::interior) continue;
+        const double radius = ring.radii_m[i];
         for (int sweep = 0; sweep < 20; ++sweep) {
             for (std::size_t k = 0; k < corners.size(); ++k) {
                 Vec2& p = ring.centres[i];
@@ -193,23 +209,59 @@ void clear_walls(GrainRing& ring, std::span<const Vec2> corners) {
     }
 }
 
+/// Changes the radius of a free disc; an edge disc stays in touch with its edge.
+void resize(GrainRing& ring, int i, double radius) {
+    ring.centres[i] += (radius - ring.radii_m[i]) * rot90(ring.along[i]);
+    ring.radii_m[i] = radius;
+}
+
+/// Sums of each disc's overlaps with all others, in m.
+std::vector<double> overlaps(const GrainRing& ring) {
+    std::vector<double> sums(ring.centres.size());
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
+            const double overlap = std::max(0.0, ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]));
+            sums[i] += overlap;
+            sums[j] += overlap;
+        }
+    }
+    return sums;
+}
+
+/// Gives each free disc the size at which it is just held by its neighbours, and lets all settle.
+void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
+    const double d = ring.diameter_m;
+    for (int i = 0; i < std::ssize(ring.centres); ++i) {
+        if (ring.places[i] == ParticlePlace::interior) resize(ring, i, 0.5 * first_size * d);
+    }
+    Settling settling(ring, corners);
+    for (int step = 0; step < growth_steps; ++step) {
+        settling.run(1.0, 20);
+        const std::vector<double> overlap = overlaps(ring);
+        for (int i = 0; i < std::ssize(ring.centres); ++i) {
+            if (ring.places[i] == ParticlePlace::vertex) continue;
+            const double missing = wanted_overlap - overlap[i] / (4.0 * d);
+            const double size = 2.0 * ring.radii_m[i] / d + std::clamp(missing, -0.03, 0.02);
+            resize(ring, i, 0.5 * d * std::clamp(size, 1.0 - largest_growth, 1.0 + largest_growth));
+        }
+    }
+    settling.run(1.0, 100);
+}
+
 }  // namespace
 
 void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random) {
     const Box box = bounding_box(corners);
-    for (int i = 0; i < count; ++i) {
-        const Vec2 place = roomiest_place(ring, corners, box, random);
-        ring.centres.push_back(place);
-        ring.places.push_back(ParticlePlace::interior);
-        ring.along.push_back({});
-    }
-    Settling(ring, corners).run(spreading_reach * ring.diameter_m, 60);
-    while (true) {
-        Settling(ring, corners).run(settling_reach * ring.diameter_m, 300);
+    for (int i = 0; i < count; ++i) add_inner_disc(ring, roomiest_place(ring, corners, box, random));
+    Settling(ring, corners).run(spreading, 60);
+    for (int moves = most_moves;; --moves) {
+        grow_discs(ring, corners);
         clear_walls(ring, corners);
         const int worst = worst_disc(ring, corners);
         if (worst < 0 || ring.places[worst] == ParticlePlace::vertex) return;
+        const bool inner = ring.places[worst] == ParticlePlace::interior;
         erase_disc(ring, worst);
+        if (inner && moves > 0) add_inner_disc(ring, roomiest_place(ring, corners, box, random));
     }
 }
 

@@ -9,9 +9,10 @@
 namespace feldspar {
 
 /// Adds `count` discs inside the ring, each where there is most room among some random places, and lets all settle: discs
-/// nearer than a little more than their diameter push each other apart, inner discs move freely, edge discs along their edge,
-/// corner discs not at all. Minimised as in relax_discs. A disc that still overlaps too much is taken away again.
-/// The inner discs stand after the ring's; an edge disc may be taken away too, so the rows are renumbered.
+/// that overlap push each other apart, inner discs move freely, edge discs along their edge, corner discs not at all.
+/// Minimised as in relax_discs. Inner and edge discs grow or shrink, by 15 % at most, until their neighbours just hold them. An
+/// inner disc that overlaps another too much is put elsewhere; one that finds no place is taken away again, and so is an edge
+/// disc in the way. The inner discs stand after the ring's.
 /// @param corners  the cell, counter-clockwise
 void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random);
 
