@@ -13,6 +13,8 @@ constexpr double kMostHastening = 1.06;
 // A local crack rings for a travel time whatever the speed is. If the load changes by no more than this share meanwhile, going
 // slower does not change what the crack does.
 constexpr double kLoadWhileCracking = 0.0025;
+// Where nothing is out of balance the record still has to resolve the load: by a hundredth from row to row.
+constexpr double kLoadPerStep = 1e-3;
 constexpr double kSpeedAfterPeak = 1e-7;   // heights a step: neither crawling beside a dynamic failure nor racing down a soft branch
 constexpr double kFailing = 0.02;   // R* of a body that fails dynamically whatever the speed
 constexpr double kBlend = 0.5;   // of the newly observed loading mode
@@ -43,7 +45,8 @@ double RateControl::next(double speed, double unbalanced_N, double platen_force_
     const double crawling = relative_target_ * std::max(6e-9 * height_m_, kLoadWhileCracking * per_travel_time);
     const double after_peak = kSpeedAfterPeak * height_m_;
     const double slowest = failing ? std::max(crawling, after_peak) : crawling;
-    const double fastest = std::max(slowest, past_peak ? std::min(after_peak, 0.4 * per_travel_time) : 0.4 * per_travel_time);
+    const double resolved = std::min(0.4 * per_travel_time, relative_target_ * kLoadPerStep * platen_travel_m);
+    const double fastest = std::max(slowest, past_peak ? std::min(after_peak, resolved) : resolved);
     return std::clamp(speed * factor, slowest, fastest);
 }
 
