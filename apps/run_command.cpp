@@ -61,8 +61,9 @@ public:
             if (stop_requested()) throw Interrupted();
             if (!specimens_.made(run)) progress_.busy(fmt::format("making {}", Specimens::packing_stem(run)));
             const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
-            const bool own_setting = job_.numerics.kind != NumericsKind::adaptive || job_.numerics.mass_factor;
-            if (own_setting) (void)preview_test(setup_of(job_, run, specimen), control_);
+            const NumericsSpec& numerics = run.variant->numerics;
+            const bool own_setting = numerics.kind != NumericsKind::adaptive || numerics.mass_factor;
+            if (own_setting) (void)preview_test(setup_of(run, specimen), control_);
         }
         progress_.clear();
         for (const PlannedRun& run : runs_)
@@ -86,7 +87,7 @@ public:
             } catch (const NumericalError& error) {
                 progress_.clear();
                 write_overview(false);
-                throw NumericalError(fmt::format("{}, seed {}: {}", title(*runs_[i].test), runs_[i].seed, error.what()));
+                throw NumericalError(fmt::format("{}: {}", label_of(runs_[i]), error.what()));
             }
         }
         progress_.clear();
@@ -106,9 +107,13 @@ public:
     std::size_t finished() const { return results_.size(); }
 
 private:
+    static std::string label_of(const PlannedRun& run) {
+        return fmt::format("{}, seed {}", title(run.variant->name, *run.test), run.seed);
+    }
+
     void run_one(std::size_t i) {
         const PlannedRun& run = runs_[i];
-        const std::string label = fmt::format("{}, seed {}", title(*run.test), run.seed);
+        const std::string label = label_of(run);
         const int number = static_cast<int>(i) + 1, count = static_cast<int>(runs_.size());
         const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
         const std::string packing = Specimens::packing_stem(run) + ".txt";
@@ -117,7 +122,8 @@ private:
             packings_.push_back(packing);
         }
         control_.progress = [&](const TestProgress& state) { progress_.report(number, count, label, state); };
-        TestResult result = run_test(setup_of(job_, run, specimen), control_);
+        TestResult result = run_test(setup_of(run, specimen), control_);
+        result.variant = run.variant->name;
         progress_.note(fmt::format("{}/{} {}: {}", number, count, label, test_line(result)));
         if (result.history.empty()) return;  // interrupted before the first row
         results_.push_back(std::move(result));
@@ -166,6 +172,7 @@ Job job_with_options(const JobOptions& options) {
         throw InputError({{}, 0, 0, "--seed"}, "several seeds are asked for, but the job loads one packing", "one seed");
     job.seeds = options.seeds;
     for (TestSpec& test : job.tests) test.seeds.clear();
+    for (Variant& variant : job.variants) variant.seeds.clear();
     return job;
 }
 

@@ -127,7 +127,7 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
     }
     std::string text = aligned(rows, 2);
     text += fmt::format("median, minimum, maximum over n packings; plane {}; strengths are positive magnitudes\n",
-                        name(job.model.plane));
+                        name(job.variants.front().model.plane));
     if (!properties.envelope_method.empty()) text += wrapped(properties.envelope_method, "");
     return text;
 }

@@ -197,11 +197,12 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     data["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}, {"seeds", job.seeds}};
     data["complete"] = complete;
     data["signs"] = sign_convention;
-    data["model"] = {{"grains", name(job.model.kind)},
-                     {"contact", name(job.model.contact)},
-                     {"plane", name(job.model.plane)},
-                     {"law", name(job.contact.law)},
-                     {"numerics", name(job.numerics.kind)}};
+    const Variant& variant = job.variants.front();
+    data["model"] = {{"grains", name(variant.model.kind)},
+                     {"contact", name(variant.model.contact)},
+                     {"plane", name(variant.model.plane)},
+                     {"law", name(variant.contact.law)},
+                     {"numerics", name(variant.numerics.kind)}};
     data["specimens"] = specimens_json(results);
     data["properties"] = properties_json(job, properties);
     data["laboratory"] = Json::object();
