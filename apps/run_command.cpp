@@ -98,7 +98,8 @@ public:
     bool interrupted() const { return interrupted_; }
 
     void print_results() const {
-        fmt::print("\n{}\n{}\n", property_table(job_, properties_), test_table(results_));
+        const std::string properties = job_.has_variants() ? variant_table(job_, results_) : property_table(job_, properties_);
+        fmt::print("\n{}\n{}\n", properties, test_table(results_));
         fmt::print("Report: {}\n", (directory_->path() / "report.html").string());
     }
 
@@ -134,7 +135,7 @@ private:
     }
 
     void write_overview(bool complete) {
-        properties_ = summarise(results_);
+        if (!job_.has_variants()) properties_ = summarise(results_);  // else each variant has its own
         write_summary(*directory_, job_, results_, properties_, provenance_, complete);
         write_report(*directory_, job_, results_, properties_, provenance_, complete);
     }

@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t largest_row_count = 600;  ///< of a history in the report; the CSV has them all
-constexpr std::size_t smallest_row_count = 150; ///< ... however many tests there are
+constexpr std::size_t largest_row_count = 600;   ///< of a history in the report; the CSV has them all
+constexpr std::size_t smallest_row_count = 150;  ///< ... however many tests there are
 constexpr std::size_t most_rows_of_all = 24000;
 
 /// Row numbers that stay: evenly spread, with the first, the last and the peak.

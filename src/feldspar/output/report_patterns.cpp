@@ -65,7 +65,8 @@ void add_cracks(Block& block, const std::string& number, const TestResult& resul
 /// Cracks in the row that first shows the strength.
 int cracks_at_peak(const TestResult& result) {
     for (const HistoryRow& row : result.history)
-        if (std::abs(row.axial_stress_Pa) >= (1.0 - 1e-9) * result.properties.peak_stress_Pa) return row.cracks_tensile + row.cracks_shear;
+        if (std::abs(row.axial_stress_Pa) >= (1.0 - 1e-9) * result.properties.peak_stress_Pa)
+            return row.cracks_tensile + row.cracks_shear;
     return static_cast<int>(result.cracks.size());
 }
 

@@ -14,9 +14,9 @@ namespace feldspar {
 
 /// The results of one variant, drawn together.
 struct VariantSummary {
-    const Variant* variant = nullptr;           ///< points into the job
+    const Variant* variant = nullptr;  ///< points into the job
     PropertySummary properties;
-    std::map<TestKind, double> ms_per_step;     ///< median over its tests of a kind
+    std::map<TestKind, double> ms_per_step;  ///< median over its tests of a kind
 };
 
 /// One for each variant of the job, in its order; those without results are there with nothing in them.

@@ -92,7 +92,9 @@ function writeComparedCurves() {
   const chosen = () => kinds.get(state.kind).filter((t) => t.seed === state.seed && state.shown.has(variantIndex(t))).sort((a, b) => variantIndex(a) - variantIndex(b));
   let chart = null;
   const update = () => {
-    const brazilian = kinds.get(state.kind)[0].kind === "brazilian";
+    const own = kinds.get(state.kind);
+    if (!own.some((t) => t.seed === state.seed)) state.seed = own[0].seed;
+    const brazilian = own[0].kind === "brazilian";
     const labels = {x: state.x === "strain" ? (brazilian ? "Approach of the plates / diameter (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)") : (brazilian ? "Approach of the plates (mm)" : "Platen displacement (mm)"),
       y: brazilian ? "2P / (\u03c0Dt) (MPa)" : "Axial stress (MPa)", right: "Broken contact area (%)", height: 420};
     const series = comparedSeries(chosen(), state);
@@ -103,14 +105,14 @@ function writeComparedCurves() {
   const chooseKind = (kind) => {
     state.kind = kind;
     const seeds = [...new Set(kinds.get(kind).map((t) => t.seed))];
-    if (!seeds.includes(state.seed)) state.seed = seeds[0];
+    if (!seeds.includes(state.seed)) state.seed = seeds[0];   // not every test runs on every packing
     seedBox.replaceChildren(picker("Packing (seed)", seeds.map(String), seeds.indexOf(state.seed), (i) => { state.seed = seeds[i]; update(); }) || "");
     update();
   };
   const names = [...kinds.keys()];
   page.append(picker("Test", names, 0, (i) => chooseKind(names[i])) || h("p", {class: "small"}, names[0]), seedBox);
   curves.append(chips(data.variants.map((v) => v.name), (on) => { state.shown = on; update(); }));
-  page.append(h("div", {class: "pick"}, picker("Along", ["strain", "displacement"], 0, (i) => { state.x = i ? "displacement" : "strain"; update(); }),
+  page.append(h("div", {class: "pick"}, picker("Horizontal axis", ["strain", "displacement"], 0, (i) => { state.x = i ? "displacement" : "strain"; update(); }),
     picker("Damage", ["shown", "hidden"], 0, (i) => { state.damage = i === 0; update(); })), curves);
   page.append(h("div", {class: "pick"}, picker("Failure patterns", ["at the end", "at the peak"], 0, (i) => { state.moment = i ? "peak" : "end"; update(); }),
     h("div", {class: "legend"}, h("span", {}, h("b", {style: "border-color:var(--tensile)"}), "tensile crack"), h("span", {}, h("b", {style: "border-color:var(--shear)"}), "shear crack"), h("span", {}, "undeformed"))), patterns);

@@ -52,7 +52,7 @@ function groupTests() {
 function modelFacts(m) {
   if (data.variants) {
     const each = (key) => [...new Set(data.variants.map((v) => v[key]))].join(", ");
-    return [plural(data.variants.length, "variant"), each("grains").replaceAll("-", " "), each("law") + " law", each("numerics") + " numerics"];
+    return [plural(data.variants.length, "variant"), "grains: " + each("grains").replaceAll("-", " "), each("law") + " law", each("numerics") + " numerics"];
   }
   return [m.grains + " grains, " + (m.contact === "lobatto3" ? "three-point" : "one-point") + " contacts", m.law + " law", "plane " + m.plane, m.numerics + " numerics"];
 }
