@@ -197,8 +197,9 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
         rows.push_back(std::move(row));
     }
     std::string text = aligned(rows, 2);
-    text += fmt::format("median, minimum, maximum over n packings; plane {}; strengths are positive magnitudes\n",
-                        name(job.variants.front().model.plane));
+    const ModelSpec& model = job.variants.front().model;
+    text += fmt::format("median, minimum, maximum over n packings; {}strengths are positive magnitudes\n",
+                        model.kind == GrainKind::flexible ? fmt::format("plane {}; ", name(model.plane)) : "");
     if (!properties.envelope_method.empty()) text += wrapped(properties.envelope_method, "");
     return text;
 }

@@ -54,7 +54,8 @@ function modelFacts(m) {
     const each = (key) => [...new Set(data.variants.map((v) => v[key]))].join(", ");
     return [plural(data.variants.length, "variant"), "grains: " + each("grains").replaceAll("-", " "), each("law") + " law", each("numerics") + " numerics"];
   }
-  return [m.grains + " grains, " + (m.contact === "lobatto3" ? "three-point" : "one-point") + " contacts", m.law + " law", "plane " + m.plane, m.numerics + " numerics"];
+  return [(m.grains === "inner-particles" ? "inner particles, " : m.grains + " grains, ") + (m.contact === "lobatto3" ? "three-point" : "one-point") + " contacts", m.law + " law",
+    ...(m.grains === "flexible" ? ["plane " + m.plane] : []), m.numerics + " numerics"];
 }
 
 function writeHeader() {
@@ -97,8 +98,8 @@ function writeProperties() {
   page.append(h("h2", {}, "Properties of the rock"));
   if (!data.properties.length) { page.append(h("p", {class: "soft"}, "No property could be read yet.")); return; }
   const compared = data.properties.some((p) => p.laboratory !== null);
-  page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + ". E and \u03bd hold for plane " +
-    data.model.plane + "."));
+  page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + "." +
+    (data.model.grains === "flexible" ? " E and \u03bd hold for plane " + data.model.plane + "." : "")));
   const reach = spreadReach();
   const head = [th("Property"), th("", true), th("Median", true), th("Range", true), th("Packings", true)];
   if (compared) head.push(th("Laboratory", true), th("Difference", true));
