@@ -118,7 +118,12 @@ function writeComparedCurves() {
     h("div", {class: "legend"}, h("span", {}, h("b", {style: "border-color:var(--tensile)"}), "tensile crack"), h("span", {}, h("b", {style: "border-color:var(--shear)"}), "shear crack"), h("span", {}, "undeformed"))), patterns);
   chooseKind(state.kind);
   redraw.push(update);
-  new ResizeObserver(() => drawPatterns(patterns, chosen(), state.moment)).observe(patterns);
+  let width = patterns.clientWidth;
+  new ResizeObserver(() => {   // the height follows from the drawings themselves
+    if (patterns.clientWidth === width) return;
+    width = patterns.clientWidth;
+    drawPatterns(patterns, chosen(), state.moment);
+  }).observe(patterns);
 }
 
 const patternCache = [];
@@ -146,6 +151,7 @@ async function drawPatterns(host, tests, moment) {
     return {canvas, draw: () => paintPattern(canvas, meta, parts, k, count),
       element: h("figure", {}, h("figcaption", {}, swatch(variantIndex(t)), t.variant), canvas, h("div", {class: "soft tiny"}, show(t.peak) + " MPa \u00b7 " + (count - shear) + " tensile, " + shear + " shear"))};
   }).filter(Boolean);
+  host.style.setProperty("--columns", cards.length > 5 ? Math.min(6, Math.ceil(cards.length / 2)) : Math.max(2, cards.length));
   host.replaceChildren(...cards.map((c) => c.element));
   for (const c of cards) c.draw();
 }
@@ -213,7 +219,7 @@ function writeCost() {
       kinds.map((kind) => {
         const cost = v.ms_per_step[kind], base = first.ms_per_step[kind];
         if (cost === undefined) return td("\u2013", true);
-        return h("td", {class: "number"}, h("span", {class: "strong"}, show(cost)), base ? h("span", {class: "soft"}, " (" + show(cost / base, 2) + "\u00d7)") : null);
+        return h("td", {class: "number"}, h("span", {class: "strong"}, show(cost)), base ? h("span", {class: "soft"}, " (" + (cost / base).toFixed(2) + "\u00d7)") : null);
       })))));
 }
 

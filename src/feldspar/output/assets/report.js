@@ -130,6 +130,12 @@ function picker(label, names, chosen, choose) {
   }}, name));
   return h("div", {class: "pick"}, label, h("div", {class: "buttons", role: "group"}, buttons));
 }
+/** The same as a list to unfold, where buttons would fill more than a line. */
+function chooser(label, names, choose) {
+  if (names.join("").length < 90) return picker(label, names, 0, choose);
+  const list = h("select", {"aria-label": label || "Choose", onchange: (e) => choose(Number(e.target.value))}, names.map((text, i) => h("option", {value: i}, text)));
+  return h("div", {class: "pick"}, label, list);
+}
 function card(title) {
   const body = h("div", {class: "card"}, h("h4", {}, title));
   return body;
@@ -185,7 +191,7 @@ function writeTests() {
     for (const tests of groups) if (tests[0].variant === name) writeTest(box, tests);
   };
   if (!present.length) return;
-  page.append(picker("Variant", present.map((v) => v.name), 0, (i) => open(present[i].name)) || "", box);
+  page.append(chooser("Variant", present.map((v) => v.name), (i) => open(present[i].name)) || "", box);
   open(present[0].name);
 }
 
@@ -364,7 +370,7 @@ function writePattern() {
   }
 
   const names = data.fields.map((f) => { const t = data.tests[f.test]; return fullTitle(t).replace(" compression at \u03c3\u2083 =", ",") + " \u00b7 seed " + t.seed; });
-  const choose = names.length > 12 ? h("div", {class: "pick"}, h("select", {"aria-label": "Test", onchange: (e) => open(Number(e.target.value))}, names.map((text, i) => h("option", {value: i}, text)))) : picker("", names, 0, open);
+  const choose = data.variants ? chooser("", names, open) : picker("", names, 0, open);
   page.append(choose || h("p", {class: "small"}, names[0]), box);
   const zoom = h("div", {class: "zoom"}, h("button", {type: "button", "aria-label": "Zoom in", onclick: () => viewer.zoom(1.5)}, "+"),
     h("button", {type: "button", "aria-label": "Zoom out", onclick: () => viewer.zoom(1 / 1.5)}, "\u2212"), h("button", {type: "button", onclick: () => viewer.reset()}, "Fit"));
@@ -390,7 +396,7 @@ function writeEvidence() {
   page.append(table("evidence",
     [data.variants ? th("Variant") : null, th("Test"), th("Seed", true), th("Strength", true), th("Grade"), th(["R*", h("br"), "mean"], true), th(["R* at", h("br"), "peak"], true), th(["Platens", h("br"), "differ by"], true, "largest difference of the two reactions over their mean"),
       th(["Kinetic /", h("br"), "strain energy"], true), th(["Damping /", h("br"), "fracture"], true), th(["Energy", h("br"), "residual"], true), th(["Platen speed", h("br"), "at peak"], true), confirmed ? th(["Peak at a", h("br"), "third of the rate"], true) : null],
-    [...groupTests().values()].flat().map((t, i, all) => h("tr", {}, data.variants ? td(i && t.variant === all[i - 1].variant ? "" : t.variant, false, "kind") : null, td(i && t.variant === all[i - 1].variant && titleOf(t) === titleOf(all[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
+    [...groupTests().values()].flat().map((t, i, all) => h("tr", {}, data.variants ? td(i && t.variant === all[i - 1].variant ? "" : t.variant, false, "strong") : null, td(i && t.variant === all[i - 1].variant && titleOf(t) === titleOf(all[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
       td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(percent(t.imbalance_max), true), td(show(t.kinetic_over_strain, 2), true), td(percent(t.damping_over_fracture), true),
       td(percent(t.energy_residual), true), td(speedAtPeak(t), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null))));
   // the verdicts in words, each once
