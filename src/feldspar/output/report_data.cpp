@@ -20,8 +20,9 @@ constexpr std::size_t largest_row_count = 600;   ///< of a history in the report
 constexpr std::size_t smallest_row_count = 150;  ///< ... however many tests there are
 constexpr std::size_t most_rows_of_all = 24000;
 
-/// Row numbers that stay: evenly spread, with the first, the last and the peak.
-std::vector<std::size_t> kept_rows(const std::vector<HistoryRow>& history, std::size_t tests) {
+/// Row numbers that stay: evenly spread, with the first, the last, the strength and the largest stress.
+std::vector<std::size_t> kept_rows(const TestResult& result, std::size_t tests) {
+    const std::vector<HistoryRow>& history = result.history;
     std::vector<std::size_t> kept;
     if (history.empty()) return kept;
     const std::size_t most_rows = std::clamp(most_rows_of_all / tests, smallest_row_count, largest_row_count);
@@ -30,15 +31,16 @@ std::vector<std::size_t> kept_rows(const std::vector<HistoryRow>& history, std::
         return std::abs(a.axial_stress_Pa) < std::abs(b.axial_stress_Pa);
     };
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
+    const std::size_t strength = strength_row(result);
     for (std::size_t r = 0; r < history.size(); ++r) {
-        if (r % stride == 0 || r == peak || r + 1 == history.size()) kept.push_back(r);
+        if (r % stride == 0 || r == peak || r == strength || r + 1 == history.size()) kept.push_back(r);
     }
     return kept;
 }
 
 Json history_json(const TestResult& result, std::size_t tests) {
     const std::vector<HistoryRow>& history = result.history;
-    const std::vector<std::size_t> kept = kept_rows(history, tests);
+    const std::vector<std::size_t> kept = kept_rows(result, tests);
     Json json = Json::object();
     const auto column = [&](const char* name, auto value) {
         Json list = Json::array();
@@ -225,6 +227,12 @@ Json variants_json(const Job& job, std::span<const TestResult> results) {
 }
 
 }  // namespace
+
+std::size_t strength_row(const TestResult& result) {
+    for (std::size_t r = 0; r < result.history.size(); ++r)
+        if (std::abs(result.history[r].axial_stress_Pa) >= (1.0 - 1e-9) * result.properties.peak_stress_Pa) return r;
+    return result.history.empty() ? 0 : result.history.size() - 1;
+}
 
 Json rounded(double value) {
     if (!std::isfinite(value)) return nullptr;

@@ -30,6 +30,9 @@ std::vector<ReportFields> report_fields(std::span<const TestResult> results, std
 /// The cracks of every test over the grains of its packing, one block a packing: for patterns side by side.
 std::vector<ReportFields> report_patterns(std::span<const TestResult> results);
 
+/// The row of the history that first shows the strength, of a Brazilian test the first peak; the last one if none does.
+std::size_t strength_row(const TestResult& result);
+
 /// A row's rounded value: six digits are more than a screen shows.
 nlohmann::ordered_json rounded(double value);
 

@@ -62,12 +62,10 @@ void add_cracks(Block& block, const std::string& number, const TestResult& resul
     block.add("mode" + number, "uint8", mode);
 }
 
-/// Cracks in the row that first shows the strength.
 int cracks_at_peak(const TestResult& result) {
-    for (const HistoryRow& row : result.history)
-        if (std::abs(row.axial_stress_Pa) >= (1.0 - 1e-9) * result.properties.peak_stress_Pa)
-            return row.cracks_tensile + row.cracks_shear;
-    return static_cast<int>(result.cracks.size());
+    if (result.history.empty()) return 0;
+    const HistoryRow& row = result.history[strength_row(result)];
+    return row.cracks_tensile + row.cracks_shear;
 }
 
 }  // namespace
