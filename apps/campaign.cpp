@@ -14,10 +14,13 @@ std::vector<PlannedRun> planned_runs(const Job& job) {
 
     std::vector<PlannedRun> runs;
     for (std::uint64_t seed : seeds) {
-        for (const TestSpec& test : job.tests) {
-            const bool wanted = test.seeds.empty() ? std::find(job.seeds.begin(), job.seeds.end(), seed) != job.seeds.end()
-                                                   : std::find(test.seeds.begin(), test.seeds.end(), seed) != test.seeds.end();
-            if (wanted) runs.push_back({&test, seed});
+        for (const Variant& variant : job.variants) {
+            for (const TestSpec& test : job.tests) {
+                const bool wanted = test.seeds.empty()
+                                        ? std::find(job.seeds.begin(), job.seeds.end(), seed) != job.seeds.end()
+                                        : std::find(test.seeds.begin(), test.seeds.end(), seed) != test.seeds.end();
+                if (wanted && variant.runs(test, seed)) runs.push_back({&variant, &test, seed});
+            }
         }
     }
     return runs;
@@ -27,6 +30,10 @@ std::string title(const TestSpec& test) {
     std::string text = name(test.kind);
     if (test.kind == TestKind::biaxial) text += fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6);
     return text;
+}
+
+std::string title(const std::string& variant, const TestSpec& test) {
+    return variant.empty() ? title(test) : variant + ": " + title(test);
 }
 
 std::shared_ptr<const Specimen> Specimens::get(const PlannedRun& run) {
@@ -44,8 +51,9 @@ std::string Specimens::packing_stem(const PlannedRun& run) {
     return fmt::format("packing-{}s{}", run.test->kind == TestKind::brazilian ? "disc-" : "", run.seed);
 }
 
-TestSetup setup_of(const Job& job, const PlannedRun& run, std::shared_ptr<const Specimen> specimen) {
-    return {std::move(specimen), job.model, job.grain, job.contact, job.numerics, *run.test};
+TestSetup setup_of(const PlannedRun& run, std::shared_ptr<const Specimen> specimen) {
+    const Variant& variant = *run.variant;
+    return {std::move(specimen), variant.model, variant.grain, variant.contact, variant.numerics, *run.test};
 }
 
 }  // namespace feldspar

@@ -14,17 +14,21 @@
 
 namespace feldspar {
 
-/// One test on one packing.
+/// One test of one variant on one packing.
 struct PlannedRun {
-    const TestSpec* test = nullptr;  ///< points into the job
+    const Variant* variant = nullptr;  ///< points into the job
+    const TestSpec* test = nullptr;    ///< points into the job
     std::uint64_t seed = 0;
 };
 
-/// All runs of the job, packing by packing, so that an interrupted job leaves whole packings behind.
+/// All runs of the job, packing by packing, then variant by variant: an interrupted job leaves whole packings behind.
 std::vector<PlannedRun> planned_runs(const Job& job);
 
 /// "biaxial at 4 MPa".
 std::string title(const TestSpec& test);
+
+/// The same with the variant's name before it, if it has one: "Rigid, brittle: biaxial at 4 MPa".
+std::string title(const std::string& variant, const TestSpec& test);
 
 /// The packings of a job, each made once.
 class Specimens {
@@ -49,6 +53,6 @@ private:
 };
 
 /// What run_test() and preview_test() ask for.
-TestSetup setup_of(const Job& job, const PlannedRun& run, std::shared_ptr<const Specimen> specimen);
+TestSetup setup_of(const PlannedRun& run, std::shared_ptr<const Specimen> specimen);
 
 }  // namespace feldspar

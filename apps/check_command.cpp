@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <utility>
 
 #include "campaign.hpp"
 #include "commands.hpp"
@@ -34,53 +35,106 @@ std::string memory_text(double bytes) {
     return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
+// What the runs of one variant and test have in common.
+struct Group {
+    PlannedRun example;  // the first of them stands for all
+    int runs = 0;
+};
+
+// One group for each variant and test, in the order of the job.
+std::vector<Group> groups_of(const Job& job) {
+    std::map<std::pair<const Variant*, const TestSpec*>, Group> found;
+    for (const PlannedRun& run : planned_runs(job)) {
+        Group& group = found[{run.variant, run.test}];
+        if (group.runs++ == 0) group.example = run;
+    }
+    std::vector<Group> groups;
+    for (const auto& [key, group] : found) groups.push_back(group);  // both pointers grow with the job's lists
+    return groups;
+}
+
+std::string preview_text(const TestPreview& preview) {
+    std::string text = fmt::format("  contact points        {}\n", preview.contact_points);
+    text += fmt::format("  memory                {}\n", memory_text(preview.memory_bytes));
+    text += fmt::format("  stability             (omega dt)^2 = {:.3f}, limit {:.3f}\n", preview.omega2, preview.omega2_limit);
+    text += fmt::format("  stable time step      {:.3e} s with real masses\n", preview.stable_time_step_s);
+    return text;
+}
+
+std::string variant_text(const Variant& variant) {
+    std::string text =
+        fmt::format("{}\n  model                 {} grains, contact {}, normal {}, {} law\n", variant.name,
+                    name(variant.model.kind), name(variant.model.contact), name(variant.model.normal), name(variant.contact.law));
+    text += fmt::format("  Kn, eta               {:.4g} GPa/m, {:.4g}\n", variant.contact.Kn_Pa_m / 1e9, variant.contact.eta);
+    return text;
+}
+
+// Builds one run of each group and prints what comes out: of a variant the model and its first test in full, of its other
+// tests the steps and the time.
+class Check {
+public:
+    Check(const Job& job, int threads) : job_(job), specimens_(job) {
+        control_.threads = threads;
+        control_.stop = &stop_requested();
+    }
+
+    void run() {
+        for (const Group& group : groups_of(job_)) {
+            if (stop_requested()) throw Interrupted();
+            add(group);
+        }
+        fmt::print("\n{}\nExpected time of the whole job: about {}. Nothing was run, no file was written.\n", text_,
+                   duration_text(total_s_));
+    }
+
+private:
+    void add(const Group& group) {
+        const PlannedRun& run = group.example;
+        progress_.busy(fmt::format("building {}, seed {}", title(run.variant->name, *run.test), run.seed));
+        const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
+        const TestPreview preview = preview_test(setup_of(run, specimen), control_);
+        progress_.clear();
+        show_specimen(*run.test, *specimen);
+        const bool first = std::exchange(variant_, run.variant) != run.variant;
+        if (first && job_.has_variants()) text_ += (text_.empty() ? "" : "\n") + variant_text(*run.variant);
+        if (job_.has_variants()) {
+            if (first) text_ += preview_text(preview);
+            text_ += fmt::format("  {} x {}: about {:.0f} steps, {} each\n", group.runs, title(*run.test), preview.expected_steps,
+                                 duration_text(preview.expected_seconds));
+        } else {
+            text_ += fmt::format("{} x {}\n{}", group.runs, title(*run.test), preview_text(preview));
+            text_ += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps,
+                                 duration_text(preview.expected_seconds));
+        }
+        total_s_ += preview.expected_seconds * group.runs;
+    }
+
+    void show_specimen(const TestSpec& test, const Specimen& specimen) {
+        const bool disc = test.kind == TestKind::brazilian;
+        bool& shown = disc ? disc_shown_ : rectangle_shown_;
+        if (!shown) print_specimen(disc ? "Disc of the Brazilian test" : "Specimen", specimen);
+        shown = true;
+    }
+
+    const Job& job_;
+    Specimens specimens_;
+    Progress progress_;
+    RunControl control_;
+    const Variant* variant_ = nullptr;  // the last one shown
+    bool disc_shown_ = false, rectangle_shown_ = false;
+    double total_s_ = 0.0;
+    std::string text_;
+};
+
 }  // namespace
 
 ExitCode check_command(const JobOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
     const int threads = thread_count(job);
-    const std::vector<PlannedRun> runs = planned_runs(job);
-    Progress progress;
-    Specimens specimens(job);
-
-    std::map<const TestSpec*, int> count;           // runs of each test
-    std::map<const TestSpec*, PlannedRun> example;  // the first of them stands for all
-    bool has_rectangle = false, has_disc = false;
-    for (const PlannedRun& run : runs) {
-        ++count[run.test];
-        example.emplace(run.test, run);
-    }
-    fmt::print("Job {} is sound: {} runs of {} tests, {} thread{}\n\n", job.name, runs.size(), job.tests.size(), threads,
-               threads == 1 ? "" : "s");
-
-    double total_s = 0.0;
-    std::string tests;
-    for (const TestSpec& test : job.tests) {
-        if (stop_requested()) throw Interrupted();
-        const PlannedRun& run = example.at(&test);
-        progress.busy(fmt::format("building {}, seed {}", title(test), run.seed));
-        const std::shared_ptr<const Specimen> specimen = specimens.get(run);
-        RunControl control;
-        control.threads = threads;
-        control.stop = &stop_requested();
-        const TestPreview preview = preview_test(setup_of(job, run, specimen), control);
-        progress.clear();
-        bool& shown = test.kind == TestKind::brazilian ? has_disc : has_rectangle;
-        if (!shown) print_specimen(test.kind == TestKind::brazilian ? "Disc of the Brazilian test" : "Specimen", *specimen);
-        shown = true;
-        total_s += preview.expected_seconds * count.at(&test);
-        tests += fmt::format("{} x {}\n", count.at(&test), title(test));
-        tests += fmt::format("  contact points        {}\n", preview.contact_points);
-        tests += fmt::format("  memory                {}\n", memory_text(preview.memory_bytes));
-        tests +=
-            fmt::format("  stability             (omega dt)^2 = {:.3f}, limit {:.3f}\n", preview.omega2, preview.omega2_limit);
-        tests += fmt::format("  stable time step      {:.3e} s with real masses\n", preview.stable_time_step_s);
-        tests += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps,
-                             duration_text(preview.expected_seconds));
-    }
-    fmt::print("\n{}\nExpected time of the whole job: about {}. Nothing was run, no file was written.\n", tests,
-               duration_text(total_s));
+    fmt::print("Job {} is sound: {} runs of {} tests{}, {} thread{}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
+               job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", threads, threads == 1 ? "" : "s");
+    Check(job, threads).run();
     return ExitCode::success;
 }
 

@@ -33,6 +33,9 @@ ExitCode check_command(const JobOptions& options);
 /// Prints a commented job, or writes it to a new file.
 ExitCode new_command(const std::string& kind, const std::optional<std::string>& out);
 
+/// Prints the materials that jobs may name.
+ExitCode presets_command();
+
 /// Reads the job and applies the command line to it.
 Job job_with_options(const JobOptions& options);
 

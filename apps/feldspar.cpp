@@ -92,10 +92,14 @@ int run_program(int argc, char** argv) {
     std::string kind;
     std::optional<std::string> file;
     CLI::App* new_app = app.add_subcommand("new", "print a commented job to start from");
-    new_app->add_option("kind", kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")
-        ->required()
-        ->type_name("KIND");
-    new_app->add_option("--out", file, "write it to this new file instead")->type_name("FILE");
+    CLI::Option* kind_option =
+        new_app->add_option("kind", kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")
+            ->type_name("KIND");
+    CLI::Option* file_option = new_app->add_option("--out", file, "write it to this new file instead")->type_name("FILE");
+    bool presets = false;
+    new_app->add_flag("--presets", presets, "print the materials that a job may name instead")
+        ->excludes(kind_option)
+        ->excludes(file_option);
 
     try {
         app.parse(argc, argv);
@@ -105,6 +109,9 @@ int run_program(int argc, char** argv) {
     return guarded([&] {
         if (*run_app) return run_command(run);
         if (*check_app) return check_command(check);
+        if (presets) return presets_command();
+        if (kind.empty())
+            throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory");
         return new_command(kind, file);
     });
 }

@@ -6,16 +6,25 @@
 
 #include "commands.hpp"
 #include "feldspar/study/job_template.hpp"
+#include "feldspar/study/presets.hpp"
 
 namespace feldspar {
 
+namespace {
+
+ExitCode print_whole(const std::string& text) {
+    const bool whole = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+    if (!whole) throw OutputError("the text could not be printed");
+    return ExitCode::success;
+}
+
+}  // namespace
+
+ExitCode presets_command() { return print_whole(preset_overview()); }
+
 ExitCode new_command(const std::string& kind, const std::optional<std::string>& out) {
     const std::string text = job_template(kind);
-    if (!out) {
-        const bool whole = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-        if (!whole) throw OutputError("the job could not be printed");
-        return ExitCode::success;
-    }
+    if (!out) return print_whole(text);
     errno = 0;
     std::FILE* file = std::fopen(out->c_str(), "wx");  // x: never an existing file
     if (file == nullptr) {

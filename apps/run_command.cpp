@@ -61,8 +61,9 @@ public:
             if (stop_requested()) throw Interrupted();
             if (!specimens_.made(run)) progress_.busy(fmt::format("making {}", Specimens::packing_stem(run)));
             const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
-            const bool own_setting = job_.numerics.kind != NumericsKind::adaptive || job_.numerics.mass_factor;
-            if (own_setting) (void)preview_test(setup_of(job_, run, specimen), control_);
+            const NumericsSpec& numerics = run.variant->numerics;
+            const bool own_setting = numerics.kind != NumericsKind::adaptive || numerics.mass_factor;
+            if (own_setting) (void)preview_test(setup_of(run, specimen), control_);
         }
         progress_.clear();
         for (const PlannedRun& run : runs_)
@@ -86,7 +87,7 @@ public:
             } catch (const NumericalError& error) {
                 progress_.clear();
                 write_overview(false);
-                throw NumericalError(fmt::format("{}, seed {}: {}", title(*runs_[i].test), runs_[i].seed, error.what()));
+                throw NumericalError(fmt::format("{}: {}", label_of(runs_[i]), error.what()));
             }
         }
         progress_.clear();
@@ -97,7 +98,8 @@ public:
     bool interrupted() const { return interrupted_; }
 
     void print_results() const {
-        fmt::print("\n{}\n{}\n", property_table(job_, properties_), test_table(results_));
+        const std::string properties = job_.has_variants() ? variant_table(job_, results_) : property_table(job_, properties_);
+        fmt::print("\n{}\n{}\n", properties, test_table(results_));
         fmt::print("Report: {}\n", (directory_->path() / "report.html").string());
     }
 
@@ -106,9 +108,13 @@ public:
     std::size_t finished() const { return results_.size(); }
 
 private:
+    static std::string label_of(const PlannedRun& run) {
+        return fmt::format("{}, seed {}", title(run.variant->name, *run.test), run.seed);
+    }
+
     void run_one(std::size_t i) {
         const PlannedRun& run = runs_[i];
-        const std::string label = fmt::format("{}, seed {}", title(*run.test), run.seed);
+        const std::string label = label_of(run);
         const int number = static_cast<int>(i) + 1, count = static_cast<int>(runs_.size());
         const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
         const std::string packing = Specimens::packing_stem(run) + ".txt";
@@ -117,7 +123,8 @@ private:
             packings_.push_back(packing);
         }
         control_.progress = [&](const TestProgress& state) { progress_.report(number, count, label, state); };
-        TestResult result = run_test(setup_of(job_, run, specimen), control_);
+        TestResult result = run_test(setup_of(run, specimen), control_);
+        result.variant = run.variant->name;
         progress_.note(fmt::format("{}/{} {}: {}", number, count, label, test_line(result)));
         if (result.history.empty()) return;  // interrupted before the first row
         results_.push_back(std::move(result));
@@ -128,7 +135,7 @@ private:
     }
 
     void write_overview(bool complete) {
-        properties_ = summarise(results_);
+        if (!job_.has_variants()) properties_ = summarise(results_);  // else each variant has its own
         write_summary(*directory_, job_, results_, properties_, provenance_, complete);
         write_report(*directory_, job_, results_, properties_, provenance_, complete);
     }
@@ -166,6 +173,7 @@ Job job_with_options(const JobOptions& options) {
         throw InputError({{}, 0, 0, "--seed"}, "several seeds are asked for, but the job loads one packing", "one seed");
     job.seeds = options.seeds;
     for (TestSpec& test : job.tests) test.seeds.clear();
+    for (Variant& variant : job.variants) variant.seeds.clear();
     return job;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -12,6 +13,7 @@
 
 #include "campaign.hpp"
 #include "feldspar/output/user_units.hpp"
+#include "feldspar/output/variant_summary.hpp"
 #include "progress.hpp"
 
 namespace feldspar {
@@ -94,7 +96,76 @@ std::string peak_text(const TestResult& result) {
     return result.properties.peak_reached ? value : "> " + value;
 }
 
+// The properties that a comparison begins with, in the order of its columns.
+constexpr std::array compared_properties{"E_Pa",         "nu", "UCS_Pa", "DTS_Pa", "BTS_Pa", "cohesion_Pa", "friction_angle_deg",
+                                         "hoek_brown_mi"};
+
+std::string symbol_with_unit(const UserQuantity& quantity) {
+    const std::string symbol = quantity.name.substr(0, quantity.name.find('_'));
+    const std::string plain = quantity.name == "hoek_brown_mi" ? "mi" : quantity.name == "friction_angle_deg" ? "phi" : symbol;
+    return quantity.unit.empty() ? plain : plain + " " + quantity.unit;
+}
+
+std::string median_and_range(const PropertySummary& properties, const std::string& property) {
+    const auto found = properties.values.find(property);
+    if (found == properties.values.end()) return "-";
+    const PropertyStatistics& s = found->second;
+    const double factor = user_quantity(property).factor;
+    if (s.seeds.size() < 2) return number(s.median * factor);
+    return fmt::format("{} ({}..{})", number(s.median * factor), number(s.minimum * factor), number(s.maximum * factor));
+}
+
+std::string compared_table(const Job& job, const std::vector<VariantSummary>& summaries) {
+    std::vector<std::string> present;
+    for (const char* property : compared_properties)
+        if (std::any_of(summaries.begin(), summaries.end(),
+                        [&](const VariantSummary& s) { return s.properties.values.contains(property); }))
+            present.emplace_back(property);
+    if (present.empty()) return "No property could be read: no test reached its peak.\n";
+    std::vector<Row> rows{{"Variant"}};
+    for (const std::string& property : present) rows.front().push_back(symbol_with_unit(user_quantity(property)));
+    for (const VariantSummary& summary : summaries) {
+        rows.push_back({summary.variant->name});
+        for (const std::string& property : present) rows.back().push_back(median_and_range(summary.properties, property));
+    }
+    Row laboratory{"laboratory"};
+    for (const std::string& property : present) {
+        const auto known = std::find_if(job.laboratory.begin(), job.laboratory.end(),
+                                        [&](const auto& entry) { return property_of_laboratory(entry.first) == property; });
+        laboratory.push_back(known == job.laboratory.end() ? "" : number(laboratory_in_user_units(known->first, known->second)));
+    }
+    if (!job.laboratory.empty()) rows.push_back(laboratory);
+    return aligned(rows, 1) + "median (minimum..maximum) over the packings; strengths are positive magnitudes\n";
+}
+
+std::string cost_table(const std::vector<VariantSummary>& summaries) {
+    std::vector<TestKind> kinds;
+    for (const VariantSummary& summary : summaries)
+        for (const auto& [kind, cost] : summary.ms_per_step)
+            if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+    if (kinds.empty()) return {};
+    std::sort(kinds.begin(), kinds.end());
+    std::vector<Row> rows{{"ms a step"}};
+    for (TestKind kind : kinds) rows.front().emplace_back(name(kind));
+    for (const VariantSummary& summary : summaries) {
+        rows.push_back({summary.variant->name});
+        for (TestKind kind : kinds) {
+            const auto own = summary.ms_per_step.find(kind), first = summaries.front().ms_per_step.find(kind);
+            std::string cell = own == summary.ms_per_step.end() ? "-" : number(own->second);
+            if (own != summary.ms_per_step.end() && first != summaries.front().ms_per_step.end())
+                cell += fmt::format(" ({:.2f} x)", own->second / first->second);
+            rows.back().push_back(cell);
+        }
+    }
+    return "\n" + aligned(rows, 1) + fmt::format("in brackets: as a multiple of {}\n", summaries.front().variant->name);
+}
+
 }  // namespace
+
+std::string variant_table(const Job& job, std::span<const TestResult> results) {
+    const std::vector<VariantSummary> summaries = summarise_variants(job, results);
+    return compared_table(job, summaries) + cost_table(summaries);
+}
 
 std::string property_table(const Job& job, const PropertySummary& properties) {
     std::map<std::string, std::string> laboratory_name;  // of a property
@@ -126,8 +197,9 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
         rows.push_back(std::move(row));
     }
     std::string text = aligned(rows, 2);
-    text += fmt::format("median, minimum, maximum over n packings; plane {}; strengths are positive magnitudes\n",
-                        name(job.model.plane));
+    const ModelSpec& model = job.variants.front().model;
+    text += fmt::format("median, minimum, maximum over n packings; {}strengths are positive magnitudes\n",
+                        model.kind == GrainKind::flexible ? fmt::format("plane {}; ", name(model.plane)) : "");
     if (!properties.envelope_method.empty()) text += wrapped(properties.envelope_method, "");
     return text;
 }
@@ -136,12 +208,14 @@ std::string test_table(std::span<const TestResult> results) {
     if (results.empty()) return "No test ran.\n";
     std::vector<Row> rows{{"Test", "seed", "peak MPa", "cracks t + s", "steps", "time", "energy residual", "quasi-static"}};
     for (const TestResult& r : results)
-        rows.push_back({title(r.test), std::to_string(r.seed), peak_text(r), cracks_text(r), std::to_string(r.steps),
+        rows.push_back({title(r.variant, r.test), std::to_string(r.seed), peak_text(r), cracks_text(r), std::to_string(r.steps),
                         duration_text(r.wall_s), fmt::format("{:.3f} %", 100.0 * r.energy_residual),
                         std::string(1, r.evidence.grade)});
     std::string text = aligned(rows, 1);
     text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n";
     text += "quasi-static: A to about 0.5 %, B to about 2 %, C not shown\n";
+    if (std::any_of(results.begin(), results.end(), [](const TestResult& r) { return !r.variant.empty(); }))
+        return text + "the verdicts in words are in the report\n";
     for (const TestResult& r : results) {
         text += fmt::format("\n{}, seed {}{}\n", title(r.test), r.seed, r.interrupted ? " (interrupted)" : "");
         text += wrapped(r.evidence.verdict, "  ");

@@ -12,6 +12,9 @@ namespace feldspar {
 /// Properties of the rock: median, range, number of packings, and the laboratory's value with the deviation from it.
 std::string property_table(const Job& job, const PropertySummary& properties);
 
+/// One row a variant: the main properties, median and range; then the time of a step.
+std::string variant_table(const Job& job, std::span<const TestResult> results);
+
 /// The tests one by one: peak, cracks, steps, time, energy residual, and the verdict in words.
 std::string test_table(std::span<const TestResult> results);
 

@@ -28,6 +28,8 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
                                                       {"check"},
                                                       {"new"},
                                                       {"new", "triaxial"},
+                                                      {"new", "biaxial", "--presets"},
+                                                      {"new", "--presets", "--out", "x.toml"},
                                                       {"run", "job.toml", "--fast"},
                                                       {"run", "job.toml", "--threads", "0"},
                                                       {"run", "job.toml", "--threads", "many"},
@@ -69,6 +71,49 @@ TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {
                                                "minimum = \"8 mm\", maximum = \"12 mm\""));
     const Outcome check = run_program(place.path(), {"check", "coarse.toml"});
     EXPECT_EQ(check.code, 0) << check.err;
+}
+
+TEST(CommandLine, PrintsThePresets) {
+    const Workplace place;
+    const Outcome printed = run_program(place.path(), {"new", "--presets"});
+    EXPECT_EQ(printed.code, 0);
+    for (const char* part : {"augig-inner-particles", "augig-table7", "Table 2", "1.08e4 GPa/m"})
+        EXPECT_NE(printed.out.find(part), std::string::npos) << part;
+}
+
+std::string job_of_two_variants() {
+    return small_job(
+        "[[variant]]\nname = \"bilinear\"\n[[variant]]\nname = \"Brittle, 2\"\nseeds = [2]\n"
+        "[variant.material.contact]\nlaw = \"brittle\"\n[[test]]\nkind = \"direct-tension\"\n",
+        "[1, 2]");
+}
+
+TEST(CommandLine, ChecksEachVariantOnce) {
+    const Workplace place;
+    write_text(place / "job.toml", job_of_two_variants());
+    const Outcome outcome = run_program(place.path(), {"check", "job.toml"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* part :
+         {"3 runs of 1 tests and 2 variants", "\nbilinear\n", "\nBrittle, 2\n", "2 x direct-tension", "1 x direct-tension"})
+        EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
+}
+
+TEST(CommandLine, RunsVariantsPackingByPacking) {
+    const Workplace place;
+    write_text(place / "job.toml", job_of_two_variants());
+    const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "out"});
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const auto summary = nlohmann::json::parse(read_text(place / "out/summary.json"));
+    std::vector<std::string> order;
+    for (const auto& test : summary["tests"])
+        order.push_back(test["variant"].get<std::string>() + std::to_string(test["seed"].get<int>()));
+    EXPECT_EQ(order, (std::vector<std::string>{"bilinear1", "bilinear2", "Brittle, 22"}));
+    EXPECT_TRUE(summary["properties"].empty());
+    EXPECT_EQ(summary["variants"].size(), 2u);
+    for (const char* file : {"history-bilinear-direct-tension-s1.csv", "history-brittle-2-direct-tension-s2.csv",
+                             "bilinear-direct-tension-s2.h5", "report.html", "packing-s1.txt", "packing-s2.txt"})
+        EXPECT_TRUE(fs::exists(place / "out" / file)) << file;
+    EXPECT_NE(outcome.out.find("ms a step"), std::string::npos) << outcome.out;
 }
 
 TEST(CommandLine, CheckPrintsAndWritesNothing) {

@@ -161,6 +161,7 @@ void put_provenance(hid_t root, const TestResult& result, const Job& job, const 
     set_number(root, "threads", provenance.threads);
     set_text(root, "job_name", job.name);
     set_text(root, "signs", sign_convention);
+    if (!result.variant.empty()) set_text(root, "variant", result.variant);
     set_text(root, "kind", name(result.test.kind));
     set_number(root, "seed", static_cast<std::int64_t>(result.seed));
     set_number(root, "sigma3_MPa", result.test.sigma3_Pa * MPa);

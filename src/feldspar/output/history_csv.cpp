@@ -18,6 +18,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     auto line = std::back_inserter(text);
     fmt::format_to(line, "# history of {}, seed {}", name(result.test.kind), result.seed);
     if (result.test.kind == TestKind::biaxial) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
+    if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", result.variant);
     fmt::format_to(line, "\n# signs: {}\n", sign_convention);
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
                    name(result.model.contact), name(result.contact.law), name(result.numerics.kind), name(result.model.plane));
@@ -33,7 +34,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
 std::string test_stem(const TestResult& result) {
     std::string stem = fmt::format("{}-s{}", name(result.test.kind), result.seed);
     if (result.test.kind == TestKind::biaxial) stem += fmt::format("-p{:.6g}", result.test.sigma3_Pa * MPa);
-    return stem;
+    return result.variant.empty() ? stem : variant_stem(result.variant) + "-" + stem;
 }
 
 void write_history_csv(const RunDirectory& directory, const TestResult& result, const Provenance& provenance) {

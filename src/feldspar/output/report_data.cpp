@@ -8,6 +8,7 @@
 
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/user_units.hpp"
+#include "feldspar/output/variant_summary.hpp"
 
 namespace feldspar {
 
@@ -15,25 +16,31 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_rows = 600;  ///< of a history in the report; the CSV has them all
+constexpr std::size_t largest_row_count = 600;   ///< of a history in the report; the CSV has them all
+constexpr std::size_t smallest_row_count = 150;  ///< ... however many tests there are
+constexpr std::size_t most_rows_of_all = 24000;
 
-/// Row numbers that stay: evenly spread, with the first, the last and the peak.
-std::vector<std::size_t> kept_rows(const std::vector<HistoryRow>& history) {
+/// Row numbers that stay: evenly spread, with the first, the last, the strength and the largest stress.
+std::vector<std::size_t> kept_rows(const TestResult& result, std::size_t tests) {
+    const std::vector<HistoryRow>& history = result.history;
     std::vector<std::size_t> kept;
     if (history.empty()) return kept;
+    const std::size_t most_rows = std::clamp(most_rows_of_all / tests, smallest_row_count, largest_row_count);
     const std::size_t stride = (history.size() + most_rows - 1) / most_rows;
     const auto higher = [](const HistoryRow& a, const HistoryRow& b) {
         return std::abs(a.axial_stress_Pa) < std::abs(b.axial_stress_Pa);
     };
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
+    const std::size_t strength = strength_row(result);
     for (std::size_t r = 0; r < history.size(); ++r) {
-        if (r % stride == 0 || r == peak || r + 1 == history.size()) kept.push_back(r);
+        if (r % stride == 0 || r == peak || r == strength || r + 1 == history.size()) kept.push_back(r);
     }
     return kept;
 }
 
-Json history_json(const std::vector<HistoryRow>& history) {
-    const std::vector<std::size_t> kept = kept_rows(history);
+Json history_json(const TestResult& result, std::size_t tests) {
+    const std::vector<HistoryRow>& history = result.history;
+    const std::vector<std::size_t> kept = kept_rows(result, tests);
     Json json = Json::object();
     const auto column = [&](const char* name, auto value) {
         Json list = Json::array();
@@ -55,14 +62,21 @@ Json history_json(const std::vector<HistoryRow>& history) {
     column("friction", [](Row r) { return r.energy.friction; });
     column("damping", [](Row r) { return r.energy.damping; });
     column("kinetic", [](Row r) { return r.energy.kinetic; });
+    if (result.variant.empty()) return json;
+    const std::vector<double> share = broken_share(result);
+    column("displacement", [](Row r) { return r.platen_displacement_m * 1e3; });
+    column("broken", [&](Row r) {  // % of the contact area between grains
+        return 100.0 * share[std::min(static_cast<std::size_t>(r.cracks_tensile + r.cracks_shear), share.size() - 1)];
+    });
     return json;
 }
 
-Json test_json(const TestResult& result) {
+Json test_json(const TestResult& result, std::size_t tests) {
     const TestProperties& p = result.properties;
     const QuasiStaticEvidence& e = result.evidence;
     const auto tensile = std::ranges::count(result.cracks, CrackMode::tensile, &Crack::mode);
     Json test;
+    if (!result.variant.empty()) test["variant"] = result.variant;
     test["stem"] = test_stem(result);
     test["kind"] = name(result.test.kind);
     test["seed"] = result.seed;
@@ -92,7 +106,7 @@ Json test_json(const TestResult& result) {
     test["change_at_third"] = e.confirmed ? rounded(e.peak_change_at_third) : Json(nullptr);
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
-    test["history"] = history_json(result.history);
+    test["history"] = history_json(result, tests);
     return test;
 }
 
@@ -183,7 +197,42 @@ Json specimens_json(std::span<const TestResult> results) {
     return list;
 }
 
+Json model_json(const Variant& variant) {
+    return {{"grains", name(variant.model.kind)},
+            {"contact", name(variant.model.contact)},
+            {"plane", name(variant.model.plane)},
+            {"law", name(variant.contact.law)},
+            {"numerics", name(variant.numerics.kind)}};
+}
+
+Json variants_json(const Job& job, std::span<const TestResult> results) {
+    Json list = Json::array();
+    for (const VariantSummary& summary : summarise_variants(job, results)) {
+        const Variant& variant = *summary.variant;
+        Json json = {{"name", variant.name}};
+        json.update(model_json(variant));
+        json["normal"] = name(variant.model.normal);
+        json["Kn"] = rounded(variant.contact.Kn_Pa_m * GPa);
+        json["eta"] = rounded(variant.contact.eta);
+        json["E"] = variant.model.kind == GrainKind::flexible ? rounded(variant.grain.E_Pa * GPa) : Json(nullptr);
+        json["sigma_nt"] = rounded(variant.contact.sigma_nt_Pa * MPa);
+        json["tau"] = rounded(variant.contact.tau_Pa * MPa);
+        json["properties"] = properties_json(job, summary.properties);
+        json["envelope"] = envelope_json(summary.properties);
+        json["ms_per_step"] = Json::object();
+        for (const auto& [kind, cost] : summary.ms_per_step) json["ms_per_step"][name(kind)] = rounded(cost);
+        list.push_back(json);
+    }
+    return list;
+}
+
 }  // namespace
+
+std::size_t strength_row(const TestResult& result) {
+    for (std::size_t r = 0; r < result.history.size(); ++r)
+        if (std::abs(result.history[r].axial_stress_Pa) >= (1.0 - 1e-9) * result.properties.peak_stress_Pa) return r;
+    return result.history.empty() ? 0 : result.history.size() - 1;
+}
 
 Json rounded(double value) {
     if (!std::isfinite(value)) return nullptr;
@@ -197,18 +246,15 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     data["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}, {"seeds", job.seeds}};
     data["complete"] = complete;
     data["signs"] = sign_convention;
-    data["model"] = {{"grains", name(job.model.kind)},
-                     {"contact", name(job.model.contact)},
-                     {"plane", name(job.model.plane)},
-                     {"law", name(job.contact.law)},
-                     {"numerics", name(job.numerics.kind)}};
+    data["model"] = model_json(job.variants.front());
+    if (job.has_variants()) data["variants"] = variants_json(job, results);
     data["specimens"] = specimens_json(results);
-    data["properties"] = properties_json(job, properties);
+    data["properties"] = properties_json(job, job.has_variants() ? PropertySummary{} : properties);
     data["laboratory"] = Json::object();
     for (const auto& [property, value] : laboratory(job)) data["laboratory"][user_quantity(property).name] = rounded(value);
-    data["envelope"] = envelope_json(properties);
+    data["envelope"] = envelope_json(job.has_variants() ? PropertySummary{} : properties);
     data["tests"] = Json::array();
-    for (const TestResult& result : results) data["tests"].push_back(test_json(result));
+    for (const TestResult& result : results) data["tests"].push_back(test_json(result, results.size()));
     data["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
                           {"machine", provenance.machine},          {"compiler", provenance.compiler},
                           {"started", provenance.started},          {"threads", provenance.threads},

@@ -22,9 +22,16 @@ struct ReportFields {             // NOLINT(bugprone-exception-escape): moving t
     std::string block;            ///< zlib-compressed, base64
 };
 
-/// The fields of the first test of each kind (and sigma_3) that fit into `budget_B` characters. A test that does not fit as a
-/// whole keeps its first crack, peak and end; one that does not fit then either is left out.
+/// The fields of the first test of each variant, kind (and sigma_3) that fit into `budget_B` characters. A test that does not fit
+/// as a whole keeps its first crack, peak and end, or its end alone; one that does not fit then either is left out. Variants
+/// share the budget evenly.
 std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B);
+
+/// The cracks of every test over the grains of its packing, one block a packing: for patterns side by side.
+std::vector<ReportFields> report_patterns(std::span<const TestResult> results);
+
+/// The row of the history that first shows the strength, of a Brazilian test the first peak; the last one if none does.
+std::size_t strength_row(const TestResult& result);
 
 /// A row's rounded value: six digits are more than a screen shows.
 nlohmann::ordered_json rounded(double value);

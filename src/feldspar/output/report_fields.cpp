@@ -19,11 +19,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/crack_geometry.hpp"
+#include "feldspar/output/report_block.hpp"
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/user_units.hpp"
 
@@ -32,32 +34,6 @@ namespace feldspar {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Collects the parts of a block and where they lie.
-class Block {
-public:
-    template <class Number>
-    void add(const std::string& name, const char* type, const std::vector<Number>& values) {
-        bytes_.resize((bytes_.size() + 7) / 8 * 8);
-        parts_[name] = {{"type", type}, {"at", bytes_.size()}, {"count", values.size()}};
-        const std::size_t at = bytes_.size();
-        bytes_.resize(at + values.size() * sizeof(Number));
-        if (!values.empty()) std::memcpy(bytes_.data() + at, values.data(), values.size() * sizeof(Number));
-    }
-    const Json& parts() const { return parts_; }
-
-    std::string packed() const {
-        uLongf size = compressBound(bytes_.size());
-        std::vector<std::uint8_t> packed(size);
-        if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK)
-            throw OutputError("zlib could not compress the report's fields");
-        return base64({packed.data(), size});
-    }
-
-private:
-    std::vector<std::uint8_t> bytes_;
-    Json parts_ = Json::object();
-};
 
 /// A stress field's range without its extremes: single triangles at crack tips would wash out the rest.
 struct Limits {
@@ -208,7 +184,26 @@ bool can_be_drawn(const TestResult& result) {
     });
 }
 
+/// Snapshots to keep: all; or first crack, peak and end; or the end alone.
+std::array<std::vector<std::size_t>, 3> moments_of(const TestResult& result) {
+    std::vector<std::size_t> all, few;
+    for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
+        all.push_back(n);
+        const std::string& label = result.snapshots[n].label;
+        if (label == "first-crack" || label == "peak" || label == "end") few.push_back(n);
+    }
+    return {all, few, {result.snapshots.size() - 1}};
+}
+
 }  // namespace
+
+std::string Block::packed() const {
+    uLongf size = compressBound(bytes_.size());
+    std::vector<std::uint8_t> packed(size);
+    if (compress2(packed.data(), &size, bytes_.data(), bytes_.size(), 6) != Z_OK)
+        throw OutputError("zlib could not compress the report's fields");
+    return base64({packed.data(), size});
+}
 
 std::string base64(std::span<const std::uint8_t> bytes) {
     constexpr const char* letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -224,23 +219,25 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B) {
+    using Group = std::tuple<std::string, TestKind, double>;  // variant, kind, sigma_3
+    const auto group_of = [](const TestResult& r) { return Group(r.variant, r.test.kind, r.test.sigma3_Pa); };
+    std::set<Group> open;
+    std::set<std::string> variants;
+    for (const TestResult& result : results) {
+        if (!can_be_drawn(result)) continue;
+        open.insert(group_of(result));
+        variants.insert(result.variant);
+    }
     std::vector<ReportFields> list;
-    std::vector<std::pair<TestKind, double>> seen;
     for (std::size_t r = 0; r < results.size(); ++r) {
-        const TestResult& result = results[r];
-        const std::pair group(result.test.kind, result.test.sigma3_Pa);
-        if (!can_be_drawn(result) || std::ranges::find(seen, group) != seen.end()) continue;
-        seen.push_back(group);
-        std::vector<std::size_t> all, few;
-        for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
-            all.push_back(n);
-            const std::string& label = result.snapshots[n].label;
-            if (label == "first-crack" || label == "peak" || label == "end") few.push_back(n);
-        }
-        for (const auto& chosen : {all, few}) {
+        if (!can_be_drawn(results[r]) || !open.contains(group_of(results[r]))) continue;
+        // variants are there to be compared: each gets the same share, and passes on what it does not need
+        const std::size_t share = variants.size() > 1 ? budget_B / open.size() : budget_B;
+        open.erase(group_of(results[r]));
+        for (const auto& chosen : moments_of(results[r])) {
             if (chosen.empty()) continue;
-            ReportFields fields = fields_of(result, r, chosen);
-            if (fields.block.size() > budget_B) continue;
+            ReportFields fields = fields_of(results[r], r, chosen);
+            if (fields.block.size() > share) continue;
             budget_B -= fields.block.size();
             list.push_back(std::move(fields));
             break;

@@ -53,6 +53,10 @@ std::string script_json(const nlohmann::ordered_json& json) {
     return safe;
 }
 
+std::string script_block(const std::string& id, const std::string& text) {
+    return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, text);
+}
+
 /// Replaces each {{mark}} of the page once, in the order of the page, so that nothing inserted is searched for marks.
 class Page {
 public:
@@ -76,13 +80,21 @@ private:
 void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
                   const PropertySummary& properties, const Provenance& provenance, bool complete) {
     nlohmann::ordered_json data = report_data(job, results, properties, provenance, complete);
-    data["fields"] = nlohmann::ordered_json::array();
-    const std::size_t used = script_json(data).size();
-    const auto fields = report_fields(results, used < largest_report_B ? largest_report_B - used : 0);
     std::string blocks;
+    data["patterns"] = nlohmann::ordered_json::array();
+    if (job.has_variants()) {
+        const auto patterns = report_patterns(results);
+        for (std::size_t p = 0; p < patterns.size(); ++p) {
+            data["patterns"].push_back(patterns[p].meta);
+            blocks += script_block(fmt::format("pattern-{}", p), patterns[p].block);
+        }
+    }
+    data["fields"] = nlohmann::ordered_json::array();
+    const std::size_t used = script_json(data).size() + blocks.size();
+    const auto fields = report_fields(results, used < largest_report_B ? largest_report_B - used : 0);
     for (std::size_t f = 0; f < fields.size(); ++f) {
         data["fields"].push_back(fields[f].meta);
-        blocks += fmt::format("<script type=\"text/plain\" id=\"fields-{}\">{}</script>\n", f, fields[f].block);
+        blocks += script_block(fmt::format("fields-{}", f), fields[f].block);
     }
     Page page(asset_report_html);
     page.fill("title", escaped(job.name));
@@ -93,6 +105,7 @@ void write_report(const RunDirectory& directory, const Job& job, std::span<const
     page.fill("uplot_js", asset_uPlot_iife_min_js);
     page.fill("charts_js", asset_charts_js);
     page.fill("viewer_js", asset_viewer_js);
+    page.fill("compare_js", asset_compare_js);
     page.fill("report_js", asset_report_js);
     directory.write_text("report.html", page.text());
 }

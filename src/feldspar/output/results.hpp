@@ -51,7 +51,8 @@ private:
     std::filesystem::path path_;
 };
 
-/// "uniaxial-compression-s3", "biaxial-s1-p4": the stem of a test's files (seed; sigma_3 in MPa for biaxial tests).
+/// "uniaxial-compression-s3", "biaxial-s1-p4": the stem of a test's files (seed; sigma_3 in MPa for biaxial tests), behind
+/// the variant's own: "rigid-brittle-uniaxial-compression-s3".
 std::string test_stem(const TestResult& result);
 
 /// history-<stem>.csv: units and sign convention in the header.

@@ -9,6 +9,7 @@
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
+#include "feldspar/output/variant_summary.hpp"
 
 namespace feldspar {
 
@@ -52,6 +53,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     int tensile = 0;
     for (const Crack& crack : result.cracks) tensile += crack.mode == CrackMode::tensile ? 1 : 0;
     Json test;
+    if (!result.variant.empty()) test["variant"] = result.variant;
     test["kind"] = name(result.test.kind);
     test["model"] = name(result.model.kind);
     test["contact"] = name(result.model.contact);
@@ -182,6 +184,24 @@ Json envelope_json(const PropertySummary& properties) {
     return {{"method", properties.envelope_method}, {"fits", fits}};
 }
 
+Json variants_json(const Job& job, std::span<const TestResult> results) {
+    Json list = Json::array();
+    for (const VariantSummary& summary : summarise_variants(job, results)) {
+        const Variant& variant = *summary.variant;
+        Json costs = Json::object();
+        for (const auto& [kind, cost] : summary.ms_per_step) costs[name(kind)] = number(cost);
+        list.push_back({{"name", variant.name},
+                        {"model", name(variant.model.kind)},
+                        {"contact", name(variant.model.contact)},
+                        {"normal", name(variant.model.normal)},
+                        {"law", name(variant.contact.law)},
+                        {"properties", properties_json(summary.properties)},
+                        {"envelope", envelope_json(summary.properties)},
+                        {"ms_per_step", costs}});
+    }
+    return list;
+}
+
 }  // namespace
 
 void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
@@ -199,9 +219,12 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
         summary["specimen"] = summary["brazilian_specimen"];
     summary["tests"] = Json::array();
     for (const TestResult& result : results) summary["tests"].push_back(test_json(directory, result));
-    summary["properties"] = properties_json(properties);
+    if (job.has_variants()) summary["variants"] = variants_json(job, results);
+    // properties of several variants are not those of one rock
+    const PropertySummary whole = job.has_variants() ? PropertySummary{} : properties;
+    summary["properties"] = properties_json(whole);
     summary["laboratory"] = laboratory_json(job);
-    summary["envelope"] = envelope_json(properties);
+    summary["envelope"] = envelope_json(whole);
     summary["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}};
     summary["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
                              {"machine", provenance.machine},          {"compiler", provenance.compiler},

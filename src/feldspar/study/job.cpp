@@ -62,41 +62,47 @@ SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m) {
     return disc;
 }
 
+// A packing that is loaded has no other seeds.
+void check_one_packing(const TableReader& root, const Job& job) {
+    if (job.specimen.packing_file.empty()) return;
+    bool several = job.seeds.size() > 1;
+    for (const TestSpec& test : job.tests)
+        several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
+    if (several)
+        root.table("specimen",
+                   {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
+            .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
+}
+
 }  // namespace
 
 Job parse_job(const std::string& text, const std::string& name) {
     const toml::table tree = parse_toml(text, name);
-    const TableReader root(tree, "", name, {"name", "specimen", "model", "material", "numerics", "test", "run", "laboratory"});
+    const TableReader root(
+        tree, "", name, {"name", "specimen", "model", "material", "numerics", "variant", "test", "run", "laboratory"}, job_level);
     Job job;
     job.file = name;
     job.text = text;
     job.name = read_name(root, job.file);
-    root.require({"specimen", "material", "test"});
+    if (root.has("variant"))
+        root.require({"specimen", "test"});
+    else
+        root.require({"specimen", "material", "test"});
 
     const RunSettings run = read_run(root);
     job.seeds = run.seeds;
     job.threads = run.threads;
-    job.specimen = read_specimen(root, job.file.parent_path());
-    job.model = read_model(root);
-    const TableReader material = root.table("material", {"grain", "contact"});
-    material.require({"grain", "contact"});
-    job.grain = read_grain_material(material, job.model);
-    job.contact = read_contact_material(material);
-    job.numerics = read_numerics(root);
-    TestList tests = read_tests(root, job.specimen, job.seeds);
+    job.variants = read_variants(root);
+    const bool filled = std::any_of(job.variants.begin(), job.variants.end(),
+                                    [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
+    job.specimen = read_specimen(root, job.file.parent_path(), filled);
+    TestList tests = read_tests(root, job.specimen, job.variants, job.seeds);
     job.tests = std::move(tests.tests);
     if (tests.brazilian_diameter_m) job.brazilian_specimen = disc_of(job.specimen, *tests.brazilian_diameter_m);
+    check_variants(root, job);
     job.laboratory = read_laboratory(root);
 
-    if (!job.specimen.packing_file.empty()) {
-        bool several = job.seeds.size() > 1;
-        for (const TestSpec& test : job.tests)
-            several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
-        if (several)
-            root.table("specimen",
-                       {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
-                .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
-    }
+    check_one_packing(root, job);
     return job;
 }
 

@@ -1,6 +1,7 @@
 // A job file, read and checked: every key known, every unit converted once, every impossible value refused.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -12,22 +13,42 @@
 
 namespace feldspar {
 
-/// A whole job, in SI.
-struct Job {
-    std::filesystem::path file;            ///< as given
-    std::string name;                      ///< from the key `name`, else the file's stem
-    std::string text;                      ///< the file as it was read, for provenance
-    SpecimenSpec specimen;                 ///< for compression and tension
-    SpecimenSpec brazilian_specimen;       ///< the disc of the Brazilian test: same grains, its own outline
+/// One way to model the rock; all variants of a job share its packings and its tests.
+struct Variant {
+    std::string name;  ///< empty if the job has no [[variant]]
+    std::string stem;  ///< the name as the beginning of file names
     ModelSpec model;
     GrainMaterial grain;
     ContactMaterial contact;
     NumericsSpec numerics;
+    std::vector<std::uint64_t> seeds;  ///< of the job's; empty = all
+    std::vector<TestKind> tests;       ///< of the job's; empty = all
+
+    bool runs(TestKind kind) const { return tests.empty() || std::find(tests.begin(), tests.end(), kind) != tests.end(); }
+    bool runs(const TestSpec& test, std::uint64_t seed) const {
+        return runs(test.kind) && (seeds.empty() || std::find(seeds.begin(), seeds.end(), seed) != seeds.end());
+    }
+};
+
+/// A whole job, in SI.
+struct Job {
+    std::filesystem::path file;         ///< as given
+    std::string name;                   ///< from the key `name`, else the file's stem
+    std::string text;                   ///< the file as it was read, for provenance
+    SpecimenSpec specimen;              ///< for compression and tension
+    SpecimenSpec brazilian_specimen;    ///< the disc of the Brazilian test: same grains, its own outline
+    std::vector<Variant> variants{{}};  ///< at least one; a single one without a name if the job has no [[variant]]
     std::vector<TestSpec> tests;
     std::vector<std::uint64_t> seeds;
-    int threads = 0;                       ///< 0 = as many as the machine has cores
-    std::map<std::string, double> laboratory;  ///< SI (radians for angles), by the names of `summary.json`: E, nu, UCS, DTS, BTS, cohesion, friction_angle, hoek_brown_mi
+    int threads = 0;                           ///< 0 = as many as the machine has cores
+    std::map<std::string, double> laboratory;  ///< SI (radians for angles), by the names of `summary.json`: E, nu, UCS, DTS, BTS,
+                                               ///< cohesion, friction_angle, hoek_brown_mi
+
+    bool has_variants() const { return variants.size() > 1 || !variants.front().name.empty(); }
 };
+
+/// A variant's name as the beginning of a file name: "Rigid, brittle" -> "rigid-brittle".
+std::string variant_stem(const std::string& name);
 
 /// Reads and checks a job file. @throws InputError naming file, line, column, key, value and what is allowed.
 Job read_job(const std::filesystem::path& file);

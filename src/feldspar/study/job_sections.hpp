@@ -12,25 +12,35 @@
 
 namespace feldspar {
 
-/// [specimen]. A relative path of a packing counts from `folder`.
-SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder);
+/// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles.
+SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, bool filled);
 
-/// [model]; every key has a default.
-ModelSpec read_model(const TableReader& root);
+/// [model], [material] and [numerics] of the job, or of one of its variants, whose tables lie over the job's.
+struct Physics {
+    ModelSpec model;
+    GrainMaterial grain;
+    ContactMaterial contact;
+    NumericsSpec numerics;
+};
+Physics read_physics(const TableReader& root, const TableReader* variant);
 
-/// [material.grain] and [material.contact].
-GrainMaterial read_grain_material(const TableReader& material, const ModelSpec& model);
-ContactMaterial read_contact_material(const TableReader& material);
+/// [[variant]]: always one at least; a job without the list has one without a name.
+std::vector<Variant> read_variants(const TableReader& root);
 
-/// [numerics]; every key has a default except the speed of `kind = "dynamic"`.
-NumericsSpec read_numerics(const TableReader& root);
+/// @throws InputError for a variant whose seeds or tests are not the job's, or which would run nothing.
+void check_variants(const TableReader& root, const Job& job);
+
+/// The levels of tables that lie over each other; a preset's is one more than that of the table that names it.
+inline constexpr int variant_level = 0;
+inline constexpr int job_level = 2;
 
 /// [[test]], lists of sigma3 expanded.
 struct TestList {
     std::vector<TestSpec> tests;
     std::optional<double> brazilian_diameter_m;  ///< present if there is a Brazilian test
 };
-TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<std::uint64_t>& run_seeds);
+TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
+                    const std::vector<std::uint64_t>& run_seeds);
 
 /// [run]: seeds and threads.
 struct RunSettings {

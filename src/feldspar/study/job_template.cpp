@@ -34,7 +34,7 @@ porosity = 0.10                     # sets the number of grains only: the grains
 # triangles_per_grain = 0           # 0: the standard mesh of about 15 triangles; or about so many
 
 [model]
-kind = "flexible"                   # grains of elastic triangles
+kind = "flexible"                   # grains of elastic triangles; also "rigid" and "inner-particles", which take no E and nu
 contact = "lobatto3"                # three contact points on a grain edge; "point": one in the middle
 plane = "stress"                    # or "strain"
 

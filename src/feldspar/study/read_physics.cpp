@@ -1,54 +1,192 @@
+// One variant's physics: its own tables lie over the job's, and each over the presets that it names.
 #include <algorithm>
+#include <array>
 
 #include "feldspar/study/job_sections.hpp"
+#include "feldspar/study/presets.hpp"
 
 namespace feldspar {
 namespace {
 
-enum class AnyGrainKind { flexible, rigid, inner_particles };
-
 const Range poisson_range{-1.0, 0.5, false, false, "greater than -1 and less than 0.5"};
 
-}  // namespace
+constexpr auto model_keys = std::to_array<std::string_view>({"kind", "contact", "normal", "plane"});
+constexpr auto material_keys = std::to_array<std::string_view>({"elastic_preset", "strength_preset", "grain", "contact"});
+constexpr auto grain_keys = std::to_array<std::string_view>({"E", "nu", "density"});
+constexpr auto contact_keys = std::to_array<std::string_view>(
+    {"law", "Kn", "eta", "kratio", "sigma_nt", "tau", "mu", "Gfn", "Gfs", "shear_measure", "tension_unloading"});
+constexpr auto numerics_keys = std::to_array<std::string_view>(
+    {"kind", "accuracy", "residual_target", "damping", "speed", "mass_factor", "time_step", "maximum_steps", "confirm"});
 
-ModelSpec read_model(const TableReader& root) {
-    ModelSpec model;
-    if (!root.has("model")) return model;
-    const TableReader table = root.table("model", {"kind", "contact", "normal", "plane"});
-    const auto kind = table.choice<AnyGrainKind>("kind",
-                                                 {{"flexible", AnyGrainKind::flexible},
-                                                  {"rigid", AnyGrainKind::rigid},
-                                                  {"inner-particles", AnyGrainKind::inner_particles}},
-                                                 AnyGrainKind::flexible);
-    if (kind != AnyGrainKind::flexible)
-        table.fail("kind", shown(*table.find("kind")) + " is not available yet in this version", "flexible");
-    model.contact =
-        table.choice<ContactKind>("contact", {{"lobatto3", ContactKind::lobatto3}, {"point", ContactKind::point}}, model.contact);
-    model.plane =
-        table.choice<PlaneState>("plane", {{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}, model.plane);
-    const bool edge = table.choice<bool>("normal", {{"centres", false}, {"edge", true}}, false);
-    if (edge)
-        table.fail("normal", "'edge' belongs to kind = \"inner-particles\", which is not available yet in this version",
-                   "centres");
-    return model;
+using Layers = std::vector<TableReader>;
+
+// The table `key` of every holder that has it.
+Layers tables_of(const Layers& holders, std::string_view key, std::span<const std::string_view> known) {
+    Layers found;
+    for (const TableReader& holder : holders)
+        if (holder.has(key)) found.push_back(holder.table(key, known));
+    return found;
 }
 
-GrainMaterial read_grain_material(const TableReader& material, const ModelSpec& model) {
-    const TableReader table = material.table("grain", {"E", "nu", "density"});
-    table.require({"E", "nu"});
+// One table that looks through all layers, or nothing.
+std::optional<TableReader> laid_over(Layers layers) {
+    std::stable_sort(layers.begin(), layers.end(),
+                     [](const TableReader& a, const TableReader& b) { return a.level() > b.level(); });
+    std::optional<TableReader> whole;
+    for (const TableReader& layer : layers) whole = whole ? layer.over(*whole) : layer;
+    return whole;
+}
+
+std::string kind_setting(GrainKind kind) { return std::string("kind = \"") + name(kind) + "\""; }
+
+// The model, and the level of the table that chose its kind: what lies deeper and does not suit it is put aside.
+struct ReadModel {
+    ModelSpec model;
+    int decided_at = not_given;
+};
+
+void refuse_value(const TableReader& table, std::string_view key, const ReadModel& read, const std::string& why,
+                  const std::string& allowed) {
+    if (table.level_of(key) > read.decided_at || !table.has(key)) return;
+    table.fail(key, shown(*table.find(key)) + " does not apply to " + kind_setting(read.model.kind) + why, allowed);
+}
+
+void suit_contact(const TableReader& table, ReadModel& read) {
+    if (read.model.kind != GrainKind::inner_particles) return;
+    if (read.model.contact == ContactKind::lobatto3)
+        refuse_value(table, "contact", read, ": particles touch at one point", "\"point\", or leave it out");
+    read.model.contact = ContactKind::point;
+}
+
+void suit_normal(const TableReader& table, ReadModel& read) {
+    if (read.model.kind == GrainKind::inner_particles || read.model.normal == ContactNormal::centres) return;
+    refuse_value(table, "normal", read, "", "\"centres\"; \"edge\" belongs to kind = \"inner-particles\"");
+    read.model.normal = ContactNormal::centres;
+}
+
+void suit_plane(const TableReader& table, ReadModel& read) {
+    if (read.model.kind == GrainKind::flexible || read.model.plane == PlaneState::stress) return;
+    refuse_value(table, "plane", read, ": a two-dimensional assembly without elastic constants knows no plane state",
+                 "leave it out; \"strain\" belongs to kind = \"flexible\"");
+    read.model.plane = PlaneState::stress;
+}
+
+ReadModel read_model(const std::optional<TableReader>& found) {
+    ReadModel read;
+    if (!found) return read;
+    const TableReader& table = *found;
+    ModelSpec& model = read.model;
+    model.kind = table.choice<GrainKind>(
+        "kind", {{"flexible", GrainKind::flexible}, {"rigid", GrainKind::rigid}, {"inner-particles", GrainKind::inner_particles}},
+        model.kind);
+    read.decided_at = table.level_of("kind");
+    model.contact =
+        table.choice<ContactKind>("contact", {{"lobatto3", ContactKind::lobatto3}, {"point", ContactKind::point}}, model.contact);
+    model.normal =
+        table.choice<ContactNormal>("normal", {{"centres", ContactNormal::centres}, {"edge", ContactNormal::edge}}, model.normal);
+    model.plane =
+        table.choice<PlaneState>("plane", {{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}, model.plane);
+    suit_contact(table, read);
+    suit_normal(table, read);
+    suit_plane(table, read);
+    return read;
+}
+
+const Preset& preset_of(const TableReader& material, std::string_view key, std::span<const Preset> presets) {
+    const std::string given = material.text(key);
+    std::vector<std::string_view> names;
+    for (const Preset& preset : presets) {
+        if (preset.name == given) return preset;
+        names.push_back(preset.name);
+    }
+    material.fail(key, "'" + given + "' is not a preset", listed(names), did_you_mean(given, names));
+}
+
+// A preset fitted for other grains would give them the wrong stiffness without a word.
+void check_kind(const TableReader& material, const Preset& preset, GrainKind kind) {
+    if (!preset.kind || *preset.kind == kind) return;
+    std::vector<std::string_view> right;
+    for (const Preset& other : elastic_presets())
+        if (other.kind == kind) right.push_back(other.name);
+    material.fail(
+        "elastic_preset",
+        "'" + std::string(preset.name) + "' is for " + kind_setting(*preset.kind) + ", but here it meets " + kind_setting(kind),
+        listed(right));
+}
+
+// The presets that hold for this variant, as layers under the tables that name them.
+struct MaterialTables {
+    TableReader all;                     // [material]
+    std::optional<TableReader> grain;    // [material.grain] over presets
+    std::optional<TableReader> contact;  // [material.contact] over presets
+};
+
+MaterialTables material_tables(const Layers& holders, GrainKind kind) {
+    const Layers materials = tables_of(holders, "material", material_keys);
+    if (materials.empty()) holders.front().require({"material"});
+    MaterialTables result{*laid_over(materials), {}, {}};
+    Layers grains = tables_of(materials, "grain", grain_keys), contacts = tables_of(materials, "contact", contact_keys);
+    const auto add_preset = [&](std::string_view key, std::span<const Preset> presets) {
+        if (!result.all.has(key)) return;
+        const Preset& preset = preset_of(result.all, key, presets);
+        check_kind(result.all, preset, kind);
+        const TableReader table =
+            TableReader(preset_table(preset), "material", result.all.file(), {"grain", "contact"}, result.all.level_of(key) + 1)
+                .placed_at(*result.all.find(key));
+        if (table.has("grain")) grains.push_back(table.table("grain", grain_keys));
+        if (table.has("contact")) contacts.push_back(table.table("contact", contact_keys));
+    };
+    add_preset("elastic_preset", elastic_presets());
+    add_preset("strength_preset", strength_presets());
+    result.grain = laid_over(grains);
+    result.contact = laid_over(contacts);
+    return result;
+}
+
+GrainMaterial read_grain(const MaterialTables& material, const ReadModel& read) {
     GrainMaterial grain;
+    const bool flexible = read.model.kind == GrainKind::flexible;
+    if (flexible && !material.grain) material.all.require({"grain"});
+    if (!material.grain) return grain;
+    const TableReader& table = *material.grain;
+    grain.density_kg_m3 = table.quantity("density", Dimension::density, positive, grain.density_kg_m3);
+    if (!flexible) {
+        table.refuse({"E", "nu"}, kind_setting(read.model.kind) + ": these grains have no elastic constants",
+                     "density; the specimen deforms by Kn and eta of its contacts", read.decided_at);
+        return grain;
+    }
+    table.require({"E", "nu"});
     grain.E_Pa = table.quantity("E", Dimension::stress, positive);
     Range range = poisson_range;
-    if (model.plane == PlaneState::strain)
+    if (read.model.plane == PlaneState::strain)
         range.words = "greater than -1 and less than 0.5 (at 0.5 the stiffness in plane strain is infinite)";
     grain.nu = table.number("nu", range);
-    grain.density_kg_m3 = table.quantity("density", Dimension::density, positive, grain.density_kg_m3);
     return grain;
 }
 
-ContactMaterial read_contact_material(const TableReader& material) {
-    const TableReader table = material.table(
-        "contact", {"law", "Kn", "eta", "kratio", "sigma_nt", "tau", "mu", "Gfn", "Gfs", "shear_measure", "tension_unloading"});
+// ks / kn, given itself or as its inverse; of two tables the upper one counts.
+double read_eta(const TableReader& table) {
+    if (!table.has("eta") && !table.has("kratio")) table.fail("eta", "missing key: eta", "eta = ks/kn, or kratio = kn/ks");
+    if (table.has("eta") && table.level_of("eta") == table.level_of("kratio"))
+        table.fail("kratio", "given beside eta, of which it is the inverse", "either eta = ks/kn or kratio = kn/ks");
+    const bool inverse = table.level_of("kratio") < table.level_of("eta");
+    return inverse ? 1.0 / table.number("kratio", positive) : table.number("eta", positive);
+}
+
+void read_softening(const TableReader& table, ContactMaterial& contact) {
+    contact.Gfn_J_m2 = table.quantity("Gfn", Dimension::fracture_energy, positive);
+    contact.Gfs_J_m2 = table.quantity("Gfs", Dimension::fracture_energy, positive);
+    contact.shear_measure = table.choice<ShearMeasure>(
+        "shear_measure", {{"total", ShearMeasure::total}, {"beyond-friction", ShearMeasure::beyond_friction}},
+        contact.shear_measure);
+    contact.tension_unloading = table.choice<TensionUnloading>(
+        "tension_unloading", {{"elastic", TensionUnloading::elastic}, {"secant", TensionUnloading::secant}},
+        contact.tension_unloading);
+}
+
+ContactMaterial read_contact(const MaterialTables& material) {
+    if (!material.contact) material.all.require({"contact"});
+    const TableReader& table = *material.contact;
     ContactMaterial contact;
     contact.law = table.choice<ContactLaw>("law",
                                            {{"bilinear", ContactLaw::bilinear},
@@ -60,73 +198,89 @@ ContactMaterial read_contact_material(const TableReader& material) {
     if (softens) {
         table.require({"Kn", "sigma_nt", "tau", "mu", "Gfn", "Gfs"});
     } else {
-        table.refuse({"Gfn", "Gfs", "shear_measure", "tension_unloading"}, "law = \"brittle\", which does not soften");
+        table.refuse({"Gfn", "Gfs", "shear_measure", "tension_unloading"}, "law = \"brittle\", which does not soften", {},
+                     table.level_of("law"));
         table.require({"Kn", "sigma_nt", "tau", "mu"});
     }
     contact.Kn_Pa_m = table.quantity("Kn", Dimension::stiffness_gradient, positive);
-    if (table.has("eta") && table.has("kratio"))
-        table.fail("kratio", "given beside eta, of which it is the inverse", "either eta = ks/kn or kratio = kn/ks");
-    if (!table.has("eta") && !table.has("kratio")) table.fail("eta", "missing key: eta", "eta = ks/kn, or kratio = kn/ks");
-    contact.eta = table.has("eta") ? table.number("eta", positive) : 1.0 / table.number("kratio", positive);
+    contact.eta = read_eta(table);
     contact.sigma_nt_Pa = table.quantity("sigma_nt", Dimension::stress, positive);
     contact.tau_Pa = table.quantity("tau", Dimension::stress, positive);
     contact.mu = table.number("mu", not_negative);
-    if (softens) {
-        contact.Gfn_J_m2 = table.quantity("Gfn", Dimension::fracture_energy, positive);
-        contact.Gfs_J_m2 = table.quantity("Gfs", Dimension::fracture_energy, positive);
-        contact.shear_measure = table.choice<ShearMeasure>(
-            "shear_measure", {{"total", ShearMeasure::total}, {"beyond-friction", ShearMeasure::beyond_friction}},
-            contact.shear_measure);
-        contact.tension_unloading = table.choice<TensionUnloading>(
-            "tension_unloading", {{"elastic", TensionUnloading::elastic}, {"secant", TensionUnloading::secant}},
-            contact.tension_unloading);
-    }
+    if (softens) read_softening(table, contact);
     return contact;
 }
 
-NumericsSpec read_numerics(const TableReader& root) {
-    NumericsSpec numerics;
-    if (!root.has("numerics")) return numerics;
-    const TableReader table = root.table("numerics", {"kind", "accuracy", "residual_target", "damping", "speed", "mass_factor",
-                                                      "time_step", "maximum_steps", "confirm"});
-    numerics.kind = table.choice<NumericsKind>(
-        "kind", {{"adaptive", NumericsKind::adaptive}, {"paper", NumericsKind::paper}, {"dynamic", NumericsKind::dynamic}},
-        numerics.kind);
-    switch (numerics.kind) {
+void refuse_other_numerics(const TableReader& table, NumericsKind kind) {
+    const int decided_at = table.level_of("kind");
+    switch (kind) {
         case NumericsKind::adaptive:
             table.refuse({"speed"}, "kind = \"adaptive\", which finds its own speed",
-                         "accuracy; or kind = \"paper\" or \"dynamic\" with a speed");
+                         "accuracy; or kind = \"paper\" or \"dynamic\" with a speed", decided_at);
             table.refuse({"damping", "time_step"}, "kind = \"adaptive\"",
-                         "accuracy, residual_target, mass_factor, maximum_steps, confirm");
+                         "accuracy, residual_target, mass_factor, maximum_steps, confirm", decided_at);
             break;
         case NumericsKind::paper:
             table.refuse({"accuracy", "residual_target", "time_step"}, "kind = \"paper\"",
-                         "damping, speed, mass_factor, maximum_steps, confirm");
+                         "damping, speed, mass_factor, maximum_steps, confirm", decided_at);
             break;
         case NumericsKind::dynamic:
             table.refuse({"accuracy", "residual_target", "mass_factor"}, "kind = \"dynamic\"",
-                         "damping, speed, time_step, maximum_steps, confirm");
+                         "damping, speed, time_step, maximum_steps, confirm", decided_at);
             table.require({"speed"});
             break;
+    }
+}
+
+void read_accuracy(const TableReader& table, NumericsSpec& numerics) {
+    const bool target = table.has("residual_target");
+    if (target && table.level_of("accuracy") == table.level_of("residual_target"))
+        table.fail("residual_target", "given beside accuracy, which it would override", "one of the two");
+    if (target && table.level_of("residual_target") < table.level_of("accuracy")) {
+        numerics.residual_target = table.number("residual_target", {0.0, 0.5, false, true, "greater than 0, at most 0.5"});
+        return;
     }
     // a hair wider than stated, for 0.05 % is not the same double as 0.0005
     const Range accuracy{0.0005 * (1.0 - 1e-12), 0.1 * (1.0 + 1e-12), true, true, "from 0.05 % to 10 %"};
     numerics.accuracy = table.fraction("accuracy", accuracy, numerics.accuracy);
-    if (table.has("residual_target")) {
-        if (table.has("accuracy"))
-            table.fail("residual_target", "given beside accuracy, which it would override", "one of the two");
-        numerics.residual_target = table.number("residual_target", {0.0, 0.5, false, true, "greater than 0, at most 0.5"});
-    }
-    numerics.damping = table.number("damping", {0.0, 1.0, true, false, "0 or greater and less than 1"}, numerics.damping);
-    if (table.has("speed"))
-        numerics.speed_m = table.quantity(
-            "speed", numerics.kind == NumericsKind::paper ? Dimension::speed_per_step : Dimension::speed, positive);
-    if (table.has("mass_factor")) numerics.mass_factor = table.number("mass_factor", positive);
-    if (table.has("time_step")) numerics.time_step_s = table.quantity("time_step", Dimension::time, positive);
+}
+
+NumericsSpec read_numerics(const std::optional<TableReader>& found) {
+    NumericsSpec numerics;
+    if (!found) return numerics;
+    const TableReader& table = *found;
+    numerics.kind = table.choice<NumericsKind>(
+        "kind", {{"adaptive", NumericsKind::adaptive}, {"paper", NumericsKind::paper}, {"dynamic", NumericsKind::dynamic}},
+        numerics.kind);
+    refuse_other_numerics(table, numerics.kind);
+    const bool adaptive = numerics.kind == NumericsKind::adaptive, dynamic = numerics.kind == NumericsKind::dynamic;
+    if (adaptive) read_accuracy(table, numerics);
+    if (!adaptive)
+        numerics.damping = table.number("damping", {0.0, 1.0, true, false, "0 or greater and less than 1"}, numerics.damping);
+    if (!adaptive && table.has("speed"))
+        numerics.speed_m = table.quantity("speed", dynamic ? Dimension::speed : Dimension::speed_per_step, positive);
+    if (!dynamic && table.has("mass_factor")) numerics.mass_factor = table.number("mass_factor", positive);
+    if (dynamic && table.has("time_step")) numerics.time_step_s = table.quantity("time_step", Dimension::time, positive);
     if (table.has("maximum_steps"))
         numerics.maximum_steps = table.integer("maximum_steps", 1, std::numeric_limits<long long>::max());
     numerics.confirm = table.flag("confirm", numerics.confirm);
     return numerics;
+}
+
+}  // namespace
+
+Physics read_physics(const TableReader& root, const TableReader* variant) {
+    Layers holders;
+    if (variant != nullptr) holders.push_back(*variant);
+    holders.push_back(root);
+    const ReadModel model = read_model(laid_over(tables_of(holders, "model", model_keys)));
+    const MaterialTables material = material_tables(holders, model.model.kind);
+    Physics physics;
+    physics.model = model.model;
+    physics.grain = read_grain(material, model);
+    physics.contact = read_contact(material);
+    physics.numerics = read_numerics(laid_over(tables_of(holders, "numerics", numerics_keys)));
+    return physics;
 }
 
 std::map<std::string, double> read_laboratory(const TableReader& root) {

@@ -11,6 +11,9 @@ namespace {
 constexpr double largest_grain_count = 5e6;  // what fits a large workstation; beyond it a unit was probably mistaken
 constexpr std::size_t largest_vertex_count = 10000;
 
+constexpr double usual_particles_per_grain = 26.36;  // 42966 in 1630 grains, as in the paper
+
+const Range particles_range{7.0, 500.0, true, true, "from 7 to 500"};
 const Range porosity_range{0.0, 1.0, true, false, "0 or greater and less than 1"};
 
 void read_rectangle(const TableReader& table, OutlineSpec& outline) {
@@ -148,7 +151,7 @@ double smallest_extent_m(const OutlineSpec& outline) {
     return std::min(right->x - left->x, high->y - low->y);
 }
 
-SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder) {
+SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, bool filled) {
     const TableReader table = root.table(
         "specimen", {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"});
     table.require({"shape", "grains"});
@@ -156,10 +159,15 @@ SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path&
     spec.outline = read_outline(table);
     spec.thickness_m = table.quantity("thickness", Dimension::length, positive, spec.thickness_m);
 
-    const TableReader grains = table.table("grains", {"diameter", "porosity", "merge_length", "triangles_per_grain"});
+    const TableReader grains =
+        table.table("grains", {"diameter", "porosity", "merge_length", "triangles_per_grain", "particles_per_grain"});
     spec.grain_sizes = read_grain_sizes(grains);
     spec.porosity = grains.number("porosity", porosity_range, spec.porosity);
     spec.triangles_per_grain = static_cast<int>(grains.integer("triangles_per_grain", 0, 10000, 0));
+    if (filled)
+        spec.particles_per_grain = grains.number("particles_per_grain", particles_range, usual_particles_per_grain);
+    else
+        grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with kind = \"inner-particles\"");
 
     const double largest = largest_diameter_m(spec.grain_sizes);
     const double extent = smallest_extent_m(spec.outline);

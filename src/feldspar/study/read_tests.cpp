@@ -48,12 +48,36 @@ std::vector<double> confining_stresses(const TableReader& table) {
     return values;
 }
 
+// Rigid grains and inner particles are loaded by plates: does any variant bring them to this kind of test?
+bool has_particles(TestKind kind, const std::vector<Variant>& variants) {
+    return std::any_of(variants.begin(), variants.end(),
+                       [&](const Variant& variant) { return variant.runs(kind) && variant.model.kind != GrainKind::flexible; });
+}
+
+// Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
+void read_plates(const TableReader& table, bool particles, TestSpec& test) {
+    const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
+    const bool brazilian = test.kind == TestKind::brazilian, tension = test.kind == TestKind::direct_tension;
+    if (!brazilian && !particles)
+        table.refuse({"plate_stiffness_factor", "plate_mu", "membrane_plates"}, setting + " of flexible grains",
+                     "only with kind = \"brazilian\", or with rigid grains or inner particles, which are loaded by plates");
+    if (tension)
+        table.refuse({"plate_mu"}, setting + ": its plates are glued on and hold in the normal direction only",
+                     "plate_stiffness_factor");
+    if (test.kind != TestKind::biaxial)
+        table.refuse({"membrane_plates"}, setting, "only with kind = \"biaxial\", which has a membrane");
+    if (!brazilian && !particles) return;
+    test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
+    if (!tension) test.plate_mu = table.number("plate_mu", not_negative, brazilian ? 0.4 : 0.0);
+    test.membrane_plates = static_cast<int>(table.integer("membrane_plates", 1, 1000, test.membrane_plates));
+}
+
 struct ReadTest {
     std::vector<TestSpec> tests;  // one for each sigma3
     std::optional<double> diameter_m;
 };
 
-ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen) {
+ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants) {
     TestSpec test;
     test.kind = table.choice<TestKind>("kind", {{"uniaxial-compression", TestKind::uniaxial_compression},
                                                 {"direct-tension", TestKind::direct_tension},
@@ -61,7 +85,7 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen) {
                                                 {"brazilian", TestKind::brazilian}});
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
     const bool brazilian = test.kind == TestKind::brazilian;
-    if (!brazilian) table.refuse({"diameter", "plate_stiffness_factor", "plate_mu"}, setting, "only with kind = \"brazilian\"");
+    if (!brazilian) table.refuse({"diameter"}, setting, "only with kind = \"brazilian\"");
     if (test.kind != TestKind::biaxial) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
     check_outline(table, test.kind, specimen.outline);
 
@@ -72,13 +96,10 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen) {
     test.snapshots = static_cast<int>(table.integer("snapshots", 0, 1000, test.snapshots));
     if (table.has("seeds"))
         for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
+    read_plates(table, has_particles(test.kind, variants), test);
 
     ReadTest result;
-    if (brazilian) {
-        result.diameter_m = brazilian_diameter(table, specimen);
-        test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
-        test.plate_mu = table.number("plate_mu", not_negative, 0.4);
-    }
+    if (brazilian) result.diameter_m = brazilian_diameter(table, specimen);
     if (test.kind != TestKind::biaxial) {
         result.tests.push_back(test);
         return result;
@@ -104,7 +125,8 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
     return seeds;
 }
 
-TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<std::uint64_t>& run_seeds) {
+TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
+                    const std::vector<std::uint64_t>& run_seeds) {
     if (!root.has("test")) throw InputError({root.file(), 0, 0, {}}, "there is no test", "one [[test]] or more");
     if (root.find("test")->is_table()) root.fail("test", "is written as one table", "a list of tables, each headed [[test]]");
     const toml::array& list = root.array("test");
@@ -118,8 +140,8 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
         if (!node.is_table()) root.fail_at(node, "test", shown(node) + " is not a test", "a table headed [[test]]");
         const TableReader table(*node.as_table(), path, root.file(),
                                 {"kind", "sigma3", "stop_fraction", "maximum_strain", "diameter", "plate_stiffness_factor",
-                                 "plate_mu", "snapshots", "seeds"});
-        ReadTest read = read_one(table, specimen);
+                                 "plate_mu", "membrane_plates", "snapshots", "seeds"});
+        ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {
             if (result.brazilian_diameter_m && *result.brazilian_diameter_m != *read.diameter_m)
                 table.fail("diameter", "differs from that of an earlier Brazilian test", "one diameter in a job");

@@ -1,6 +1,7 @@
 // A job written out in full: SI units, every default, digits enough to read back the same bits.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "feldspar/base/units.hpp"
@@ -37,9 +38,9 @@ private:
     std::string text_;
 };
 
-template <class Seeds>
-std::string seed_list(const Seeds& seeds) {
-    return fmt::format("[{}]", fmt::join(seeds, ", "));
+template <class Items>
+std::string list(const Items& items) {
+    return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
 void write_outline(Lines& out, const OutlineSpec& outline) {
@@ -101,29 +102,41 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
     else
         out.quantity("merge_length", *specimen.merge_length_m, Dimension::length);
     out.raw("triangles_per_grain", std::to_string(specimen.triangles_per_grain));
+    if (specimen.particles_per_grain > 0.0) out.number("particles_per_grain", specimen.particles_per_grain);
 }
 
-void write_materials(Lines& out, const Job& job) {
-    out.head("[material.grain]");
-    out.quantity("E", job.grain.E_Pa, Dimension::stress);
-    out.number("nu", job.grain.nu);
-    out.quantity("density", job.grain.density_kg_m3, Dimension::density);
-    out.head("[material.contact]");
-    out.word("law", name(job.contact.law));
-    out.quantity("Kn", job.contact.Kn_Pa_m, Dimension::stiffness_gradient);
-    out.number("eta", job.contact.eta);
-    out.quantity("sigma_nt", job.contact.sigma_nt_Pa, Dimension::stress);
-    out.quantity("tau", job.contact.tau_Pa, Dimension::stress);
-    out.number("mu", job.contact.mu);
-    if (job.contact.law == ContactLaw::brittle) return;
-    out.quantity("Gfn", job.contact.Gfn_J_m2, Dimension::fracture_energy);
-    out.quantity("Gfs", job.contact.Gfs_J_m2, Dimension::fracture_energy);
-    out.word("shear_measure", job.contact.shear_measure == ShearMeasure::total ? "total" : "beyond-friction");
-    out.word("tension_unloading", job.contact.tension_unloading == TensionUnloading::elastic ? "elastic" : "secant");
+void write_model(Lines& out, const ModelSpec& model, const std::string& head) {
+    out.head(head);
+    out.word("kind", name(model.kind));
+    out.word("contact", name(model.contact));
+    out.word("normal", name(model.normal));
+    if (model.kind == GrainKind::flexible) out.word("plane", name(model.plane));
 }
 
-void write_numerics(Lines& out, const NumericsSpec& numerics) {
-    out.head("[numerics]");
+void write_materials(Lines& out, const Variant& variant, const std::string& place) {
+    const ContactMaterial& contact = variant.contact;
+    out.head("[" + place + ".grain]");
+    if (variant.model.kind == GrainKind::flexible) {
+        out.quantity("E", variant.grain.E_Pa, Dimension::stress);
+        out.number("nu", variant.grain.nu);
+    }
+    out.quantity("density", variant.grain.density_kg_m3, Dimension::density);
+    out.head("[" + place + ".contact]");
+    out.word("law", name(contact.law));
+    out.quantity("Kn", contact.Kn_Pa_m, Dimension::stiffness_gradient);
+    out.number("eta", contact.eta);
+    out.quantity("sigma_nt", contact.sigma_nt_Pa, Dimension::stress);
+    out.quantity("tau", contact.tau_Pa, Dimension::stress);
+    out.number("mu", contact.mu);
+    if (contact.law == ContactLaw::brittle) return;
+    out.quantity("Gfn", contact.Gfn_J_m2, Dimension::fracture_energy);
+    out.quantity("Gfs", contact.Gfs_J_m2, Dimension::fracture_energy);
+    out.word("shear_measure", contact.shear_measure == ShearMeasure::total ? "total" : "beyond-friction");
+    out.word("tension_unloading", contact.tension_unloading == TensionUnloading::elastic ? "elastic" : "secant");
+}
+
+void write_numerics(Lines& out, const NumericsSpec& numerics, const std::string& head) {
+    out.head(head);
     out.word("kind", name(numerics.kind));
     if (numerics.kind == NumericsKind::adaptive) {
         if (numerics.residual_target)
@@ -142,19 +155,43 @@ void write_numerics(Lines& out, const NumericsSpec& numerics) {
     out.raw("confirm", numerics.confirm ? "true" : "false");
 }
 
+void write_plates(Lines& out, const TestSpec& test, const Job& job) {
+    const bool particles = std::any_of(job.variants.begin(), job.variants.end(), [&](const Variant& variant) {
+        return variant.runs(test.kind) && variant.model.kind != GrainKind::flexible;
+    });
+    if (!particles && test.kind != TestKind::brazilian) return;
+    out.number("plate_stiffness_factor", test.plate_stiffness_factor);
+    if (test.plate_mu) out.number("plate_mu", *test.plate_mu);
+    if (test.kind == TestKind::biaxial) out.raw("membrane_plates", std::to_string(test.membrane_plates));
+}
+
 void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.head("[[test]]");
     out.word("kind", name(test.kind));
     if (test.kind == TestKind::biaxial) out.quantity("sigma3", test.sigma3_Pa, Dimension::stress);
     out.number("stop_fraction", test.stop_fraction);
     out.number("maximum_strain", test.maximum_strain);
-    if (test.kind == TestKind::brazilian) {
-        out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
-        out.number("plate_stiffness_factor", test.plate_stiffness_factor);
-        out.number("plate_mu", test.plate_mu.value_or(0.4));
-    }
+    if (test.kind == TestKind::brazilian) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
+    write_plates(out, test, job);
     out.raw("snapshots", std::to_string(test.snapshots));
-    if (!test.seeds.empty()) out.raw("seeds", seed_list(test.seeds));
+    if (!test.seeds.empty()) out.raw("seeds", list(test.seeds));
+}
+
+// The physics of one variant under `place`: "" for the job's own tables, "variant." for a list.
+void write_physics(Lines& out, const Variant& variant, const std::string& place) {
+    write_model(out, variant.model, "[" + place + "model]");
+    write_materials(out, variant, place + "material");
+    write_numerics(out, variant.numerics, "[" + place + "numerics]");
+}
+
+void write_variant(Lines& out, const Variant& variant) {
+    out.head("[[variant]]");
+    out.word("name", variant.name);
+    if (!variant.seeds.empty()) out.raw("seeds", list(variant.seeds));
+    std::vector<std::string> kinds;
+    for (TestKind kind : variant.tests) kinds.push_back(quote(name(kind)));
+    if (!kinds.empty()) out.raw("tests", list(kinds));
+    write_physics(out, variant, "variant.");
 }
 
 void write_laboratory(Lines& out, const Job& job) {
@@ -174,16 +211,13 @@ std::string resolved_toml(const Job& job) {
     Lines out;
     out.word("name", job.name);
     write_specimen(out, job.specimen);
-    out.head("[model]");
-    out.word("kind", name(job.model.kind));
-    out.word("contact", name(job.model.contact));
-    out.word("normal", "centres");
-    out.word("plane", name(job.model.plane));
-    write_materials(out, job);
-    write_numerics(out, job.numerics);
+    if (job.has_variants())
+        for (const Variant& variant : job.variants) write_variant(out, variant);
+    else
+        write_physics(out, job.variants.front(), "");
     for (const TestSpec& test : job.tests) write_test(out, test, job);
     out.head("[run]");
-    out.raw("seeds", seed_list(job.seeds));
+    out.raw("seeds", list(job.seeds));
     out.raw("threads", job.threads == 0 ? "\"auto\"" : std::to_string(job.threads));
     write_laboratory(out, job);
     return out.take();

@@ -88,9 +88,9 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
     }
 }
 
-TableReader::TableReader(const toml::table& table, std::string path, std::string file,
-                         std::initializer_list<std::string_view> known)
-    : table_(&table), path_(std::move(path)), file_(std::move(file)) {
+TableReader::TableReader(const toml::table& table, std::string path, std::string file, std::span<const std::string_view> known,
+                         int level)
+    : table_(&table), path_(std::move(path)), file_(std::move(file)), level_(level) {
     // complain about the first unknown key in the order of the file, not of the alphabet
     const toml::key* first = nullptr;
     for (const auto& [key, value] : table) {
@@ -99,9 +99,31 @@ TableReader::TableReader(const toml::table& table, std::string path, std::string
         if (first == nullptr || here < first->source().begin) first = &key;
     }
     if (first == nullptr) return;
-    const std::vector<std::string_view> words(known);
-    throw InputError(place_of(first->source(), file_, full(first->str())), "unknown key", listed(words),
-                     did_you_mean(first->str(), words));
+    throw InputError(place_of(first->source(), file_, full(first->str())), "unknown key", listed(known),
+                     did_you_mean(first->str(), known));
+}
+
+TableReader TableReader::placed_at(const toml::node& place) const {
+    TableReader result = *this;
+    result.stands_in_ = place.source();
+    return result;
+}
+
+TableReader TableReader::over(const TableReader& under) const {
+    TableReader result = *this;
+    result.under_ = std::make_shared<const TableReader>(under_ ? under_->over(under) : under);
+    return result;
+}
+
+const TableReader& TableReader::owner(std::string_view key) const {
+    for (const TableReader* reader = this; reader != nullptr; reader = reader->under_.get())
+        if (reader->table_->contains(key)) return *reader;
+    return *this;
+}
+
+std::string TableReader::full(std::string_view key) const {
+    const std::string& path = owner(key).path_;
+    return path.empty() ? std::string(key) : path + "." + std::string(key);
 }
 
 void TableReader::require(std::initializer_list<std::string_view> keys) const {
@@ -109,14 +131,14 @@ void TableReader::require(std::initializer_list<std::string_view> keys) const {
     for (std::string_view key : keys)
         if (!has(key)) missing.push_back(key);
     if (missing.empty()) return;
-    InputPlace place = path_.empty() ? InputPlace{file_, 0, 0, {}} : place_of(table_->source(), file_, path_);
+    InputPlace place = path_.empty() ? InputPlace{file_, 0, 0, {}} : place_of(region_of(*table_), file_, path_);
     throw InputError(std::move(place), (missing.size() == 1 ? "missing key: " : "missing keys: ") + listed(missing));
 }
 
-void TableReader::refuse(std::initializer_list<std::string_view> keys, const std::string& setting,
-                         const std::string& allowed) const {
+void TableReader::refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed,
+                         int decided_at) const {
     for (std::string_view key : keys)
-        if (has(key)) fail(key, "does not apply to " + setting, allowed);
+        if (has(key) && level_of(key) <= decided_at) fail(key, "does not apply to " + setting, allowed);
 }
 
 const toml::node& TableReader::must_have(std::string_view key) const {
@@ -124,10 +146,12 @@ const toml::node& TableReader::must_have(std::string_view key) const {
     return *find(key);
 }
 
-TableReader TableReader::table(std::string_view key, std::initializer_list<std::string_view> known) const {
+TableReader TableReader::table(std::string_view key, std::span<const std::string_view> known) const {
     const toml::node& node = must_have(key);
     if (!node.is_table()) fail(key, "is " + type_words(node) + ", not a table", "a table [" + full(key) + "]");
-    return TableReader(*node.as_table(), full(key), file_, known);
+    TableReader inside(*node.as_table(), full(key), file_, known, owner(key).level_);
+    inside.stands_in_ = owner(key).stands_in_;
+    return inside;
 }
 
 const toml::array& TableReader::array(std::string_view key) const {
@@ -227,13 +251,13 @@ std::string TableReader::text(std::string_view key, std::optional<std::string> f
 void TableReader::fail(std::string_view key, const std::string& problem, const std::string& allowed,
                        const std::string& suggestion) const {
     const toml::node* node = find(key);
-    const toml::source_region& where = node != nullptr ? node->source() : table_->source();
+    const toml::source_region& where = node != nullptr ? owner(key).region_of(*node) : region_of(*table_);
     throw InputError(place_of(where, file_, full(key)), problem, allowed, suggestion);
 }
 
 void TableReader::fail_at(const toml::node& node, std::string_view key, const std::string& problem, const std::string& allowed,
                           const std::string& suggestion) const {
-    throw InputError(place_of(node.source(), file_, full(key)), problem, allowed, suggestion);
+    throw InputError(place_of(owner(key).region_of(node), file_, full(key)), problem, allowed, suggestion);
 }
 
 }  // namespace feldspar

@@ -1,9 +1,11 @@
 // A checked view of one table of a job file: every key known, every value converted and bounded, and every complaint with
-// file, line, column, key, what was given and what is allowed.
+// file, line, column, key, what was given and what is allowed. Tables may lie over each other: a key is then looked for in the
+// upper ones first, and a complaint points to the table that gave it.
 #pragma once
 
 #include <initializer_list>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,24 +43,46 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
 /// "a, b, c".
 std::string listed(std::span<const std::string_view> words);
 
+/// The level of a key that nobody gave: below every table.
+inline constexpr int not_given = std::numeric_limits<int>::max();
+
 /// One table, with the names that may stand in it.
 class TableReader {
 public:
     /// @param path   dotted path of the table, "" for the file itself
     /// @param known  all keys that may stand in it. @throws InputError for any other, with "did you mean"
-    TableReader(const toml::table& table, std::string path, std::string file, std::initializer_list<std::string_view> known);
+    /// @param level  among tables that lie over each other: a smaller one goes before a larger one
+    TableReader(const toml::table& table, std::string path, std::string file, std::span<const std::string_view> known,
+                int level = 0);
+    TableReader(const toml::table& table, std::string path, std::string file, std::initializer_list<std::string_view> known,
+                int level = 0)
+        : TableReader(table, std::move(path), std::move(file), std::span(known.begin(), known.size()), level) {}
 
-    bool has(std::string_view key) const { return table_->contains(key); }
-    const toml::node* find(std::string_view key) const { return table_->get(key); }
+    /// This table, which stands elsewhere (a preset), as if it were written at `place`, where it is named.
+    TableReader placed_at(const toml::node& place) const;
+
+    /// This table laid over another: keys that it does not give are looked for there.
+    TableReader over(const TableReader& under) const;
+
+    bool has(std::string_view key) const { return find(key) != nullptr; }
+    const toml::node* find(std::string_view key) const { return owner(key).table_->get(key); }
+    /// The level of the table that gives the key, or `not_given`.
+    int level_of(std::string_view key) const { return has(key) ? owner(key).level_ : not_given; }
+    int level() const { return level_; }
     const std::string& file() const { return file_; }
 
     /// @throws InputError naming every one of `keys` that is missing.
     void require(std::initializer_list<std::string_view> keys) const;
-    /// @throws InputError if one of `keys` is given; `setting` is what it contradicts ("shape = \"disc\"").
-    void refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed = {}) const;
+    /// @throws InputError if one of `keys` is given; `setting` is what it contradicts ("shape = \"disc\""). A key from a table
+    /// below the one that made the setting (`decided_at`) is not a mistake: the setting has put it aside.
+    void refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed = {},
+                int decided_at = not_given) const;
 
     /// A table inside this one, which must be there.
-    TableReader table(std::string_view key, std::initializer_list<std::string_view> known) const;
+    TableReader table(std::string_view key, std::span<const std::string_view> known) const;
+    TableReader table(std::string_view key, std::initializer_list<std::string_view> known) const {
+        return table(key, std::span(known.begin(), known.size()));
+    }
 
     /// Text with a unit, in SI. Without a fallback the key must be there.
     double quantity(std::string_view key, Dimension dimension, const Range& range, std::optional<double> fallback = {}) const;
@@ -100,12 +124,17 @@ public:
                               const std::string& allowed = {}, const std::string& suggestion = {}) const;
 
 private:
-    std::string full(std::string_view key) const { return path_.empty() ? std::string(key) : path_ + "." + std::string(key); }
+    const TableReader& owner(std::string_view key) const;  // the table that gives the key, or this one
+    std::string full(std::string_view key) const;
     const toml::node& must_have(std::string_view key) const;
+    const toml::source_region& region_of(const toml::node& node) const { return stands_in_ ? *stands_in_ : node.source(); }
 
     const toml::table* table_;
     std::string path_;
     std::string file_;
+    int level_ = 0;
+    std::optional<toml::source_region> stands_in_;  // of a table that is placed elsewhere
+    std::shared_ptr<const TableReader> under_;
 };
 
 /// Parses TOML. @throws InputError at the place of a syntax error.

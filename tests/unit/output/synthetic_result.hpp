@@ -162,6 +162,27 @@ inline Job make_job() {
     return job;
 }
 
+/// Two ways to model the same packings; the second is twice as dear.
+inline std::vector<Variant> make_variants() {
+    std::vector<Variant> variants(2);
+    variants[0].name = "rigid, brittle";
+    variants[0].model.kind = GrainKind::rigid;
+    variants[0].contact.law = ContactLaw::brittle;
+    variants[1].name = "inner particles";
+    variants[1].model = {GrainKind::inner_particles, ContactKind::point, ContactNormal::edge, PlaneState::stress};
+    for (Variant& variant : variants) variant.stem = variant_stem(variant.name);
+    return variants;
+}
+
+inline TestResult make_result_of(const Variant& variant, std::uint64_t seed) {
+    TestResult result = make_result(TestKind::uniaxial_compression, seed);
+    result.variant = variant.name;
+    result.model = variant.model;
+    result.contact = variant.contact;
+    result.ms_per_step = variant.model.kind == GrainKind::rigid ? 1.0 : 2.0;
+    return result;
+}
+
 inline Provenance make_provenance() {
     return {.version = "0.1.0",
             .commit = "abc",

@@ -8,6 +8,7 @@
 
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
+#include "feldspar/output/variant_summary.hpp"
 #include "scratch_directory.hpp"
 #include "synthetic_result.hpp"
 
@@ -98,7 +99,7 @@ TEST_F(Report, AsksTheNetworkForNothing) {
     EXPECT_EQ(html.find("XMLHttpRequest"), std::string::npos);
     EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
     for (const char* mark : {"{{uplot_css}}", "{{css}}", "{{data}}", "{{fields}}", "{{uplot_js}}", "{{charts_js}}",
-                             "{{viewer_js}}", "{{report_js}}"}) {
+                             "{{viewer_js}}", "{{compare_js}}", "{{report_js}}"}) {
         EXPECT_EQ(html.find(mark), std::string::npos) << mark;
     }
 }
@@ -169,6 +170,66 @@ TEST(Base64, MatchesItsDefinition) {
     EXPECT_EQ(encode("f"), "Zg==");
     EXPECT_EQ(encode("fo"), "Zm8=");
     EXPECT_EQ(encode("foobar"), "Zm9vYmFy");
+}
+
+/// A job of two variants on two packings.
+class VariantReport : public Report {
+protected:
+    VariantReport() {
+        job.variants = make_variants();
+        results.clear();
+        for (const std::uint64_t seed : {3, 4}) {
+            const auto packing = make_wall(4, 3, seed);  // shared by the variants
+            for (const Variant& variant : job.variants) {
+                results.push_back(make_result_of(variant, seed));
+                results.back().specimen = packing;
+            }
+        }
+    }
+};
+
+TEST_F(VariantReport, TellsThemApart) {
+    const json data = json::parse(between(page(), "id=\"data\">", "</script>"));
+    EXPECT_TRUE(data["properties"].empty());
+    ASSERT_EQ(data["variants"].size(), 2U);
+    EXPECT_EQ(data["variants"][0]["name"], "rigid, brittle");
+    EXPECT_EQ(data["variants"][1]["normal"], "edge");
+    EXPECT_EQ(data["variants"][1]["ms_per_step"]["uniaxial-compression"], 2);
+    EXPECT_FALSE(data["variants"][0]["properties"].empty());
+    EXPECT_EQ(data["tests"][1]["variant"], "inner particles");
+    const json& history = data["tests"][0]["history"];
+    EXPECT_EQ(history["broken"].size(), history["stress"].size());
+    EXPECT_EQ(history["broken"].front(), 0);
+    EXPECT_NEAR(history["broken"].back().get<double>(), 100.0 * broken_share(results[0]).back(), 1e-4);
+    EXPECT_EQ(data["fields"].size(), 2U);  // one packing a variant
+}
+
+TEST_F(VariantReport, HasTheCracksOfEveryTest) {
+    const std::string html = page();
+    const json data = json::parse(between(html, "id=\"data\">", "</script>"));
+    ASSERT_EQ(data["patterns"].size(), 2U);  // one a packing
+    EXPECT_EQ(data["patterns"][1]["tests"][0]["test"], 2);
+    EXPECT_EQ(data["patterns"][1]["tests"][1]["test"], 3);
+    EXPECT_NE(html.find("id=\"pattern-1\""), std::string::npos);
+    const std::vector<ReportFields> patterns = report_patterns(results);
+    const auto ends = part<std::uint16_t>(patterns[0], "ends1");
+    const double x0 = patterns[0].meta["x0"], y0 = patterns[0].meta["y0"], scale = patterns[0].meta["scale"];
+    ASSERT_EQ(ends.size(), 8U);
+    EXPECT_NEAR(x0 + scale * ends[0], 1.0, 1e-3);  // mm
+    EXPECT_NEAR(y0 + scale * ends[1], 0.25, 1e-3);
+    EXPECT_EQ(part<std::uint8_t>(patterns[0], "mode1"), (std::vector<std::uint8_t>{0, 1}));
+    EXPECT_EQ(part<std::int32_t>(patterns[0], "begin").back(), 48);  // twelve grains of four corners
+}
+
+TEST_F(VariantReport, SharesItsFieldsFairly) {
+    const std::vector<ReportFields> all = report_fields(results, std::size_t{1} << 20);
+    ASSERT_EQ(all.size(), 2U);
+    ASSERT_EQ(all[0].meta["snapshots"].size(), 3U);
+    // too little for one in full beside anything of the other: both become coarser
+    const std::vector<ReportFields> scarce = report_fields(results, 2 * all[0].block.size() - 2);
+    ASSERT_EQ(scarce.size(), 2U);
+    EXPECT_LT(scarce[0].meta["snapshots"].size(), 3U);
+    EXPECT_EQ(scarce[0].meta["snapshots"].back()["label"], "end");
 }
 
 }  // namespace

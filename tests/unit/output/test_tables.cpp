@@ -9,6 +9,7 @@
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
+#include "feldspar/output/variant_summary.hpp"
 #include "scratch_directory.hpp"
 #include "synthetic_result.hpp"
 
@@ -44,6 +45,58 @@ TEST(TestStem, NamesKindSeedAndPressure) {
     EXPECT_EQ(test_stem(biaxial), "biaxial-s1-p2.5");
     biaxial.test.sigma3_Pa = 10e6;
     EXPECT_EQ(test_stem(biaxial), "biaxial-s1-p10");
+}
+
+TEST(TestStem, BeginsWithTheVariant) {
+    TestResult result = make_result();
+    result.variant = "Rigid, brittle";
+    EXPECT_EQ(test_stem(result), "rigid-brittle-uniaxial-compression-s3");
+}
+
+TEST_F(Tables, SummaryKeepsVariantsApart) {
+    Job job = make_job();
+    job.variants = make_variants();
+    std::vector<TestResult> results;
+    for (const Variant& variant : job.variants)
+        for (const std::uint64_t seed : {3, 4}) results.push_back(make_result_of(variant, seed));
+    results.back().ms_per_step = 4.0;
+    write_summary(directory, job, results, make_properties(), make_provenance(), true);
+    const json read = json::parse(read_file(directory.path() / "summary.json"));
+    EXPECT_TRUE(read["properties"].empty());
+    EXPECT_TRUE(read["envelope"]["fits"].empty());
+    EXPECT_EQ(read["tests"][0]["variant"], "rigid, brittle");
+    ASSERT_EQ(read["variants"].size(), 2U);
+    const json& rigid = read["variants"][0];
+    EXPECT_EQ(rigid["name"], "rigid, brittle");
+    EXPECT_EQ(rigid["model"], "rigid");
+    EXPECT_EQ(rigid["contact"], "lobatto3");
+    EXPECT_EQ(rigid["normal"], "centres");
+    EXPECT_EQ(rigid["law"], "brittle");
+    EXPECT_EQ(rigid["properties"]["UCS_MPa"]["seeds"], (std::vector<int>{3, 4}));
+    EXPECT_NEAR(rigid["properties"]["UCS_MPa"]["median"].get<double>(), 122.1, 1e-9);
+    EXPECT_TRUE(rigid.contains("envelope"));
+    EXPECT_EQ(rigid["ms_per_step"]["uniaxial-compression"], 1.0);
+    const json& inner = read["variants"][1];
+    EXPECT_EQ(inner["model"], "inner-particles");
+    EXPECT_EQ(inner["normal"], "edge");
+    EXPECT_EQ(inner["ms_per_step"]["uniaxial-compression"], 3.0);  // median of 2 and 4
+}
+
+TEST_F(Tables, SummaryWithoutVariantsSaysNothingOfThem) {
+    const json read = summary({make_result()});
+    EXPECT_FALSE(read.contains("variants"));
+    EXPECT_FALSE(read["tests"][0].contains("variant"));
+}
+
+TEST(BrokenShare, IsThatOfTheContactsBetweenGrains) {
+    TestResult result = make_result();
+    // 4 x 3 grains of 1 mm: 17 contacts of 1 mm, as thick as the specimen; each crack is half a contact
+    const double crack = result.cracks[0].area_m2 / (17e-3 * result.specimen->spec.thickness_m);
+    const std::vector<double> share = broken_share(result);
+    ASSERT_EQ(share.size(), 3U);
+    EXPECT_EQ(share[0], 0.0);
+    EXPECT_NEAR(share[1], crack, 1e-12);
+    EXPECT_NEAR(share[2], 2.0 * crack, 1e-12);
 }
 
 TEST_F(Tables, HistoryHasAHeaderThatSaysUnitsAndSigns) {

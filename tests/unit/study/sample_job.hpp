@@ -44,6 +44,56 @@ seeds = [1, 2, 3, 4, 5]
 UCS = "122.1 MPa"
 )";
 
+/// A job of variants: the same packings modelled in several ways.
+inline const std::string variant_job = R"([specimen]
+shape = "rectangle"
+width = "80 mm"
+height = "160 mm"
+[specimen.grains]
+diameter = { distribution = "uniform", minimum = "2 mm", maximum = "4 mm" }
+[material]
+elastic_preset = "augig-rigid"
+strength_preset = "augig-table2-bilinear"
+[numerics]
+accuracy = "1 %"
+[[variant]]
+name = "Rigid, bilinear"
+[variant.model]
+kind = "rigid"
+[[variant]]
+name = "flexible 25.8"
+seeds = [2]
+tests = ["uniaxial-compression", "biaxial"]
+[variant.model]
+kind = "flexible"
+[variant.material]
+elastic_preset = "augig-flexible"
+[variant.material.grain]
+nu = 0.25
+[variant.numerics]
+kind = "paper"
+[[variant]]
+name = "inner particles, edge"
+[variant.model]
+kind = "inner-particles"
+normal = "edge"
+[variant.material]
+elastic_preset = "augig-inner-particles"
+strength_preset = "augig-table2-brittle"
+[variant.material.contact]
+mu = 0.45
+[[test]]
+kind = "uniaxial-compression"
+[[test]]
+kind = "direct-tension"
+[[test]]
+kind = "biaxial"
+sigma3 = "4 MPa"
+membrane_plates = 12
+[run]
+seeds = [1, 2]
+)";
+
 /// The sample with one line (or part of one) replaced.
 inline std::string edited(const std::string& from, const std::string& to, std::string text = sample_job) {
     const std::size_t at = text.find(from);

@@ -101,15 +101,6 @@ std::vector<BadJob> bad_jobs() {
         {"eta and kratio", edited("eta = 0.28", "eta = 0.28\nkratio = 3.6"), 23, {"kratio", "eta = ks/kn or kratio = kn/ks"}},
         {"neither eta nor kratio", edited("eta = 0.28\n", ""), 19, {"eta", "missing key", "kratio"}},
         {"unknown law", edited("\"bilinear\"", "\"bilinaer\""), 20, {"law", "'bilinaer'", "did you mean 'bilinear'?"}},
-        {"rigid grains",
-         edited("kind = \"flexible\"", "kind = \"rigid\""),
-         11,
-         {"model.kind", "'rigid' is not available yet in this version"}},
-        {"inner particles",
-         edited("kind = \"flexible\"", "kind = \"inner-particles\""),
-         11,
-         {"not available yet in this version"}},
-        {"edge normal", edited("normal = \"centres\"", "normal = \"edge\""), 13, {"model.normal", "not available yet"}},
         {"grains larger than the specimen",
          with_sizes("distribution = \"uniform\", minimum = \"2 mm\", maximum = \"400 mm\""),
          7,
@@ -216,7 +207,7 @@ std::vector<BadJob> bad_jobs() {
         {"plates in compression",
          with_test("kind = \"uniaxial-compression\"\nplate_mu = 0.1"),
          33,
-         {"only with kind = \"brazilian\""}},
+         {"test[1].plate_mu", "of flexible grains", "only with kind = \"brazilian\", or with rigid grains"}},
         {"grains larger than the disc",
          with_test("kind = \"brazilian\"\ndiameter = \"5 mm\""),
          33,
@@ -245,8 +236,160 @@ std::vector<BadJob> bad_jobs() {
     };
 }
 
-TEST(BadJob, IsRefusedAtItsPlaceWithItsReason) {
-    for (const BadJob& bad : bad_jobs()) {
+// The sample with rigid grains or inner particles, which have no elastic constants.
+std::string with_kind(const std::string& kind, std::string text = sample_job) {
+    return edited("E = \"25.8 GPa\"\nnu = 0.23\n", "", edited("kind = \"flexible\"", "kind = \"" + kind + "\"", std::move(text)));
+}
+std::string point_contact(std::string text) { return edited("contact = \"lobatto3\"\n", "", std::move(text)); }
+std::string with_material(const std::string& keys) {
+    return edited("[material.grain]", "[material]\n" + keys + "\n[material.grain]");
+}
+
+std::vector<BadJob> bad_particle_jobs() {
+    const std::string inner = point_contact(with_kind("inner-particles")), rigid = with_kind("rigid");
+    const auto test_of = [](const std::string& text, const std::string& keys) {
+        return edited("kind = \"uniaxial-compression\"", keys, text);
+    };
+    return {
+        {"unknown kind",
+         edited("\"flexible\"", "\"flexibel\""),
+         11,
+         {"model.kind", "did you mean 'flexible'?", "inner-particles"}},
+        {"three points of inner particles",
+         with_kind("inner-particles"),
+         12,
+         {"model.contact", "'lobatto3' does not apply to kind = \"inner-particles\"", "\"point\""}},
+        {"edge normal of rigid grains",
+         edited("\"centres\"", "\"edge\"", rigid),
+         13,
+         {"model.normal", "does not apply to kind = \"rigid\"", "inner-particles"}},
+        {"edge normal of flexible grains", edited("\"centres\"", "\"edge\""), 13, {"kind = \"flexible\""}},
+        {"plane strain of rigid grains", edited("\"stress\"", "\"strain\"", rigid), 14, {"model.plane", "no plane state"}},
+        {"plane strain of inner particles",
+         edited("\"stress\"", "\"strain\"", inner),
+         13,
+         {"model.plane", "kind = \"flexible\""}},
+        {"E of rigid grains",
+         edited("kind = \"flexible\"", "kind = \"rigid\""),
+         16,
+         {"material.grain.E", "no elastic constants", "Kn and eta"}},
+        {"nu of inner particles",
+         edited("density", "nu = 0.2\ndensity", inner),
+         15,
+         {"material.grain.nu", "kind = \"inner-particles\""}},
+        {"particles of rigid grains",
+         edited("merge_length = \"auto\"", "particles_per_grain = 30", rigid),
+         9,
+         {"specimen.grains.particles_per_grain", "only with kind = \"inner-particles\""}},
+        {"too few particles", edited("merge_length = \"auto\"", "particles_per_grain = 6.9", inner), 9, {"from 7 to 500"}},
+        {"too many particles", edited("merge_length = \"auto\"", "particles_per_grain = 501", inner), 9, {"from 7 to 500"}},
+        {"friction of glued plates",
+         test_of(rigid, "kind = \"direct-tension\"\nplate_mu = 0.1"),
+         31,
+         {"test[1].plate_mu", "glued"}},
+        {"soft plates on flexible grains",
+         test_of(sample_job, "kind = \"direct-tension\"\nplate_stiffness_factor = 0.1"),
+         33,
+         {"plate_stiffness_factor", "flexible grains"}},
+        {"membrane without pressure",
+         test_of(rigid, "kind = \"uniaxial-compression\"\nmembrane_plates = 16"),
+         31,
+         {"membrane_plates", "only with kind = \"biaxial\""}},
+        {"membrane of flexible grains",
+         test_of(sample_job, "kind = \"biaxial\"\nsigma3 = \"4 MPa\"\nmembrane_plates = 16"),
+         34,
+         {"membrane_plates", "flexible grains"}},
+        {"no membrane plate",
+         test_of(rigid, "kind = \"biaxial\"\nsigma3 = \"4 MPa\"\nmembrane_plates = 0"),
+         32,
+         {"membrane_plates", "1 to 1000"}},
+        {"unknown elastic preset",
+         with_material("elastic_preset = \"augig-flexibel\""),
+         16,
+         {"material.elastic_preset", "is not a preset", "did you mean 'augig-flexible'?", "augig-rigid"}},
+        {"unknown strength preset",
+         with_material("strength_preset = \"table7\""),
+         16,
+         {"material.strength_preset", "augig-table7"}},
+        {"preset of other grains",
+         with_material("elastic_preset = \"augig-rigid\""),
+         16,
+         {"'augig-rigid' is for kind = \"rigid\"", "kind = \"flexible\"", "augig-flexible, augig-flexible-51.6"}},
+        {"brittle preset with a fracture energy",
+         edited("law = \"bilinear\"\n", "", with_material("strength_preset = \"augig-table2-brittle\"")),
+         27,
+         {"Gfn", "does not apply to law = \"brittle\""}},
+        {"half a material",
+         "[material]\nelastic_preset = \"augig-flexible\"\n" +
+             edited("[material.contact]\nlaw = \"bilinear\"\nKn = \"18.00e4 GPa/m\"\neta = 0.28\nsigma_nt = \"8.5 MPa\"\ntau = "
+                    "\"29.75 MPa\"\nmu = 0.40\nGfn = \"20 N/m\"\nGfs = \"800 N/m\"\n",
+                    ""),
+         2,
+         {"material.contact", "missing keys: sigma_nt, tau, mu, Gfn, Gfs"}},
+    };
+}
+
+std::vector<BadJob> bad_variant_jobs() {
+    const auto with = [](const std::string& from, const std::string& to) { return edited(from, to, variant_job); };
+    return {
+        {"variant as one table", "variant = { name = \"a\" }\n" + sample_job, 1, {"variant", "[[variant]]"}},
+        {"empty list of variants", "variant = []\n" + sample_job, 1, {"the list is empty"}},
+        {"variant that is a word", "variant = [\"a\"]\n" + sample_job, 1, {"'a' is not a variant"}},
+        {"variant without a name", with("name = \"Rigid, bilinear\"\n", ""), 12, {"variant[1]", "missing key: name"}},
+        {"name that is none", with("\"Rigid, bilinear\"", "\", -\""), 13, {"variant[1].name", "cannot name a variant"}},
+        {"name with a slash", with("\"Rigid, bilinear\"", "\"a/b\""), 13, {"cannot name a variant"}},
+        {"name twice", with("\"flexible 25.8\"", "\"Rigid, bilinear\""), 17, {"variant[2].name", "is given twice"}},
+        {"files twice",
+         with("\"flexible 25.8\"", "\"rigid bilinear\""),
+         17,
+         {"variant[2].name", "share its files with 'Rigid, bilinear'"}},
+        {"unknown key", with("seeds = [2]", "seed = [2]"), 18, {"variant[2].seed", "did you mean 'seeds'?"}},
+        {"unknown key in a table", with("nu = 0.25", "mu = 0.25"), 25, {"variant[2].material.grain.mu", "did you mean 'nu'?"}},
+        {"a test in a variant", with("seeds = [2]", "test = 1"), 18, {"variant[2].test", "unknown key"}},
+        {"seed of another job", with("seeds = [2]", "seeds = [2, 7]"), 18, {"variant[2].seeds", "7 is not one of the run's"}},
+        {"unknown kind of test", with("\"biaxial\"]", "\"biaxail\"]"), 19, {"variant[2].tests", "did you mean 'biaxial'?"}},
+        {"kind that is not run", with("\"biaxial\"]", "\"brazilian\"]"), 19, {"no test of kind 'brazilian'"}},
+        {"kind twice", with("\"biaxial\"]", "\"uniaxial-compression\"]"), 19, {"given twice"}},
+        {"no kinds", with("tests = [\"uniaxial-compression\", \"biaxial\"]", "tests = []"), 19, {"the list is empty"}},
+        {"nothing to run",
+         edited("sigma3 = \"4 MPa\"", "sigma3 = \"4 MPa\"\nseeds = [1]",
+                with("\"uniaxial-compression\", \"biaxial\"]", "\"biaxial\"]")),
+         18,
+         {"variant[2].seeds", "nothing is left to run"}},
+        {"preset of the job for other grains",
+         with("elastic_preset = \"augig-flexible\"\n", ""),
+         8,
+         {"material.elastic_preset", "'augig-rigid' is for kind = \"rigid\"", "augig-flexible"}},
+        {"preset of the variant for other grains",
+         with("\"augig-inner-particles\"", "\"augig-rigid\""),
+         34,
+         {"variant[3].material.elastic_preset", "augig-inner-particles"}},
+        {"value in a variant", with("mu = 0.45", "mu = -1"), 37, {"variant[3].material.contact.mu", "zero or greater"}},
+        {"fracture energy beside a brittle preset",
+         with("mu = 0.45", "Gfn = \"20 N/m\""),
+         37,
+         {"variant[3].material.contact.Gfn"}},
+        {"elastic constants of a rigid variant",
+         with("[variant.model]\nkind = \"rigid\"", "[variant.model]\nkind = \"rigid\"\n[variant.material.grain]\nE = \"1 GPa\""),
+         17,
+         {"variant[1].material.grain.E", "no elastic constants"}},
+        {"numerics of a variant",
+         with("kind = \"paper\"", "kind = \"paper\"\naccuracy = \"1 %\""),
+         28,
+         {"variant[2].numerics.accuracy"}},
+        {"no material at all",
+         with("[material]\nelastic_preset = \"augig-rigid\"\nstrength_preset = \"augig-table2-bilinear\"\n", ""),
+         9,
+         {"variant[1]", "missing key: material"}},
+        {"plates that no variant has",
+         edited("kind = \"direct-tension\"", "kind = \"brazilian\"\nmembrane_plates = 3", variant_job),
+         42,
+         {"test[2].membrane_plates", "biaxial"}},
+    };
+}
+
+void expect_refused(const std::vector<BadJob>& jobs) {
+    for (const BadJob& bad : jobs) {
         SCOPED_TRACE(bad.what);
         try {
             (void)parse_job(bad.text, "job.toml");
@@ -260,8 +403,16 @@ TEST(BadJob, IsRefusedAtItsPlaceWithItsReason) {
                 EXPECT_NE(message.find(part), std::string::npos) << "wanted: " << part << "\ngot: " << message;
         }
     }
+}
+
+TEST(BadJob, IsRefusedAtItsPlaceWithItsReason) {
+    expect_refused(bad_jobs());
     EXPECT_GE(bad_jobs().size(), 20u);
 }
+
+TEST(BadJob, OfRigidGrainsAndInnerParticles) { expect_refused(bad_particle_jobs()); }
+
+TEST(BadJob, OfVariants) { expect_refused(bad_variant_jobs()); }
 
 TEST(BadJob, FilesThatCannotBeRead) {
     for (const char* file : {"/none/such/job.toml", "/", ""}) {

@@ -25,19 +25,19 @@ TEST(Job, ReadsTheGuidesCompleteJob) {
     EXPECT_EQ(job.specimen.grain_sizes.maximum_m, 0.004);
     EXPECT_EQ(job.specimen.porosity, 0.1);
     EXPECT_FALSE(job.specimen.merge_length_m.has_value());
-    EXPECT_EQ(job.grain.E_Pa, 25.8e9);
-    EXPECT_EQ(job.grain.nu, 0.23);
-    EXPECT_EQ(job.grain.density_kg_m3, 2650.0);
-    EXPECT_EQ(job.contact.law, ContactLaw::bilinear);
-    EXPECT_EQ(job.contact.Kn_Pa_m, 18e13);
-    EXPECT_EQ(job.contact.eta, 0.28);
-    EXPECT_EQ(job.contact.sigma_nt_Pa, 8.5e6);
-    EXPECT_EQ(job.contact.tau_Pa, 29.75e6);
-    EXPECT_EQ(job.contact.mu, 0.4);
-    EXPECT_EQ(job.contact.Gfn_J_m2, 20.0);
-    EXPECT_EQ(job.contact.Gfs_J_m2, 800.0);
-    EXPECT_EQ(job.numerics.kind, NumericsKind::adaptive);
-    EXPECT_EQ(job.numerics.accuracy, 0.005);
+    EXPECT_EQ(job.variants.front().grain.E_Pa, 25.8e9);
+    EXPECT_EQ(job.variants.front().grain.nu, 0.23);
+    EXPECT_EQ(job.variants.front().grain.density_kg_m3, 2650.0);
+    EXPECT_EQ(job.variants.front().contact.law, ContactLaw::bilinear);
+    EXPECT_EQ(job.variants.front().contact.Kn_Pa_m, 18e13);
+    EXPECT_EQ(job.variants.front().contact.eta, 0.28);
+    EXPECT_EQ(job.variants.front().contact.sigma_nt_Pa, 8.5e6);
+    EXPECT_EQ(job.variants.front().contact.tau_Pa, 29.75e6);
+    EXPECT_EQ(job.variants.front().contact.mu, 0.4);
+    EXPECT_EQ(job.variants.front().contact.Gfn_J_m2, 20.0);
+    EXPECT_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
+    EXPECT_EQ(job.variants.front().numerics.kind, NumericsKind::adaptive);
+    EXPECT_EQ(job.variants.front().numerics.accuracy, 0.005);
     ASSERT_EQ(job.tests.size(), 1u);
     EXPECT_EQ(job.tests[0].kind, TestKind::uniaxial_compression);
     EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
@@ -54,11 +54,11 @@ TEST(Job, DefaultsAreThoseOfTheSpecs) {
     )",
                               "minimal");
     EXPECT_EQ(job.name, "minimal");
-    EXPECT_EQ(job.contact.eta, 0.25);
+    EXPECT_EQ(job.variants.front().contact.eta, 0.25);
     EXPECT_EQ(job.specimen.porosity, SpecimenSpec{}.porosity);
     EXPECT_EQ(job.specimen.thickness_m, SpecimenSpec{}.thickness_m);
-    EXPECT_EQ(job.grain.density_kg_m3, GrainMaterial{}.density_kg_m3);
-    EXPECT_EQ(job.numerics.accuracy, NumericsSpec{}.accuracy);
+    EXPECT_EQ(job.variants.front().grain.density_kg_m3, GrainMaterial{}.density_kg_m3);
+    EXPECT_EQ(job.variants.front().numerics.accuracy, NumericsSpec{}.accuracy);
     EXPECT_EQ(job.tests[0].stop_fraction, TestSpec{}.stop_fraction);
     EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1}));
     EXPECT_EQ(job.brazilian_specimen.outline.shape, Shape::disc);
@@ -116,18 +116,18 @@ TEST(Job, EachNumericsHasItsOwnKeys) {
     const Job paper = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"",
                                        "kind = \"paper\"\nspeed = \"6.25e-9 m\"\ndamping = 0.5\nmass_factor = 1.7"),
                                 "job");
-    EXPECT_EQ(paper.numerics.speed_m, 6.25e-9);
-    EXPECT_EQ(paper.numerics.damping, 0.5);
-    EXPECT_EQ(paper.numerics.mass_factor, 1.7);
+    EXPECT_EQ(paper.variants.front().numerics.speed_m, 6.25e-9);
+    EXPECT_EQ(paper.variants.front().numerics.damping, 0.5);
+    EXPECT_EQ(paper.variants.front().numerics.mass_factor, 1.7);
     const Job dynamic = parse_job(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"",
                                          "kind = \"dynamic\"\nspeed = \"50 mm/s\"\ntime_step = \"10 ns\"\nmaximum_steps = 1000"),
                                   "job");
-    EXPECT_EQ(dynamic.numerics.speed_m, 0.05);
-    EXPECT_EQ(dynamic.numerics.time_step_s, 1e-8);
-    EXPECT_EQ(dynamic.numerics.maximum_steps, 1000);
+    EXPECT_EQ(dynamic.variants.front().numerics.speed_m, 0.05);
+    EXPECT_EQ(dynamic.variants.front().numerics.time_step_s, 1e-8);
+    EXPECT_EQ(dynamic.variants.front().numerics.maximum_steps, 1000);
     const Job expert = parse_job(edited("accuracy = \"0.5 %\"", "residual_target = 0.003\nconfirm = true"), "job");
-    EXPECT_EQ(expert.numerics.residual_target, 0.003);
-    EXPECT_TRUE(expert.numerics.confirm);
+    EXPECT_EQ(expert.variants.front().numerics.residual_target, 0.003);
+    EXPECT_TRUE(expert.variants.front().numerics.confirm);
     for (const char* accuracy : {"\"0.05 %\"", "\"10 %\"", "0.0005", "0.1"})
         EXPECT_NO_THROW(parse_job(edited("\"0.5 %\"", accuracy), "job")) << accuracy;
 }
@@ -143,7 +143,7 @@ TEST(Job, LaboratoryValuesHaveOneNameInside) {
 TEST(Job, AByteOrderMarkAndWindowsLineEndsAreFine) {
     std::string text = "\xEF\xBB\xBF";
     for (char c : sample_job) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-    EXPECT_EQ(parse_job(text, "job").grain.E_Pa, 25.8e9);
+    EXPECT_EQ(parse_job(text, "job").variants.front().grain.E_Pa, 25.8e9);
 }
 
 void expect_same(const OutlineSpec& a, const OutlineSpec& b) {
@@ -171,13 +171,18 @@ void expect_same(const SpecimenSpec& a, const SpecimenSpec& b) {
     EXPECT_EQ(a.porosity, b.porosity);
     EXPECT_EQ(a.merge_length_m, b.merge_length_m);
     EXPECT_EQ(a.triangles_per_grain, b.triangles_per_grain);
+    EXPECT_EQ(a.particles_per_grain, b.particles_per_grain);
 }
 
-void expect_same(const Job& a, const Job& b) {
+void expect_same(const Variant& a, const Variant& b) {
+    SCOPED_TRACE(a.name);
     EXPECT_EQ(a.name, b.name);
-    expect_same(a.specimen, b.specimen);
-    expect_same(a.brazilian_specimen, b.brazilian_specimen);
+    EXPECT_EQ(a.stem, b.stem);
+    EXPECT_EQ(a.seeds, b.seeds);
+    EXPECT_EQ(a.tests, b.tests);
+
     EXPECT_EQ(a.model.kind, b.model.kind);
+    EXPECT_EQ(a.model.normal, b.model.normal);
     EXPECT_EQ(a.model.contact, b.model.contact);
     EXPECT_EQ(a.model.plane, b.model.plane);
     EXPECT_EQ(a.grain.E_Pa, b.grain.E_Pa);
@@ -202,6 +207,14 @@ void expect_same(const Job& a, const Job& b) {
     EXPECT_EQ(a.numerics.time_step_s, b.numerics.time_step_s);
     EXPECT_EQ(a.numerics.maximum_steps, b.numerics.maximum_steps);
     EXPECT_EQ(a.numerics.confirm, b.numerics.confirm);
+}
+
+void expect_same(const Job& a, const Job& b) {
+    EXPECT_EQ(a.name, b.name);
+    expect_same(a.specimen, b.specimen);
+    expect_same(a.brazilian_specimen, b.brazilian_specimen);
+    ASSERT_EQ(a.variants.size(), b.variants.size());
+    for (std::size_t i = 0; i < a.variants.size(); ++i) expect_same(a.variants[i], b.variants[i]);
     ASSERT_EQ(a.tests.size(), b.tests.size());
     for (std::size_t i = 0; i < a.tests.size(); ++i) {
         EXPECT_EQ(a.tests[i].kind, b.tests[i].kind);
@@ -210,6 +223,7 @@ void expect_same(const Job& a, const Job& b) {
         EXPECT_EQ(a.tests[i].maximum_strain, b.tests[i].maximum_strain);
         EXPECT_EQ(a.tests[i].plate_stiffness_factor, b.tests[i].plate_stiffness_factor);
         EXPECT_EQ(a.tests[i].plate_mu, b.tests[i].plate_mu);
+        EXPECT_EQ(a.tests[i].membrane_plates, b.tests[i].membrane_plates);
         EXPECT_EQ(a.tests[i].snapshots, b.tests[i].snapshots);
         EXPECT_EQ(a.tests[i].seeds, b.tests[i].seeds);
     }
@@ -260,6 +274,16 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
                              "\"2 mm\", maximum = \"5 mm\" }"));
 }
 
+TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {
+    expect_round_trip(variant_job);
+    expect_round_trip(edited("normal = \"edge\"", "normal = \"centres\"", variant_job));
+    expect_round_trip(edited("maximum = \"4 mm\" }", "maximum = \"4 mm\" }\nparticles_per_grain = 13.7", variant_job));
+    expect_round_trip(edited("membrane_plates = 12", "plate_stiffness_factor = 0.3\nplate_mu = 0.1", variant_job));
+    expect_round_trip(edited("[[test]]", "[[variant]]\nname = \"alone\"\n[[test]]"));
+    expect_round_trip(edited("[material.grain]\nE = \"25.8 GPa\"\nnu = 0.23\n", "[material.grain]\n",
+                             edited("kind = \"flexible\"", "kind = \"rigid\"")));
+}
+
 TEST(JobTemplate, EveryKindIsAJob) {
     for (std::string_view kind : job_template_kinds()) {
         SCOPED_TRACE(kind);
@@ -287,13 +311,13 @@ TEST(Examples, TheAugigGraniteIsTable7) {
     const std::filesystem::path folder = std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples/augig";
     for (const char* file : {"job.toml", "short.toml"}) {
         const Job job = read_job(folder / file);
-        EXPECT_EQ(job.contact.sigma_nt_Pa, 8.5e6);
-        EXPECT_EQ(job.contact.tau_Pa, 29.75e6);
-        EXPECT_EQ(job.contact.mu, 0.40);
-        EXPECT_EQ(job.contact.Gfn_J_m2, 20.0);
-        EXPECT_EQ(job.contact.Gfs_J_m2, 800.0);
-        EXPECT_EQ(job.contact.Kn_Pa_m, 18e13);
-        EXPECT_EQ(job.contact.eta, 0.28);
+        EXPECT_EQ(job.variants.front().contact.sigma_nt_Pa, 8.5e6);
+        EXPECT_EQ(job.variants.front().contact.tau_Pa, 29.75e6);
+        EXPECT_EQ(job.variants.front().contact.mu, 0.40);
+        EXPECT_EQ(job.variants.front().contact.Gfn_J_m2, 20.0);
+        EXPECT_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
+        EXPECT_EQ(job.variants.front().contact.Kn_Pa_m, 18e13);
+        EXPECT_EQ(job.variants.front().contact.eta, 0.28);
         EXPECT_EQ(job.laboratory.at("UCS"), 122.1e6);
     }
     EXPECT_EQ(read_job(folder / "job.toml").seeds.size(), 5u);

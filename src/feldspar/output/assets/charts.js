@@ -76,7 +76,8 @@ function drawMark(ctx, mark, x, y, size, color) {
 
 /**
  * A chart in `host`. series: [{label, x, y, color (a theme name or a colour), width, dash, mark, size, right, quiet, note}];
- * `right` uses the right axis, `quiet` keeps a series out of the legend and the tooltip.
+ * `right` uses the right axis, `quiet` keeps a series out of the legend and the tooltip,
+ * `key: false` out of the legend only.
  */
 class XYChart {
   constructor(host, options) {
@@ -131,7 +132,7 @@ class XYChart {
     }, data, this.host);
     this.plot.over.append(this.tip);
     this.plot.over.addEventListener("mouseleave", () => { this.tip.style.display = "none"; });
-    this.legend.replaceChildren(...this.series.filter((s) => !s.quiet).map((s) => {
+    this.legend.replaceChildren(...this.series.filter((s) => !s.quiet && s.key !== false).map((s) => {
       const color = this.color(s);
       const key = s.mark && !s.width ? h("b", {class: s.mark, style: (s.mark === "ring" ? "border-color:" : "background:") + color})
         : h("b", {class: s.dash ? "dash" : "", style: "border-color:" + color});

@@ -4,6 +4,7 @@
 const data = JSON.parse(document.getElementById("data").textContent);
 const page = document.getElementById("page");
 const kindNames = {"uniaxial-compression": "Uniaxial compression", "direct-tension": "Direct tension", biaxial: "Biaxial compression", brazilian: "Brazilian test"};
+data.tests.forEach((test, index) => { test.index = index; });
 const redraw = [];   // what must be drawn again when the theme changes
 
 function setTheme(forced) {
@@ -11,7 +12,10 @@ function setTheme(forced) {
   document.documentElement.dataset.theme = dark ? "dark" : "light";
 }
 function redrawAll() {
-  for (const chart of charts) chart.rebuild();
+  for (const chart of [...charts]) {
+    if (chart.host.isConnected) chart.rebuild();
+    else charts.delete(chart);
+  }
   for (const draw of redraw) draw();
 }
 
@@ -30,15 +34,28 @@ function table(className, head, rows) {
 function th(text, number, title) { return h("th", {class: number ? "number" : null, scope: "col", title}, text); }
 function td(text, number, className) { return h("td", {class: ((number ? "number " : "") + (className || "")).trim() || null}, text); }
 
-/** Tests of one kind (and sigma_3) over all packings. */
+/** The title with the variant before it, if the job has variants. */
+function fullTitle(test) { return (test.variant ? test.variant + " \u00b7 " : "") + titleOf(test); }
+
+/** Tests of one variant and kind (and sigma_3) over all packings. */
 function groupTests() {
   const groups = new Map();
-  data.tests.forEach((test, index) => {
-    const key = titleOf(test);
+  const inOrder = data.variants ? data.variants.flatMap((v) => data.tests.filter((t) => t.variant === v.name)) : data.tests;
+  inOrder.forEach((test) => {
+    const key = fullTitle(test);
     if (!groups.has(key)) groups.set(key, []);
-    groups.get(key).push(Object.assign(test, {index}));
+    groups.get(key).push(test);
   });
   return groups;
+}
+
+function modelFacts(m) {
+  if (data.variants) {
+    const each = (key) => [...new Set(data.variants.map((v) => v[key]))].join(", ");
+    return [plural(data.variants.length, "variant"), "grains: " + each("grains").replaceAll("-", " "), each("law") + " law", each("numerics") + " numerics"];
+  }
+  return [(m.grains === "inner-particles" ? "inner particles, " : m.grains + " grains, ") + (m.contact === "lobatto3" ? "three-point" : "one-point") + " contacts", m.law + " law",
+    ...(m.grains === "flexible" ? ["plane " + m.plane] : []), m.numerics + " numerics"];
 }
 
 function writeHeader() {
@@ -48,10 +65,7 @@ function writeHeader() {
     h("h1", {}, data.job.name),
     h("ul", {class: "facts"},
       h("li", {}, plural(data.tests.length, "test") + " on " + plural(seeds.size, "packing")),
-      h("li", {}, m.grains + " grains, " + (m.contact === "lobatto3" ? "three-point" : "one-point") + " contacts"),
-      h("li", {}, m.law + " law"),
-      h("li", {}, "plane " + m.plane),
-      h("li", {}, m.numerics + " numerics"),
+      modelFacts(m).map((fact) => h("li", {}, fact)),
       h("li", {}, data.provenance.started.slice(0, 10)))));
   if (!data.complete) {
     page.append(h("p", {class: "notice"}, "This run is not complete: it is still going, or it ended early. The report holds the tests that were finished" +
@@ -84,8 +98,8 @@ function writeProperties() {
   page.append(h("h2", {}, "Properties of the rock"));
   if (!data.properties.length) { page.append(h("p", {class: "soft"}, "No property could be read yet.")); return; }
   const compared = data.properties.some((p) => p.laboratory !== null);
-  page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + ". E and \u03bd hold for plane " +
-    data.model.plane + "."));
+  page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + "." +
+    (data.model.grains === "flexible" ? " E and \u03bd hold for plane " + data.model.plane + "." : "")));
   const reach = spreadReach();
   const head = [th("Property"), th("", true), th("Median", true), th("Range", true), th("Packings", true)];
   if (compared) head.push(th("Laboratory", true), th("Difference", true));
@@ -115,6 +129,12 @@ function picker(label, names, chosen, choose) {
     choose(i);
   }}, name));
   return h("div", {class: "pick"}, label, h("div", {class: "buttons", role: "group"}, buttons));
+}
+/** The same as a list to unfold, where buttons would fill more than a line. */
+function chooser(label, names, choose) {
+  if (names.join("").length < 90) return picker(label, names, 0, choose);
+  const list = h("select", {"aria-label": label || "Choose", onchange: (e) => choose(Number(e.target.value))}, names.map((text, i) => h("option", {value: i}, text)));
+  return h("div", {class: "pick"}, label, list);
 }
 function card(title) {
   const body = h("div", {class: "card"}, h("h4", {}, title));
@@ -163,31 +183,43 @@ function hasGauges(test) { return test.history.lateral.some((v) => v !== null &&
 function writeTests() {
   page.append(h("h2", {}, "Tests"),
     h("p", {class: "soft"}, "Strains in 10\u207b\u00b3, stresses in MPa, compression positive. Cracks are contact points whose bond broke, counted for the chosen packing."));
-  for (const [title, tests] of groupTests()) {
-    const peaks = tests.map((t) => t.peak).filter((p) => p !== null);
-    const summary = peaks.length ? "Strength " + show(median(peaks)) + " MPa" + (peaks.length > 1 ? ", median of " + peaks.length + " packings (" + show(Math.min(...peaks)) + " to " + show(Math.max(...peaks)) + ")" : "") + "." : "";
-    const open = tests.filter((t) => !t.peak_reached).length;
-    page.append(h("h3", {}, title), h("p", {class: "soft"}, summary + (open ? " The peak was not reached in " + plural(open, "test") + "." : "")));
-    const strainLabel = tests[0].kind === "brazilian" ? "Approach of the plates / diameter (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
-    const stressLabel = tests[0].kind === "brazilian" ? "2P / (\u03c0Dt) (MPa)" : "Axial stress (MPa)";
-    const updates = [];
-    page.append(picker("Packing (seed)", tests.map((t) => String(t.seed)), 0, (i) => updates.forEach((update) => update(i))) || "");
-    const grid = h("div", {class: "grid"});
-    page.append(grid);
-    const first = card("Stress and cracks"), second = card("Axial, lateral and volumetric strain, from the gauges"), third = card("Energy balance");
-    grid.append(first);
-    const a = new XYChart(first, {x: strainLabel, y: stressLabel, right: "Cracks", series: stressSeries(tests, 0)});
-    updates.push((i) => a.set(stressSeries(tests, i)));
-    if (tests.some(hasGauges)) {
-      grid.append(second);
-      const b = new XYChart(second, {x: "Strain, middle of the specimen (10\u207b\u00b3)", y: stressLabel, series: strainSeries(tests[0])});
-      updates.push((i) => b.set(strainSeries(tests[i])));
-    }
-    grid.append(third);
-    const c = new XYChart(third, {x: strainLabel, y: "Energy (J)", series: energySeries(tests[0])});
-    updates.push((i) => c.set(energySeries(tests[i])));
-    grid.append(testFacts(tests, updates));
+  const groups = [...groupTests().values()];
+  if (!data.variants) { for (const tests of groups) writeTest(page, tests); return; }
+  const box = h("div", {}), present = data.variants.filter((v) => data.tests.some((t) => t.variant === v.name));
+  const open = (name) => {
+    box.replaceChildren();
+    for (const tests of groups) if (tests[0].variant === name) writeTest(box, tests);
+  };
+  if (!present.length) return;
+  page.append(chooser("Variant", present.map((v) => v.name), (i) => open(present[i].name)) || "", box);
+  open(present[0].name);
+}
+
+/** The charts and numbers of one kind of test. */
+function writeTest(host, tests) {
+  const peaks = tests.map((t) => t.peak).filter((p) => p !== null);
+  const summary = peaks.length ? "Strength " + show(median(peaks)) + " MPa" + (peaks.length > 1 ? ", median of " + peaks.length + " packings (" + show(Math.min(...peaks)) + " to " + show(Math.max(...peaks)) + ")" : "") + "." : "";
+  const open = tests.filter((t) => !t.peak_reached).length;
+  host.append(h("h3", {}, titleOf(tests[0])), h("p", {class: "soft"}, summary + (open ? " The peak was not reached in " + plural(open, "test") + "." : "")));
+  const strainLabel = tests[0].kind === "brazilian" ? "Approach of the plates / diameter (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
+  const stressLabel = tests[0].kind === "brazilian" ? "2P / (\u03c0Dt) (MPa)" : "Axial stress (MPa)";
+  const updates = [];
+  host.append(picker("Packing (seed)", tests.map((t) => String(t.seed)), 0, (i) => updates.forEach((update) => update(i))) || "");
+  const grid = h("div", {class: "grid"});
+  host.append(grid);
+  const first = card("Stress and cracks"), second = card("Axial, lateral and volumetric strain, from the gauges"), third = card("Energy balance");
+  grid.append(first);
+  const a = new XYChart(first, {x: strainLabel, y: stressLabel, right: "Cracks", series: stressSeries(tests, 0)});
+  updates.push((i) => a.set(stressSeries(tests, i)));
+  if (tests.some(hasGauges)) {
+    grid.append(second);
+    const b = new XYChart(second, {x: "Strain, middle of the specimen (10\u207b\u00b3)", y: stressLabel, series: strainSeries(tests[0])});
+    updates.push((i) => b.set(strainSeries(tests[i])));
   }
+  grid.append(third);
+  const c = new XYChart(third, {x: strainLabel, y: "Energy (J)", series: energySeries(tests[0])});
+  updates.push((i) => c.set(energySeries(tests[i])));
+  grid.append(testFacts(tests, updates));
 }
 
 function testFacts(tests, updates) {
@@ -337,8 +369,9 @@ function writePattern() {
     showScale();
   }
 
-  const names = data.fields.map((f) => { const t = data.tests[f.test]; return titleOf(t).replace(" compression at \u03c3\u2083 =", ",") + " \u00b7 seed " + t.seed; });
-  page.append(picker("", names, 0, open) || h("p", {class: "small"}, names[0]), box);
+  const names = data.fields.map((f) => { const t = data.tests[f.test]; return fullTitle(t).replace(" compression at \u03c3\u2083 =", ",") + " \u00b7 seed " + t.seed; });
+  const choose = data.variants ? chooser("", names, open) : picker("", names, 0, open);
+  page.append(choose || h("p", {class: "small"}, names[0]), box);
   const zoom = h("div", {class: "zoom"}, h("button", {type: "button", "aria-label": "Zoom in", onclick: () => viewer.zoom(1.5)}, "+"),
     h("button", {type: "button", "aria-label": "Zoom out", onclick: () => viewer.zoom(1 / 1.5)}, "\u2212"), h("button", {type: "button", onclick: () => viewer.reset()}, "Fit"));
   left.append(moment, h("div", {class: "slider"}, play, slider, zoom), stage, readout);
@@ -361,9 +394,9 @@ function writeEvidence() {
   };
   const confirmed = data.tests.some((t) => t.change_at_third !== null);
   page.append(table("evidence",
-    [th("Test"), th("Seed", true), th("Strength", true), th("Grade"), th(["R*", h("br"), "mean"], true), th(["R* at", h("br"), "peak"], true), th(["Platens", h("br"), "differ by"], true, "largest difference of the two reactions over their mean"),
+    [data.variants ? th("Variant") : null, th("Test"), th("Seed", true), th("Strength", true), th("Grade"), th(["R*", h("br"), "mean"], true), th(["R* at", h("br"), "peak"], true), th(["Platens", h("br"), "differ by"], true, "largest difference of the two reactions over their mean"),
       th(["Kinetic /", h("br"), "strain energy"], true), th(["Damping /", h("br"), "fracture"], true), th(["Energy", h("br"), "residual"], true), th(["Platen speed", h("br"), "at peak"], true), confirmed ? th(["Peak at a", h("br"), "third of the rate"], true) : null],
-    [...groupTests().values()].flat().map((t, i, all) => h("tr", {}, td(i && titleOf(t) === titleOf(all[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
+    [...groupTests().values()].flat().map((t, i, all) => h("tr", {}, data.variants ? td(i && t.variant === all[i - 1].variant ? "" : t.variant, false, "strong") : null, td(i && t.variant === all[i - 1].variant && titleOf(t) === titleOf(all[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
       td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(percent(t.imbalance_max), true), td(show(t.kinetic_over_strain, 2), true), td(percent(t.damping_over_fracture), true),
       td(percent(t.energy_residual), true), td(speedAtPeak(t), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null))));
   // the verdicts in words, each once
@@ -376,7 +409,7 @@ function writeEvidence() {
   const list = h("details", {}, h("summary", {}, "The verdicts in words"));
   list.open = verdicts.size <= 4;
   page.append(list);
-  const names = (tests) => [...new Set(tests.map(titleOf))].map((title) => title + ", seed" + (tests.filter((t) => titleOf(t) === title).length > 1 ? "s " : " ") + tests.filter((t) => titleOf(t) === title).map((t) => t.seed).join(", ")).join("; ");
+  const names = (tests) => [...new Set(tests.map(fullTitle))].map((title) => title + ", seed" + (tests.filter((t) => fullTitle(t) === title).length > 1 ? "s " : " ") + tests.filter((t) => fullTitle(t) === title).map((t) => t.seed).join(", ")).join("; ");
   for (const tests of [...verdicts.values()].sort((a, b) => (a[0].grade < b[0].grade ? -1 : 1))) {
     list.append(h("p", {class: "verdict"}, h("span", {class: "grade " + tests[0].grade}, tests[0].grade), " " + tests[0].verdict + " ", h("span", {class: "soft small"}, "(" + names(tests) + ")")));
   }
@@ -403,10 +436,11 @@ function writeProvenance() {
 
 setTheme();
 writeHeader();
-writeProperties();
+if (data.variants) writeComparison();
+else writeProperties();
 writeTests();
 writePattern();
-writeEnvelope();
+if (!data.variants) writeEnvelope();
 writeEvidence();
 writeProvenance();
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { setTheme(); redrawAll(); });

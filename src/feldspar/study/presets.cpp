@@ -1,0 +1,66 @@
+#include "feldspar/study/presets.hpp"
+
+#include <array>
+#include <map>
+
+namespace feldspar {
+namespace {
+
+// N. Monteiro Azevedo, M. L. B. Farinha, S. Oliveira: A Flexible Particle Model for Rock Fracture, Geotechnics 2022, 2, 523-548.
+constexpr auto elastic = std::to_array<Preset>({
+    {"augig-rigid", "Table 1", GrainKind::rigid, "contact = { Kn = \"1.08e4 GPa/m\", eta = 0.28 }"},
+    {"augig-flexible", "Table 1, section 4.2", GrainKind::flexible,
+     "grain = { E = \"25.8 GPa\", nu = 0.23 }\ncontact = { Kn = \"18.00e4 GPa/m\", eta = 0.28 }"},
+    {"augig-flexible-51.6", "Table 1, section 4.2", GrainKind::flexible,
+     "grain = { E = \"51.6 GPa\", nu = 0.23 }\ncontact = { Kn = \"2.06e4 GPa/m\", eta = 0.28 }"},
+    {"augig-inner-particles", "Table 1", GrainKind::inner_particles, "contact = { Kn = \"4.90e4 GPa/m\", eta = 0.30 }"},
+});
+
+constexpr auto strength = std::to_array<Preset>({
+    {"augig-table2-brittle", "Table 2, fitted with rigid grains", std::nullopt,
+     "contact = { law = \"brittle\", sigma_nt = \"13.70 MPa\", tau = \"48.80 MPa\", mu = 0.40 }"},
+    {"augig-table2-bilinear", "Table 2, fitted with rigid grains", std::nullopt,
+     "contact = { law = \"bilinear\", sigma_nt = \"11.5 MPa\", tau = \"33.25 MPa\", mu = 0.5, Gfn = \"66.1 N/m\", Gfs = \"2078.6 "
+     "N/m\" }"},
+    {"augig-table7", "Table 7, fitted with flexible grains", std::nullopt,
+     "contact = { law = \"bilinear\", sigma_nt = \"8.5 MPa\", tau = \"29.75 MPa\", mu = 0.40, Gfn = \"20.0 N/m\", Gfs = \"800.0 "
+     "N/m\" }"},
+});
+
+std::string overview_of(std::string_view key, std::span<const Preset> presets) {
+    std::string text;
+    for (const Preset& preset : presets) {
+        text += std::string(key) + " = \"" + std::string(preset.name) + "\"   # " + std::string(preset.source);
+        if (preset.kind) text += std::string("; for kind = \"") + name(*preset.kind) + "\"";
+        text += "\n";
+        for (std::size_t at = 0; at < preset.keys.size();) {
+            const std::size_t end = std::min(preset.keys.find('\n', at), preset.keys.size());
+            text += "#   " + std::string(preset.keys.substr(at, end - at)) + "\n";
+            at = end + 1;
+        }
+    }
+    return text;
+}
+
+}  // namespace
+
+std::span<const Preset> elastic_presets() { return elastic; }
+std::span<const Preset> strength_presets() { return strength; }
+
+const toml::table& preset_table(const Preset& preset) {
+    static const auto tables = [] {
+        std::map<std::string_view, toml::table> parsed;
+        for (const Preset& one : elastic) parsed.emplace(one.name, parse_toml(std::string(one.keys), std::string(one.name)));
+        for (const Preset& one : strength) parsed.emplace(one.name, parse_toml(std::string(one.keys), std::string(one.name)));
+        return parsed;
+    }();
+    return tables.at(preset.name);
+}
+
+std::string preset_overview() {
+    return "# Presets of [material], after Monteiro Azevedo, Farinha, Oliveira 2022, Geotechnics 2, 523-548 (Augig granite).\n"
+           "# A key in [material.grain] or [material.contact] goes before the same key of a preset.\n\n" +
+           overview_of("elastic_preset", elastic) + "\n" + overview_of("strength_preset", strength);
+}
+
+}  // namespace feldspar

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include "feldspar/study/job_sections.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr std::size_t largest_variant_count = 50;
+constexpr std::size_t longest_name = 60;
+
+bool is_plain(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
+
+std::string read_variant_name(const TableReader& table) {
+    const std::string given = table.text("name");
+    const bool fits = std::all_of(given.begin(), given.end(), [](char c) {
+        return is_plain(c) || std::string_view(" ,.-_%()+=").find(c) != std::string_view::npos;
+    });
+    if (!fits || given.size() > longest_name || variant_stem(given).empty() || given.front() == ' ' || given.back() == ' ')
+        table.fail("name", shown(*table.find("name")) + " cannot name a variant",
+                   "up to 60 letters, digits, blanks and , . - _ % ( ) + =, with a letter or digit among them");
+    return given;
+}
+
+std::vector<TestKind> read_kinds(const TableReader& table) {
+    std::vector<TestKind> kinds;
+    if (!table.has("tests")) return kinds;
+    const std::initializer_list<TestKind> all{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial,
+                                              TestKind::brazilian};
+    std::vector<std::string_view> words;
+    for (TestKind kind : all) words.emplace_back(name(kind));
+    for (const toml::node& node : table.array("tests")) {
+        const std::string word = table.text_of(node, "tests");
+        const auto found = std::find_if(all.begin(), all.end(), [&](TestKind kind) { return word == name(kind); });
+        if (found == all.end())
+            table.fail_at(node, "tests", "'" + word + "' is not a kind of test", listed(words), did_you_mean(word, words));
+        if (std::find(kinds.begin(), kinds.end(), *found) != kinds.end())
+            table.fail_at(node, "tests", "'" + word + "' is given twice", "each kind once");
+        kinds.push_back(*found);
+    }
+    if (kinds.empty()) table.fail("tests", "the list is empty", "one kind of test or more, or leave it out for all");
+    return kinds;
+}
+
+const toml::array& variant_list(const TableReader& root) {
+    if (root.find("variant")->is_table())
+        root.fail("variant", "is written as one table", "a list of tables, each headed [[variant]]");
+    const toml::array& list = root.array("variant");
+    if (list.empty()) root.fail("variant", "the list is empty", "one [[variant]] or more, or none at all");
+    if (list.size() > largest_variant_count)
+        root.fail("variant", std::to_string(list.size()) + " variants are more than a report can show", "at most 50");
+    return list;
+}
+
+TableReader variant_table(const TableReader& root, const toml::node& node, std::size_t index) {
+    if (!node.is_table()) root.fail_at(node, "variant", shown(node) + " is not a variant", "a table headed [[variant]]");
+    return TableReader(*node.as_table(), "variant[" + std::to_string(index + 1) + "]", root.file(),
+                       {"name", "seeds", "tests", "model", "material", "numerics"}, variant_level);
+}
+
+Variant read_variant(const TableReader& root, const TableReader* table) {
+    Variant variant;
+    if (table != nullptr) {
+        variant.name = read_variant_name(*table);
+        variant.stem = variant_stem(variant.name);
+        if (table->has("seeds")) variant.seeds = read_seed_list(*table, "seeds");
+        variant.tests = read_kinds(*table);
+    }
+    Physics physics = read_physics(root, table);
+    variant.model = physics.model;
+    variant.grain = physics.grain;
+    variant.contact = physics.contact;
+    variant.numerics = physics.numerics;
+    return variant;
+}
+
+void check_variant(const TableReader& table, const Variant& variant, const Job& job) {
+    for (std::uint64_t seed : variant.seeds)
+        if (std::find(job.seeds.begin(), job.seeds.end(), seed) == job.seeds.end())
+            table.fail("seeds", "the seed " + std::to_string(seed) + " is not one of the run's", "some of [run] seeds");
+    for (TestKind kind : variant.tests)
+        if (std::none_of(job.tests.begin(), job.tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
+            table.fail("tests", "the job has no test of kind '" + std::string(name(kind)) + "'",
+                       "kinds that stand in a [[test]]");
+    for (const TestSpec& test : job.tests) {
+        const std::vector<std::uint64_t> own(test.seeds.begin(), test.seeds.end());
+        for (std::uint64_t seed : own.empty() ? job.seeds : own)
+            if (variant.runs(test, seed)) return;
+    }
+    table.fail("seeds", "none of its tests is run with these seeds: nothing is left to run");
+}
+
+}  // namespace
+
+std::string variant_stem(const std::string& name) {
+    std::string stem;
+    for (char c : name) {
+        if (is_plain(c) || (c == '.' && !stem.empty()))
+            stem += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        else if (c == '%')
+            stem += "pc";
+        else if (!stem.empty() && stem.back() != '-')
+            stem += '-';
+    }
+    while (!stem.empty() && !is_plain(stem.back())) stem.pop_back();
+    return stem;
+}
+
+std::vector<Variant> read_variants(const TableReader& root) {
+    if (!root.has("variant")) return {read_variant(root, nullptr)};
+    std::vector<Variant> variants;
+    std::map<std::string, std::string> taken;  // stem -> name
+    for (const toml::node& node : variant_list(root)) {
+        const TableReader table = variant_table(root, node, variants.size());
+        Variant variant = read_variant(root, &table);
+        const auto [other, fresh] = taken.emplace(variant.stem, variant.name);
+        if (!fresh)
+            table.fail(
+                "name",
+                shown(*table.find("name")) +
+                    (other->second == variant.name ? " is given twice" : " would share its files with '" + other->second + "'"),
+                "each variant a name of its own");
+        variants.push_back(std::move(variant));
+    }
+    return variants;
+}
+
+void check_variants(const TableReader& root, const Job& job) {
+    if (!root.has("variant")) return;
+    std::size_t index = 0;
+    for (const toml::node& node : variant_list(root)) {
+        check_variant(variant_table(root, node, index), job.variants[index], job);
+        ++index;
+    }
+}
+
+}  // namespace feldspar
