@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "feldspar/geometry/triangulate.hpp"
+
 namespace feldspar {
 namespace {
 
@@ -16,17 +18,13 @@ constexpr double smallest_share = 1e-3;
 /// touch each other and have one contact each with it.
 class RigidPart {
 public:
-    RigidPart(std::span<const Vec2> centres, std::span<const double> radii_m, double largest_gap)
+    RigidPart(std::span<const Vec2> centres, std::span<const double> radii_m, std::span<const InsideContact> pairs)
         : centres_(centres),
           radii_(radii_m),
           count_(static_cast<int>(centres.size())),
           touching_(centres.size() * centres.size(), 0),
           rigid_(centres.size(), 0) {
-        for (int i = 0; i < count_; ++i) {
-            for (int j = i + 1; j < count_; ++j) {
-                if (gap(i, j) <= largest_gap) touch(i, j);
-            }
-        }
+        for (const InsideContact& pair : pairs) touch(pair.a, pair.b);
     }
     void make_whole();
     std::vector<InsideContact> contacts() const;
@@ -128,6 +126,20 @@ std::vector<InsideContact> RigidPart::contacts() const {
     return result;
 }
 
+/// Pairs of discs whose Laguerre cells share an edge and whose gap is at most `largest_gap`.
+std::vector<InsideContact> near_neighbours(std::span<const Vec2> centres, std::span<const double> radii_m, double largest_gap) {
+    std::vector<double> weights;
+    for (const double R : radii_m) weights.push_back(R * R);
+    std::vector<InsideContact> pairs;
+    for (const std::array<int, 3>& t : regular_triangulation(centres, weights).triangles) {
+        for (int k = 0; k < 3; ++k) {
+            const int a = t[k], b = t[(k + 1) % 3];
+            if (norm(centres[b] - centres[a]) - radii_m[a] - radii_m[b] <= largest_gap) pairs.push_back({a, b});
+        }
+    }
+    return pairs;
+}
+
 /// An edge as a line on which places are measured from its first vertex.
 struct EdgeLine {
     Vec2 start, end, along;
@@ -188,7 +200,7 @@ int facing_edge(const Cell& neighbour, int from, int to) {
 }  // namespace
 
 std::vector<InsideContact> contacts_inside(std::span<const Vec2> centres, std::span<const double> radii_m, double diameter_m) {
-    RigidPart part(centres, radii_m, contact_gap * diameter_m);
+    RigidPart part(centres, radii_m, near_neighbours(centres, radii_m, contact_gap * diameter_m));
     part.make_whole();
     return part.contacts();
 }

@@ -8,8 +8,9 @@
 
 namespace feldspar {
 
-/// (S9): discs of one grain are in contact if the gap between them is at most this share of the diameter.
-constexpr double contact_gap = 0.05;
+/// (S9): discs of one grain whose Laguerre cells are neighbours are in contact if the gap between them is at most this share of
+/// the diameter. With it the stiffness of Table 1 of the paper gives the paper's Young's modulus (docs/decisions: inner particles).
+constexpr double contact_gap = 0.30;
 
 /// Pairs of discs of one grain in contact, by their numbers in the grain, ascending. Where these would leave a mechanism (discs
 /// that hang on one contact, or pieces that turn against each other), the nearest pairs are added, so that the grain is rigid
