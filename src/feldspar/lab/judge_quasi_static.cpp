@@ -30,9 +30,9 @@ struct Criterion {
 
 std::string percent(double value) { return fmt::format("{:.2g} %", 100.0 * value); }
 
-std::vector<Criterion> criteria(const QuasiStaticEvidence& e, TestKind kind) {
+std::vector<Criterion> criteria(const QuasiStaticEvidence& e, TestKind kind, GrainKind grains) {
     const bool brazilian = kind == TestKind::brazilian;
-    const double wider = brazilian ? 2.0 : 1.0;
+    const double wider = brazilian && grains != GrainKind::rigid ? 2.0 : 1.0;
     std::vector<Criterion> table{
         {e.residual_mean, 7e-3 * wider, 1.5e-2 * wider, "the mean unbalanced force over the load"},
         {e.residual_at_peak, kind == TestKind::direct_tension ? 4e-2 : 2e-2, 5e-2, "the unbalanced force over the load at the peak"},
@@ -145,7 +145,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
     e.kinetic_over_strain = kinetic;
     if (top.energy.fracture > 0.0) e.damping_over_fracture = top.energy.damping / top.energy.fracture;
 
-    const auto table = criteria(e, result.test.kind);
+    const auto table = criteria(e, result.test.kind, result.model.kind);
     const bool a = std::all_of(table.begin(), table.end(), [](const Criterion& c) { return c.holds_a(); });
     const bool b = std::all_of(table.begin(), table.end(), [](const Criterion& c) { return c.holds_b(); });
     e.grade = a ? 'A' : b ? 'B' : 'C';

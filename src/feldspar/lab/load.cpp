@@ -105,15 +105,16 @@ double typical_steps(const Experiment& e) {
     }
     const double base = kind == TestKind::brazilian ? 40000.0 : kind == TestKind::direct_tension ? 12000.0 : kind == TestKind::biaxial ? 45000.0 : 24000.0;
     NumericsSpec usual;
-    return base * std::sqrt(residual_target(usual, kind) / residual_target(n, kind));
+    return base * std::sqrt(residual_target(usual, kind, e.setup.model.kind) / residual_target(n, kind, e.setup.model.kind));
 }
 
 void load(Experiment& e, Recorder& recorder, TestResult& result) {
     const bool adaptive = e.setup.numerics.kind == NumericsKind::adaptive;
     const int block = adaptive ? 10 : 50;   // steps between records
     ContactFinder finder(e.assembly, 0.1 * mean_body_diameter(e.assembly));
-    const double target = residual_target(e.setup.numerics, e.setup.test.kind);
-    RateControl control(target, target / residual_target(NumericsSpec{}, e.setup.test.kind), e.height_m, e.travel_time,
+    const GrainKind grains = e.setup.model.kind;
+    const double target = residual_target(e.setup.numerics, e.setup.test.kind, grains);
+    RateControl control(target, target / residual_target(NumericsSpec{}, e.setup.test.kind, grains), e.height_m, e.travel_time,
                         expected_strength(e.setup.contact, e.setup.test) * e.section_m2);
     LoadingModeUpdate mode_update(e.travel_time, target);
     const long long first_step = e.step;

@@ -8,9 +8,9 @@
 
 namespace feldspar {
 
-/// Target of R* for a wanted relative accuracy of the strength: 5e-3 for 0.5 % and 1e-2 for 2 % (Brazilian 1e-2 and 3e-2), and
-/// powers of the accuracy in between and beyond.
-double residual_target(const NumericsSpec& numerics, TestKind kind);
+/// Target of R* for a wanted relative accuracy of the strength: 5e-3 for 0.5 % and 1e-2 for 2 % (Brazilian of deformable grains
+/// 1e-2 and 3e-2), and powers of the accuracy in between and beyond.
+double residual_target(const NumericsSpec& numerics, TestKind kind, GrainKind grains);
 
 /// A first estimate of the strength from the contacts alone, Pa: tension sigma_nt; compression the Mohr-Coulomb strength of
 /// a material with the contacts' cohesion and friction, 2 tau (mu + sqrt(1 + mu^2)) + N sigma_3. Only the rate control uses it.
