@@ -15,7 +15,9 @@ namespace feldspar {
 /// What stands on the command line beside the job file; it takes precedence over the job.
 struct JobOptions {
     std::string job;
-    std::vector<std::uint64_t> seeds;  ///< for every test; empty = as the job says
+    std::vector<std::uint64_t> seeds;    ///< for every test; empty = as the job says
+    std::vector<std::string> variants;   ///< names or file stems of the variants to run; empty = all
+    std::vector<std::string> tests;      ///< kinds of the tests to run; empty = all
     std::optional<int> threads;
 };
 

@@ -19,6 +19,7 @@ constexpr const char* examples = R"(Examples:
   feldspar run granite.toml                              results in results/granite-1
   feldspar run granite.toml --out trial --seed 7         another packing, another place
   feldspar run granite.toml --threads 2                  the results do not depend on the threads
+  feldspar run granite.toml --test brazilian             only a part of the job
 
 Exit codes: 0 done, 2 mistake in the input (no file is left), 3 numerical failure, 4 results could not be written,
 130 interrupted (the results so far are kept).)";
@@ -68,6 +69,10 @@ void add_job_options(CLI::App& command, JobOptions& options) {
         ->type_name("S")
         ->allow_extra_args(false)
         ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+    command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    command.add_option("--test", options.tests, "only the job's tests of this kind; may be repeated")->type_name("KIND")->allow_extra_args(false);
 }
 
 int run_program(int argc, char** argv) {

@@ -156,6 +156,17 @@ inline BondEvent update_damaged(const BondLaw& law, double area_m2, double dun_m
 
 }  // namespace detail
 
+/// A bond that has just broken between bodies that did not touch each other, but were joined over a free gap: from now on they
+/// push each other only when they meet. The energy of the compression that vanishes is booked as fracture.
+inline void free_gap(const BondLaw& law, double area_m2, double gap_m, BondState& s) {
+    const double before = elastic_energy(law, area_m2, s);
+    s.un_m += gap_m;
+    s.Fn_N = s.un_m < 0.0 ? -law.Kn_Pa_m * area_m2 * s.un_m : 0.0;
+    const double limit = law.mu * s.Fn_N;
+    s.Fs_N = std::clamp(s.Fs_N, -limit, limit);
+    s.fracture_J += before - elastic_energy(law, area_m2, s);
+}
+
 /// Advances a point by the increments of its gap and its shear displacement.
 /// @param area_m2  A_J, the point's share of the contact area
 /// @param dun_m    gap increment, opening positive

@@ -130,6 +130,11 @@ double plane_between_circles(const Assembly& assembly, const Contact& contact) {
     return 0.5 * (assembly.bodies[contact.a.body].radius_m - assembly.bodies[contact.b.body].radius_m);
 }
 
+double free_gap_between_circles(const Assembly& assembly, const Contact& contact) {
+    const double radii = assembly.bodies[contact.a.body].radius_m + assembly.bodies[contact.b.body].radius_m;
+    return std::max(0.0, norm(assembly.centre(contact.b.body) - assembly.centre(contact.a.body)) - radii);
+}
+
 void set_closing_distance(const Assembly& assembly, Contact& contact) {
     const double radii = assembly.bodies[contact.a.body].radius_m + assembly.bodies[contact.b.body].radius_m;
     contact.closing_distance_m = std::max(radii, norm(assembly.centre(contact.b.body) - assembly.centre(contact.a.body)));
@@ -221,6 +226,7 @@ void add_contacts_of_particles(Assembly& assembly, const Filling& filling, Conta
         contact.first_point = static_cast<std::int32_t>(assembly.points.size());
         contact.points = 1;
         add_point(assembly, 0.0, norm(across.to - across.from) * assembly.thickness_m);
+        if (normal == ContactNormal::centres) assembly.points.back().free_gap_m = free_gap_between_circles(assembly, contact);
         add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
     }
 }

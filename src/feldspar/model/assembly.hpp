@@ -107,6 +107,7 @@ struct ContactOrigin {
 struct ContactPoint {
     double along_m = 0.0;          ///< W_J: from the reference point along the edge's tangent
     double area_m2 = 0.0;          ///< A_J
+    double free_gap_m = 0.0;       ///< between the circles of two bonded discs that do not touch; 0 for facing edges
     BondState bond;
     long long broken_step = -1;    ///< step at which damage became 1; -1: not broken, or broken from the start
     bool broke_in_tension = false;

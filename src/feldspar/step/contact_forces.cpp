@@ -45,6 +45,7 @@ void forces_of_contact(Assembly& assembly, const Contact& contact, SlotForces& s
             point.broken_step = step;
             point.broke_in_tension = event == BondEvent::broke_in_tension;
             point.lost_compression = event == BondEvent::broke_in_shear_losing_compression;
+            if (point.free_gap_m > 0.0) free_gap(law, point.area_m2, point.free_gap_m, point.bond);
         }
         const Vec2 on_b = point.bond.Fn_N * frame.n + point.bond.Fs_N * s;   // compression pushes B along n
         AttachmentA::add(slot_a, Na, -on_b);
