@@ -17,7 +17,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 TestProperties nothing() {
     TestProperties p{};
     p.peak_stress_Pa = p.first_crack_Pa = nan;
-    p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = p.E_gauge_Pa = p.nu = p.nu_tangent = nan;
+    p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = p.E_gauge_Pa = p.nu = p.nu_tangent = p.E_initial_Pa = p.nu_initial = nan;
     p.sigma_ci_crack_count_Pa = p.sigma_ci_crack_volume_Pa = p.sigma_ci_lateral_strain_Pa = p.sigma_cd_Pa = nan;
     return p;
 }
@@ -70,6 +70,8 @@ TestProperties measure(const TestResult& result) {
     p.E_average_Pa = slope_between(curve, 0.3, 0.7, &CurvePoint::strain, &CurvePoint::stress_Pa);
     p.E_gauge_Pa = slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::stress_Pa);
     p.nu = secant_ratio(curve);
+    p.E_initial_Pa = slope_between(curve, 0.0, 0.1, &CurvePoint::strain_gauge, &CurvePoint::stress_Pa);
+    p.nu_initial = -slope_between(curve, 0.0, 0.1, &CurvePoint::strain_gauge, &CurvePoint::lateral_gauge);
     p.nu_tangent = -slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::lateral_gauge);
     if (!peak->reached) return p;   // the thresholds mean nothing before the peak is known
 

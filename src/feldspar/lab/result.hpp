@@ -109,6 +109,8 @@ struct TestProperties {
     double E_gauge_Pa;            ///< tangent at 50 % of the peak, from the gauge
     double nu;                    ///< secant at 50 % of the peak, from the gauges: the same stress window as E_secant
     double nu_tangent;            ///< 40 ... 60 % of the peak, from the gauges: grows as cracks begin to open
+    double E_initial_Pa;          ///< slope up to 10 % of the peak, from the gauge: before damage
+    double nu_initial;            ///< the same, from the gauges
     double sigma_ci_crack_count_Pa;       ///< 1 % of the cracks at the peak
     double sigma_ci_crack_volume_Pa;      ///< reversal of the crack volumetric strain
     double sigma_ci_lateral_strain_Pa;    ///< lateral strain response

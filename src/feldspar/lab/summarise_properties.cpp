@@ -136,6 +136,8 @@ PropertySummary summarise(std::span<const TestResult> results) {
     add_uniaxial("E_gauge_Pa", &TestProperties::E_gauge_Pa);
     add_uniaxial("nu", &TestProperties::nu);
     add_uniaxial("nu_tangent", &TestProperties::nu_tangent);
+    add_uniaxial("E_initial_Pa", &TestProperties::E_initial_Pa);
+    add_uniaxial("nu_initial", &TestProperties::nu_initial);
     add_uniaxial("first_crack_Pa", &TestProperties::first_crack_Pa);
     add_uniaxial("sigma_ci_crack_count_Pa", &TestProperties::sigma_ci_crack_count_Pa);
     add_uniaxial("sigma_ci_crack_volume_Pa", &TestProperties::sigma_ci_crack_volume_Pa);

@@ -71,6 +71,8 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["E_gauge_GPa"] = in_GPa(p.E_gauge_Pa);
     test["nu"] = number(p.nu);
     test["nu_tangent"] = number(p.nu_tangent);
+    test["E_initial_GPa"] = in_GPa(p.E_initial_Pa);
+    test["nu_initial"] = number(p.nu_initial);
     test["sigma_ci_crack_count_MPa"] = in_MPa(p.sigma_ci_crack_count_Pa);
     test["sigma_ci_crack_volume_MPa"] = in_MPa(p.sigma_ci_crack_volume_Pa);
     test["sigma_ci_lateral_strain_MPa"] = in_MPa(p.sigma_ci_lateral_strain_Pa);

@@ -46,6 +46,8 @@ constexpr auto known = std::to_array<Words>({
     {"nu_tangent", "Poisson's ratio, tangent at 50 % of the peak", "\u03bd tangent"},
     {"E_average_Pa", "Young's modulus, average 30 to 70 % of the peak", "Eavg"},
     {"E_gauge_Pa", "Young's modulus, tangent, from the gauge", "E gauge"},
+    {"E_initial_Pa", "Young's modulus before damage, to 10 % of the peak, from the gauge", "E initial"},
+    {"nu_initial", "Poisson's ratio before damage, to 10 % of the peak", "\u03bd initial"},
 });
 
 bool ends_with_pascal(const std::string& property) { return property.ends_with("_Pa"); }
@@ -83,7 +85,7 @@ UserQuantity user_quantity(const std::string& property) {
 
 std::string property_of_laboratory(const std::string& name) {
     if (name == "friction_angle") return "friction_angle_deg";
-    if (name == "nu" || name == "nu_tangent" || name == "hoek_brown_mi" || name.find("_over_") != std::string::npos) return name;
+    if (name == "nu" || name == "nu_tangent" || name == "nu_initial" || name == "hoek_brown_mi" || name.find("_over_") != std::string::npos) return name;
     return name + "_Pa";
 }
 

@@ -18,6 +18,8 @@ TEST(Measure, LinearCompressionGivesBackItsConstants) {
     EXPECT_NEAR(p.E_average_Pa / E, 1.0, 1e-12);
     EXPECT_NEAR(p.E_gauge_Pa / E, 1.0, 1e-12);
     EXPECT_NEAR(p.nu, nu, 1e-12);
+    EXPECT_NEAR(p.E_initial_Pa / E, 1.0, 1e-12);
+    EXPECT_NEAR(p.nu_initial, nu, 1e-12);
     EXPECT_TRUE(std::isnan(p.first_crack_Pa));
     EXPECT_TRUE(std::isnan(p.sigma_cd_Pa)) << "a linear body never dilates";
     EXPECT_TRUE(std::isnan(p.sigma_ci_crack_volume_Pa));
@@ -54,6 +56,7 @@ TEST(Measure, ParabolaSeparatesSecantTangentAndAverage) {
     };
     EXPECT_NEAR(p.E_tangent_Pa, middle_slope(0.4, 0.6), 1e-4 * E0);
     EXPECT_NEAR(p.E_average_Pa, middle_slope(0.3, 0.7), 1e-4 * E0);
+    EXPECT_NEAR(p.E_initial_Pa, middle_slope(0.0, 0.1), 1e-4 * E0);
     EXPECT_GT(p.E_secant_Pa, p.E_tangent_Pa);
 }
 

@@ -141,6 +141,8 @@ inline TestResult make_result(TestKind kind = TestKind::uniaxial_compression, st
                          .E_gauge_Pa = 24.1e9,
                          .nu = kind == TestKind::brazilian ? undefined : 0.23,
                          .nu_tangent = kind == TestKind::brazilian ? undefined : 0.25,
+                         .E_initial_Pa = 25.5e9,
+                         .nu_initial = kind == TestKind::brazilian ? undefined : 0.22,
                          .sigma_ci_crack_count_Pa = 50e6,
                          .sigma_ci_crack_volume_Pa = undefined,
                          .sigma_ci_lateral_strain_Pa = 52e6,
