@@ -1,10 +1,15 @@
-// Bodies that the proofs share: the Augig granite's materials, small specimens, a bar of two grains.
+// Bodies that the proofs share: the Augig granite's materials, small specimens, a bar of two grains, the kinds of grains.
 #pragma once
 
+#include <algorithm>
+#include <cctype>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -46,18 +51,22 @@ inline std::shared_ptr<const Specimen> make(const SpecimenSpec& spec, std::uint6
     return std::make_shared<const Specimen>(make_specimen(spec, seed));
 }
 
-/// Two square grains of side h, one on top of the other.
-inline std::shared_ptr<const Specimen> two_grain_bar(double h_m) {
+/// Two grains of width h, one on top of the other: a square, and one of height `upper_m` (a square unless given).
+inline std::shared_ptr<const Specimen> two_grain_bar(double h_m, double upper_m = 0.0, double particles_per_grain = 0.0) {
+    if (upper_m == 0.0) upper_m = h_m;
+    const double H = h_m + upper_m;
     Specimen s;
-    s.spec = rectangle(h_m, 2.0 * h_m);
-    s.outline.vertices = {{0, 0}, {h_m, 0}, {h_m, 2 * h_m}, {0, 2 * h_m}};
+    s.spec = rectangle(h_m, H);
+    s.outline.vertices = {{0, 0}, {h_m, 0}, {h_m, H}, {0, H}};
     s.outline.edge_labels = {"bottom", "right", "top", "left"};
-    s.outline.area_m2 = 2 * h_m * h_m;
-    s.packing.centres = {{0.5 * h_m, 0.5 * h_m}, {0.5 * h_m, 1.5 * h_m}};
-    s.packing.radii_m = {0.5 * h_m, 0.5 * h_m};
-    s.cells.vertices = {{0, 0}, {h_m, 0}, {h_m, h_m}, {0, h_m}, {h_m, 2 * h_m}, {0, 2 * h_m}};
+    s.outline.area_m2 = h_m * H;
+    s.packing.centres = {{0.5 * h_m, 0.5 * h_m}, {0.5 * h_m, h_m + 0.5 * upper_m}};
+    s.packing.radii_m = {0.5 * h_m, 0.5 * upper_m};
+    s.cells.vertices = {{0, 0}, {h_m, 0}, {h_m, h_m}, {0, h_m}, {h_m, H}, {0, H}};
     s.cells.cells = {{{0, 1, 2, 3}, {-1, -1, 1, -1}, {0, 1, -1, 3}}, {{3, 2, 4, 5}, {0, -1, -1, -1}, {-1, 1, 2, 3}}};
     s.mesh = mesh_grains(s.cells, 0);
+    s.spec.particles_per_grain = particles_per_grain;
+    if (particles_per_grain > 0.0) s.filling = fill_grains(s.cells, particles_per_grain, 1);
     return std::make_shared<const Specimen>(std::move(s));
 }
 
@@ -67,6 +76,61 @@ inline TestSetup setup(std::shared_ptr<const Specimen> specimen, TestKind kind) 
     s.grain = granite();
     s.contact = table7();
     s.test.kind = kind;
+    return s;
+}
+
+/// Tables 1 and 2 of the paper: what rigid grains and inner particles have.
+inline ContactMaterial table1(GrainKind grains, ContactLaw law = ContactLaw::bilinear) {
+    ContactMaterial c;
+    c.law = law;
+    c.Kn_Pa_m = grains == GrainKind::rigid ? 1.08e13 : 4.9e13;
+    c.eta = grains == GrainKind::rigid ? 0.28 : 0.30;
+    const bool brittle = law == ContactLaw::brittle;
+    c.sigma_nt_Pa = brittle ? 13.7e6 : 11.5e6;
+    c.tau_Pa = brittle ? 48.8e6 : 33.25e6;
+    c.mu = brittle ? 0.4 : 0.5;
+    c.Gfn_J_m2 = 66.1;
+    c.Gfs_J_m2 = 2078.6;
+    return c;
+}
+
+inline ModelSpec model(GrainKind grains, ContactKind contact = ContactKind::lobatto3, ContactNormal normal = ContactNormal::centres) {
+    ModelSpec m;
+    m.kind = grains;
+    m.contact = grains == GrainKind::inner_particles ? ContactKind::point : contact;
+    m.normal = normal;
+    return m;
+}
+
+/// Every model whose bodies are rigid.
+inline std::vector<ModelSpec> rigid_models() {
+    return {model(GrainKind::rigid), model(GrainKind::rigid, ContactKind::point), model(GrainKind::inner_particles),
+            model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge)};
+}
+
+/// As the name of a test's case.
+inline std::string label(const ModelSpec& m) {
+    std::string text = name(m.kind);
+    text += m.kind == GrainKind::inner_particles ? std::string("_") + name(m.normal) : std::string("_") + name(m.contact);
+    std::replace(text.begin(), text.end(), '-', '_');
+    return text;
+}
+
+inline ContactMaterial material(const ModelSpec& m, ContactLaw law = ContactLaw::bilinear) {
+    return m.kind == GrainKind::flexible ? table7() : table1(m.kind, law);
+}
+
+/// With what the model needs: grains of inner particles are filled, about as the paper's.
+inline SpecimenSpec filled_for(const ModelSpec& m, SpecimenSpec spec) {
+    if (m.kind == GrainKind::inner_particles) spec.particles_per_grain = 26.36;
+    return spec;
+}
+
+inline TestSetup setup(const SpecimenSpec& spec, TestKind kind, const ModelSpec& m, ContactLaw law = ContactLaw::bilinear,
+                       std::uint64_t seed = 1) {
+    TestSetup s = setup(make(filled_for(m, spec), seed), kind);
+    s.model = m;
+    s.contact = material(m, law);
     return s;
 }
 

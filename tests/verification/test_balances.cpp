@@ -12,10 +12,14 @@ struct Case {
     TestKind kind;
     NumericsKind numerics;
     ContactLaw law;
+    GrainKind grains = GrainKind::flexible;
+    ContactKind contact = ContactKind::lobatto3;
+    ContactNormal normal = ContactNormal::centres;
 };
 
 std::string label(const testing::TestParamInfo<Case>& info) {
     std::string text = std::string(name(info.param.kind)) + "_" + name(info.param.numerics) + "_" + name(info.param.law);
+    if (info.param.grains != GrainKind::flexible) text += "_" + fixtures::label(fixtures::model(info.param.grains, info.param.contact, info.param.normal));
     std::erase(text, '-');
     return text;
 }
@@ -33,19 +37,48 @@ INSTANTIATE_TEST_SUITE_P(Tests, EnergyBalance,
                                          Case{TestKind::brazilian, NumericsKind::adaptive, ContactLaw::bilinear},
                                          Case{TestKind::brazilian, NumericsKind::paper, ContactLaw::bilinear_literal}),
                          label);
+INSTANTIATE_TEST_SUITE_P(RigidGrains, EnergyBalance, testing::ValuesIn([] {
+                             using enum TestKind;
+                             using enum NumericsKind;
+                             using enum ContactLaw;
+                             constexpr GrainKind rigid = GrainKind::rigid;
+                             std::vector<Case> cases;
+                             for (const TestKind kind : {uniaxial_compression, direct_tension, biaxial, TestKind::brazilian})
+                                 for (const ContactLaw law : {brittle, bilinear}) cases.push_back({kind, adaptive, law, rigid});
+                             cases.push_back({uniaxial_compression, paper, bilinear, rigid});
+                             cases.push_back({uniaxial_compression, dynamic, brittle, rigid});
+                             cases.push_back({biaxial, paper, brittle, rigid});
+                             cases.push_back({uniaxial_compression, adaptive, brittle, rigid, ContactKind::point});
+                             return cases;
+                         }()),
+                         label);
+INSTANTIATE_TEST_SUITE_P(InnerParticles, EnergyBalance, testing::ValuesIn([] {
+                             using enum TestKind;
+                             constexpr NumericsKind adaptive = NumericsKind::adaptive;
+                             constexpr GrainKind inner = GrainKind::inner_particles;
+                             std::vector<Case> cases;
+                             for (const TestKind kind : {uniaxial_compression, direct_tension, biaxial, brazilian})
+                                 cases.push_back({kind, adaptive, kind == direct_tension ? ContactLaw::bilinear : ContactLaw::brittle, inner});
+                             cases.push_back({direct_tension, adaptive, ContactLaw::bilinear, inner, ContactKind::point, ContactNormal::edge});
+                             return cases;
+                         }()),
+                         label);
 
 TEST_P(EnergyBalance, ClosesThroughFailure) {
     const Case c = GetParam();
     const bool disc = c.kind == TestKind::brazilian;
-    TestSetup s = fixtures::setup(fixtures::make(disc ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04)), c.kind);
+    const bool inner = c.grains == GrainKind::inner_particles;   // ten times as many bodies: a smaller specimen
+    const SpecimenSpec spec = disc ? fixtures::disc(inner ? 0.02 : 0.03) : inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04);
+    TestSetup s = fixtures::setup(spec, c.kind, fixtures::model(c.grains, c.contact, c.normal), c.law);
     s.contact.law = c.law;
+    s.test.membrane_plates = inner ? 4 : 8;
     s.numerics.kind = c.numerics;
     s.numerics.accuracy = 0.02;
     if (c.numerics == NumericsKind::paper) s.numerics.speed_m = 2e-8;
     if (c.numerics == NumericsKind::dynamic) s.numerics.speed_m = 0.5;
     if (c.kind == TestKind::direct_tension) s.test.stop_fraction = 0.3;   // softening alone reaches the usual 0.8
     if (c.kind == TestKind::biaxial) s.test.sigma3_Pa = 5e6;
-    const TestResult r = run_test(s, fixtures::threads(2));
+    const TestResult r = run_test(s, fixtures::threads(c.grains == GrainKind::flexible ? 2 : 1));
     EXPECT_TRUE(r.properties.peak_reached) << r.stop_reason;
     EXPECT_GT(r.cracks.size(), 0U);
     EXPECT_LT(r.energy_residual, 5e-3);

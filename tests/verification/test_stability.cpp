@@ -19,7 +19,10 @@ namespace {
 double growth(Assembly assembly, Damping damping, double alpha, int steps) {
     Team team(1);
     RandomStream random(5, "disturbance");
-    for (Vec2& v : assembly.nodes.velocity) v = {1e-15 * random.normal(), 1e-15 * random.normal()};
+    for (int n = 0; n < assembly.nodes.count(); ++n) {   // what is imposed stays at rest
+        const Vec2 free = assembly.nodes.inverse_mass[n];
+        assembly.nodes.velocity[n] = {free.x != 0.0 ? 1e-15 * random.normal() : 0.0, free.y != 0.0 ? 1e-15 * random.normal() : 0.0};
+    }
     StepSettings settings;
     settings.damping = damping;
     settings.alpha = alpha;
@@ -51,6 +54,40 @@ TEST(Stability, LocalDampingLowersTheLimit) {
     set_scaled_masses(assembly, MassBound::row_sum, 1.0);   // m = 0.25 K as printed in the paper
     EXPECT_GT(growth(assembly, Damping::local, 0.7, 2000), 1e6);
     EXPECT_LT(growth(assembly, Damping::local, 0.0, 2000), 100.0);
+}
+
+class StabilityOfRigidModels : public testing::TestWithParam<ModelSpec> {};
+INSTANTIATE_TEST_SUITE_P(Models, StabilityOfRigidModels, testing::ValuesIn(fixtures::rigid_models()),
+                         [](const auto& tested) { return fixtures::label(tested.param); });
+
+TEST_P(StabilityOfRigidModels, TheBoundHoldsAndIsTightWithPlatesAndMembranesToo) {
+    for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian}) {
+        TestSetup s = fixtures::setup(kind == TestKind::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04), kind, GetParam());
+        s.test.sigma3_Pa = kind == TestKind::biaxial ? 5e6 : 0.0;
+        s.test.membrane_plates = 8;
+        const RunControl control = fixtures::threads(1);
+        Experiment e(s, control);
+        set_scaled_masses(e.assembly, MassBound::tensor, 1.0);
+        const double tensor = largest_omega2(e.assembly, e.team);
+        EXPECT_LT(tensor, 4.0) << name(kind);
+        EXPECT_GT(tensor, 3.0) << name(kind);
+        set_scaled_masses(e.assembly, MassBound::row_sum, 1.7);
+        EXPECT_LT(largest_omega2(e.assembly, e.team), 4.0 / 1.7) << name(kind);
+    }
+}
+
+TEST_P(StabilityOfRigidModels, MotionGrowsJustAboveTheLimitAndNotBelow) {
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.014, 0.028), TestKind::direct_tension, GetParam());   // glued plates are linear
+    const RunControl control = fixtures::threads(1);
+    Experiment e(s, control);
+    set_scaled_masses(e.assembly, MassBound::tensor, 1.0);
+    const double omega2 = largest_omega2(e.assembly, e.team);
+    set_scaled_masses(e.assembly, MassBound::tensor, omega2 / 4.0 * 1.01);
+    EXPECT_LT(growth(e.assembly, Damping::deviation, 0.0, 1000), 100.0);
+    set_scaled_masses(e.assembly, MassBound::tensor, omega2 / 4.0 * 0.98);
+    EXPECT_GT(growth(e.assembly, Damping::deviation, 0.0, 1000), 1e6);
+    set_scaled_masses(e.assembly, MassBound::row_sum, 1.7);
+    EXPECT_LT(growth(e.assembly, Damping::local, 0.7, 1000), 10.0);
 }
 
 TEST(Stability, ThePrintedMassWithLocalDampingIsRefusedBeforeItRuns) {

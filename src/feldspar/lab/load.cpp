@@ -86,7 +86,7 @@ private:
 // Contacts between grains, looked after every few steps.
 void maintain_contacts(Experiment& e, ContactFinder& finder, TestResult& result, int steps) {
     const ContactFinder::Changes changes = finder.update(e.assembly, e.mass_factor);
-    e.rate_control_J += changes.kinetic_J;   // nodes that became heavier took their speed with them
+    e.rate_control_J += changes.kinetic_J + changes.elastic_J;   // heavier nodes took their speed along; contacts began with an overlap
     result.new_contacts += changes.made;
     const ShapeChoice shapes = choose_shape_functions(e.assembly, e.mass_factor);
     e.rate_control_J += shapes.kinetic_J;

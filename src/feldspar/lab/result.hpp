@@ -18,7 +18,7 @@ namespace feldspar {
 struct EnergyLedger {
     double external = 0.0;          ///< work of platens and lateral pressure since the start
     double elastic_start = 0.0;     ///< energy that the computed elastic start put into the body
-    double rate_control = 0.0;      ///< work done by the body-wide velocity correction when the rate changes
+    double rate_control = 0.0;      ///< put in by corrections: of the body-wide velocity when the rate changes, by new contacts
     double elastic_grains = 0.0;
     double elastic_contacts = 0.0;
     double fracture = 0.0;

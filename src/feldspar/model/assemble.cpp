@@ -357,6 +357,7 @@ void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_ove
     point.area_m2 = std::min(edge_a.length_m, edge_b.length_m) * assembly.thickness_m;
     point.bond.un_m = -(ra + rb - d - rest_overlap_m);
     point.bond.damage = 1.0;
+    if (point.bond.un_m < 0.0) point.bond.Fn_N = -assembly.laws[contact.material].Kn_Pa_m * point.area_m2 * point.bond.un_m;
     assembly.points.push_back(point);
     add_contact(assembly, contact, {});
 }

@@ -25,7 +25,7 @@ void add_contact(Assembly& assembly, const Contact& contact, const ContactOrigin
 void index_slots(Assembly& assembly);
 
 /// Adds a frictional one-point contact on the closest edge of each of two bodies; the point starts at the
-/// gap -(RA + RB - d) - `rest_overlap_m`, broken. The area is that of the shorter edge; of discs, of the smaller diameter.
+/// gap -(RA + RB - d) - `rest_overlap_m`, broken, with the force of that gap. The area is that of the shorter edge; of discs, of the smaller diameter.
 void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_overlap_m, double closing_distance_m);
 
 }  // namespace feldspar

@@ -132,6 +132,36 @@ struct Extent {
     }
 };
 
+// Where a membrane touches a site: at the height of the body's centre, or of the nearer end.
+double at_height_of_body(const Assembly& assembly, const OutlineSite& site) {
+    return std::clamp(assembly.centre(site.body).y, std::min(site.from.y, site.to.y), std::max(site.from.y, site.to.y));
+}
+
+int plate_at(double y, const Extent& height, int plates) {
+    const double length = (height.upper - height.lower) / plates;
+    return std::clamp(static_cast<int>((y - height.lower) / length), 0, plates - 1);
+}
+
+using Sides = std::array<std::vector<OutlineSite>, 2>;
+
+bool each_plate_has_a_body(const Assembly& assembly, const Sides& sides, const std::array<Extent, 2>& heights, int plates) {
+    for (int side = 0; side < 2; ++side) {
+        std::vector<bool> touched(static_cast<std::size_t>(plates), false);
+        for (const OutlineSite& site : sides[side]) touched[plate_at(at_height_of_body(assembly, site), heights[side], plates)] = true;
+        if (std::find(touched.begin(), touched.end(), false) != touched.end()) return false;
+    }
+    return true;
+}
+
+// A plate with no body behind it would press on nothing.
+void require_a_body_behind_each_plate(const Assembly& assembly, const Sides& sides, const std::array<Extent, 2>& heights, int plates) {
+    int most = plates;
+    while (most > 1 && !each_plate_has_a_body(assembly, sides, heights, most)) --most;
+    if (most < plates)
+        throw InputError({.key = "membrane_plates"}, fmt::format("{} plates a side are too many: one of them would have no grain behind it", plates),
+                         fmt::format("{} plates a side for this specimen", most));
+}
+
 }  // namespace
 
 void attach_platen_rows(Assembly& assembly, const Specimen& specimen) {
@@ -204,7 +234,7 @@ void attach_end_plates(Assembly& assembly, const Specimen& specimen, const Plate
 
 void attach_membranes(Assembly& assembly, const Specimen& specimen, const PlateContact& contact, int plates) {
     assembly.laws[at_membranes] = law_at_plates(contact);
-    std::array<std::vector<OutlineSite>, 2> sides;   // left, right
+    Sides sides;   // left, right
     std::array<Extent, 2> heights;
     for (const OutlineSite& site : outline_sites(assembly, specimen)) {
         const std::string& label = label_of(site, specimen);
@@ -216,6 +246,7 @@ void attach_membranes(Assembly& assembly, const Specimen& specimen, const PlateC
         sides[side].push_back(site);
         for (const Vec2 end : {site.from, site.to}) heights[side].include(end.y);
     }
+    require_a_body_behind_each_plate(assembly, sides, heights, plates);
     for (int side = 0; side < 2; ++side) {
         const double height = heights[side].upper - heights[side].lower, length = height / plates;
         const Vec2 outward = {side == 0 ? -1.0 : 1.0, 0.0};
@@ -229,9 +260,8 @@ void attach_membranes(Assembly& assembly, const Specimen& specimen, const PlateC
             body.pressure_end = body.pressure_begin + 1;
         }
         for (const OutlineSite& site : sides[side]) {
-            const double y = std::clamp(assembly.centre(site.body).y, std::min(site.from.y, site.to.y), std::max(site.from.y, site.to.y));
-            const int i = std::clamp(static_cast<int>((y - heights[side].lower) / length), 0, plates - 1);
-            const int plate = first + i;
+            const double y = at_height_of_body(assembly, site);
+            const int plate = first + plate_at(y, heights[side], plates);
             add_plate_contact(assembly, site, plate, {site.from.x, y}, site.length() * assembly.thickness_m, 0.0, at_membranes);
         }
     }

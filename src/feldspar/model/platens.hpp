@@ -28,7 +28,7 @@ void attach_end_plates(Assembly& assembly, const Specimen& specimen, const Plate
 
 /// The flexible membrane of rigid grains and inner particles: each of the other outline edges, which must be vertical, is covered
 /// by `plates` equal plates that move horizontally only, each under the lateral pressure. kn = Kn x edge length x t.
-/// @throws InputError  if a side is not vertical
+/// @throws InputError  if a side is not vertical, or a plate would have no body behind it
 void attach_membranes(Assembly& assembly, const Specimen& specimen, const PlateContact& contact, int plates);
 
 /// The width over which the top platen loads the specimen, undeformed, m.

@@ -91,6 +91,8 @@ ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_fac
         const double d = norm(assembly.centre(pair.b) - assembly.centre(pair.a));
         if (d >= radii - pair.rest_overlap_m) return false;
         add_new_contact(assembly, pair.a, pair.b, pair.rest_overlap_m, radii);
+        const ContactPoint& point = assembly.points[assembly.contacts.back().first_point];
+        changes.elastic_J += elastic_energy(assembly.laws[between_grains], point.area_m2, point.bond);
         if (mass_factor > 0.0) changes.kinetic_J += add_contact_mass(assembly, assembly.contacts.back(), mass_factor);
         ++changes.made;
         return true;

@@ -69,6 +69,7 @@ public:
         int made = 0;
         int dropped = 0;
         double kinetic_J = 0.0;   ///< gained because nodes became heavier (scaled masses only)
+        double elastic_J = 0.0;   ///< that new contacts start with: they are found when bodies overlap already
     };
     /// To be called every few steps: looks for candidates again only when some body has moved by half the skin.
     /// @param mass_factor  factor of the scaled masses; 0 with real masses

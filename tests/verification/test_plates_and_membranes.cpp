@@ -1,0 +1,278 @@
+// How rigid grains and inner particles are loaded: plates at the ends and on a disc, and the membrane.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/lab/grain_fields.hpp"
+#include "feldspar/model/assemble.hpp"
+#include "feldspar/model/platens.hpp"
+#include "feldspar/step/step.hpp"
+#include "fixtures.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double kSide = 0.003, kArea = kSide * 0.08, kKn = 1.08e13, kEta = 0.3;
+
+struct PlateForce {
+    double pressed_N = 0.0, dragged_N = 0.0;   // on the grain: away from the plate, against the grain's motion along it
+    double reaction_N = 0.0;                   // on the plate
+};
+
+// The upper of two rigid grains moves by `towards_m` towards the top plate, then by `along_m` along it.
+PlateForce push(const PlateContact& plates, double towards_m, double along_m) {
+    const auto specimen = fixtures::two_grain_bar(kSide);
+    Assembly assembly = assemble(*specimen, fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table1(GrainKind::rigid));
+    attach_end_plates(assembly, *specimen, plates);
+    const int top = assembly.platens[0].plate, centre = assembly.bodies[1].centre_node;
+    const auto at = std::find_if(assembly.contacts.begin(), assembly.contacts.end(), [&](const Contact& c) { return c.b.body == top; });
+    const int c = static_cast<int>(at - assembly.contacts.begin());
+    for (const Vec2 move : {Vec2{0.0, towards_m}, Vec2{along_m, 0.0}}) {
+        assembly.nodes.velocity[centre] = move;
+        assembly.nodes.displacement[centre] += move;
+        contact_forces(assembly, {c, c + 1}, StepSettings{}, 0);
+    }
+    assembly.nodes.velocity[centre] = {};
+    const SlotForces on_grain = assembly.slots[2 * c];
+    const double arm = 0.5 * kSide;   // of the force along the plate about the grain's centre, once the grain has moved towards it
+    EXPECT_NEAR(on_grain[1].x * arm, -on_grain[0].x * arm + on_grain[0].y * 0.0, 1e-6 * std::abs(on_grain[0].y) * arm + 1e-12);
+    Team team(1);
+    evaluate_forces(assembly, team, Strength::real);
+    return {-on_grain[0].y, -on_grain[0].x, platen_reactions(assembly).loading};
+}
+
+TEST(Plates, PressByTheirStiffnessAndDragByItUpToTheFriction) {
+    const double towards = 1e-9, kn = kKn * kArea, Fn = kn * towards;
+    const PlateContact rough{kKn, kEta, 0.25, false};
+    const PlateForce stuck = push(rough, towards, 1e-10);
+    EXPECT_NEAR(stuck.pressed_N / Fn, 1.0, 1e-9);
+    EXPECT_NEAR(stuck.dragged_N / (kEta * kn * 1e-10), 1.0, 1e-9);   // below mu Fn = 0.25 Fn
+    EXPECT_NEAR(stuck.reaction_N / Fn, 1.0, 1e-9);
+    const PlateForce sliding = push(rough, towards, 2e-9);   // 0.6 Fn without the limit
+    EXPECT_NEAR(sliding.dragged_N / (0.25 * Fn), 1.0, 1e-9);
+    const PlateForce smooth = push({kKn, kEta, 0.0, false}, towards, 2e-9);
+    EXPECT_NEAR(smooth.pressed_N / Fn, 1.0, 1e-9);
+    EXPECT_EQ(smooth.dragged_N, 0.0);
+}
+
+TEST(Plates, LetGoInTensionUnlessTheyAreGlued) {
+    const double away = -1e-7, kn = kKn * kArea;
+    EXPECT_EQ(push({kKn, kEta, 0.25, false}, away, 1e-9).pressed_N, 0.0);
+    const PlateForce glued = push({kKn, kEta, 0.0, true}, -1e-3, 1e-9);   // however far
+    EXPECT_NEAR(glued.pressed_N / (-kn * 1e-3), 1.0, 1e-9);
+    EXPECT_NEAR(glued.reaction_N / (-kn * 1e-3), 1.0, 1e-9);
+    EXPECT_EQ(glued.dragged_N, 0.0);   // free along the plate
+}
+
+std::vector<ModelSpec> plate_models() { return {fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}; }
+
+class PlatesOf : public testing::TestWithParam<ModelSpec> {};
+INSTANTIATE_TEST_SUITE_P(Models, PlatesOf, testing::ValuesIn(plate_models()), [](const auto& tested) { return fixtures::label(tested.param); });
+
+// Contacts of a plate.
+std::vector<const Contact*> contacts_of(const Assembly& assembly, int plate) {
+    std::vector<const Contact*> found;
+    for (const Contact& contact : assembly.contacts)
+        if (contact.plate && contact.b.body == plate) found.push_back(&contact);
+    return found;
+}
+
+TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
+    const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, GetParam());
+    const RunControl control = fixtures::threads(1);
+    const Experiment e(s, control);
+    EXPECT_EQ(e.assembly.laws[at_plates].mu, 0.0);
+    EXPECT_EQ(e.assembly.laws[at_plates].Kn_Pa_m, s.contact.Kn_Pa_m);
+    for (const Platen& platen : e.assembly.platens) {
+        double area = 0.0, sites = 0.0;
+        for (const Contact* contact : contacts_of(e.assembly, platen.plate)) {
+            const ContactPoint& point = e.assembly.points[contact->first_point];
+            const ContactOrigin& origin = e.assembly.origins[contact - e.assembly.contacts.data()];
+            EXPECT_DOUBLE_EQ(point.area_m2, norm(origin.to - origin.from) * e.assembly.thickness_m);
+            EXPECT_NEAR(point.bond.un_m, 0.0, 1e-15);   // the end is straight: all touch at once
+            area += point.area_m2;
+            ++sites;
+        }
+        EXPECT_NEAR(area / (0.02 * 0.08), 1.0, 1e-12);
+        EXPECT_GE(sites, 5);
+    }
+    EXPECT_NEAR(e.section_m2 / (0.02 * 0.08), 1.0, 1e-12);
+}
+
+TEST_P(PlatesOf, OnADiscHaveTheStiffnessOfTheirDiametersAndStartAtFirstTouch) {   // (C19)
+    TestSetup s = fixtures::setup(fixtures::disc(0.03), TestKind::brazilian, GetParam());
+    s.test.plate_stiffness_factor = 0.5;
+    s.test.plate_mu = 0.25;
+    const RunControl control = fixtures::threads(1);
+    const Experiment e(s, control);
+    const BondLaw& law = e.assembly.laws.at(at_plates);
+    EXPECT_DOUBLE_EQ(law.Kn_Pa_m, 0.5 * s.contact.Kn_Pa_m);
+    EXPECT_DOUBLE_EQ(law.Ks_Pa_m, s.contact.eta * 0.5 * s.contact.Kn_Pa_m);
+    EXPECT_DOUBLE_EQ(law.mu, 0.25);
+    for (const Platen& platen : e.assembly.platens) {
+        double smallest = INFINITY;
+        std::map<int, int> touched;
+        for (const Contact* contact : contacts_of(e.assembly, platen.plate)) {
+            ASSERT_EQ(contact->points, 1);
+            const ContactPoint& point = e.assembly.points[contact->first_point];
+            const double diameter = 2.0 * e.assembly.bodies[contact->a.body].radius_m;
+            EXPECT_DOUBLE_EQ(point.area_m2, diameter * e.assembly.thickness_m);
+            EXPECT_EQ(point.bond.damage, 1.0);
+            EXPECT_EQ(++touched[contact->a.body], 1);   // a body touches once
+            smallest = std::min(smallest, point.bond.un_m);
+        }
+        EXPECT_NEAR(smallest, 0.0, 1e-15);
+        EXPECT_GE(touched.size(), 3U);
+    }
+}
+
+TEST_P(PlatesOf, FeelTheSumOfTheirContactsForces) {
+    TestSetup s = fixtures::setup(fixtures::disc(0.03), TestKind::brazilian, GetParam());
+    const RunControl control = fixtures::threads(1);
+    Experiment e(s, control);
+    choose_step(e);
+    prepare(e);
+    evaluate_forces(e.assembly, e.team, Strength::real);
+    const Reactions reactions = platen_reactions(e.assembly);
+    for (int side = 0; side < 2; ++side) {
+        double sum = 0.0;
+        for (const Contact* contact : contacts_of(e.assembly, e.assembly.platens[side].plate))
+            sum += e.assembly.points[contact->first_point].bond.Fn_N * e.assembly.bodies[contact->b.body].normal.y;
+        EXPECT_GT(std::abs(sum), 0.0);
+        EXPECT_NEAR((side == 0 ? reactions.loading : reactions.rest) / sum, 1.0, 1e-12);
+    }
+    EXPECT_NEAR(-reactions.loading / reactions.rest, 1.0, 2e-3);
+}
+
+TestSetup pressed(const ModelSpec& model, NumericsKind numerics) {
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::biaxial, model);
+    s.test.sigma3_Pa = 5e6;
+    s.test.membrane_plates = 8;   // of 5 mm, each with a grain behind it
+    s.numerics.kind = numerics;
+    return s;
+}
+
+TEST_P(PlatesOf, MembranesMoveSidewaysOnlyAndCarryThePressureOverTheWholeHeight) {
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.08), TestKind::biaxial, GetParam());   // with the usual 16 plates
+    s.test.sigma3_Pa = 5e6;
+    const RunControl control = fixtures::threads(1);
+    Experiment e(s, control);
+    Assembly& assembly = e.assembly;
+    std::array<std::vector<int>, 2> sides;   // left, right
+    std::array<double, 2> covered{};
+    for (int b = 0; b < std::ssize(assembly.bodies); ++b) {
+        const Body& body = assembly.bodies[b];
+        if (body.kind != BodyKind::plate || b == assembly.platens[0].plate || b == assembly.platens[1].plate) continue;
+        const int side = body.normal.x < 0.0 ? 0 : 1;
+        sides[side].push_back(b);
+        EXPECT_NE(assembly.nodes.inverse_mass[body.centre_node].x, 0.0);
+        EXPECT_EQ(assembly.nodes.inverse_mass[body.centre_node].y, 0.0);
+        for (const Contact* contact : contacts_of(assembly, b)) {
+            EXPECT_EQ(contact->material, at_membranes);
+            covered[side] += assembly.points[contact->first_point].area_m2;
+        }
+    }
+    EXPECT_EQ(assembly.laws[at_membranes].mu, 0.0);
+    Team team(1);
+    for (const double displaced : {0.0, 1e-3}) {   // plates keep their length
+        for (int side = 0; side < 2; ++side)
+            for (const int b : sides[side]) assembly.nodes.displacement[assembly.bodies[b].centre_node].x = (side == 0 ? -1.0 : 1.0) * displaced;
+        assembly.pressure_Pa = 0.0;
+        evaluate_forces(assembly, team, Strength::real);
+        const std::vector<Vec2> without = assembly.nodes.force;
+        assembly.pressure_Pa = 5e6;
+        evaluate_forces(assembly, team, Strength::real);
+        for (int side = 0; side < 2; ++side) {
+            ASSERT_EQ(sides[side].size(), 16U);
+            EXPECT_NEAR(covered[side] / (0.08 * 0.08), 1.0, 1e-12);
+            Vec2 force;
+            for (const int b : sides[side]) force += assembly.nodes.force[assembly.bodies[b].centre_node] - without[assembly.bodies[b].centre_node];
+            EXPECT_NEAR(force.x / ((side == 0 ? 1.0 : -1.0) * 5e6 * 0.08 * 0.08), 1.0, 1e-12);
+            EXPECT_EQ(force.y, 0.0);
+        }
+    }
+}
+
+// Mean over the specimen, tension positive.
+Mat2 mean_stress(const Experiment& e) {
+    const std::vector<Mat2> stresses = grain_stresses(e.assembly, *e.setup.specimen);
+    std::vector<double> volume(stresses.size(), 0.0);
+    for (const Body& body : e.assembly.bodies)
+        if (body.grain >= 0) volume[body.grain] += body.volume_m3;
+    Mat2 mean;
+    double whole = 0.0;
+    for (std::size_t g = 0; g < volume.size(); ++g) whole += volume[g];
+    for (std::size_t g = 0; g < volume.size(); ++g) {
+        mean.xx += volume[g] / whole * stresses[g].xx;
+        mean.xy += volume[g] / whole * stresses[g].xy;
+        mean.yy += volume[g] / whole * stresses[g].yy;
+    }
+    return mean;
+}
+
+TEST_P(PlatesOf, ConsolidationIsIsotropicBeforeShearing) {
+    for (const NumericsKind kind : {NumericsKind::adaptive, NumericsKind::paper}) {
+        TestSetup s = pressed(GetParam(), kind);
+        const RunControl control = fixtures::threads(1);
+        Experiment e(s, control);
+        choose_step(e);
+        prepare(e);
+        EXPECT_NEAR(e.isotropic.axial_stress_Pa / 5e6, 1.0, 3e-3) << name(kind);   // the servo's own tolerance is 2e-3
+        EXPECT_EQ(e.isotropic.sigma3_Pa, 5e6);
+        EXPECT_NEAR(e.isotropic.axial_strain_gauge / e.isotropic.lateral_strain_gauge, 1.0, 0.2) << name(kind);   // some ten grains wide
+        // The computed start has gone on to the first damage; the plain one stands at the isotropic state, at rest to a hundredth.
+        evaluate_forces(e.assembly, e.team, Strength::unlimited);
+        const Reactions reactions = platen_reactions(e.assembly);
+        const Mat2 mean = mean_stress(e);
+        const double axial = e.stress(0.5 * (reactions.loading - reactions.rest));
+        EXPECT_NEAR(mean.xx / -5e6, 1.0, 0.01) << name(kind);
+        EXPECT_NEAR(mean.yy / -axial, 1.0, 0.01) << name(kind);
+        EXPECT_LT(std::abs(mean.xy), 0.02 * axial) << name(kind);
+        if (kind == NumericsKind::paper) {
+            EXPECT_NEAR(axial / 5e6, 1.0, 0.01);
+        } else {
+            EXPECT_GT(axial, 10e6);
+        }
+    }
+}
+
+TEST(Membranes, APlateWithoutAGrainBehindItIsRefused) {
+    TestSetup s = pressed(fixtures::model(GrainKind::rigid), NumericsKind::adaptive);
+    s.test.membrane_plates = 16;   // of 2.5 mm, where grains are up to 4 mm
+    const RunControl control = fixtures::threads(1);
+    try {
+        const Experiment e(s, control);
+        FAIL() << "a plate that touches nothing was accepted";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.place().key, "membrane_plates");
+        EXPECT_NE(std::string(error.what()).find("too many"), std::string::npos);
+    }
+}
+
+TEST_P(PlatesOf, SlantedSidesAreRefusedUnderAMembrane) {
+    SpecimenSpec spec = fixtures::rectangle(0.0, 0.0);
+    spec.outline.shape = Shape::polygon;
+    spec.outline.vertices_m = {{0, 0}, {0.02, 0}, {0.018, 0.04}, {0.002, 0.04}};
+    spec.outline.edge_labels = {"bottom", "right", "top", "left"};
+    TestSetup s = fixtures::setup(spec, TestKind::biaxial, GetParam());
+    s.test.sigma3_Pa = 5e6;
+    const RunControl control = fixtures::threads(1);
+    try {
+        const Experiment e(s, control);
+        FAIL() << "a slanted side was accepted";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("not vertical"), std::string::npos);
+    }
+    s.test.sigma3_Pa = 0.0;
+    EXPECT_NO_THROW(Experiment(s, control));   // without a membrane they may be
+    s.model = fixtures::model(GrainKind::flexible);
+    s.contact = fixtures::table7();
+    s.test.sigma3_Pa = 5e6;
+    EXPECT_NO_THROW(Experiment(s, control));   // and flexible grains are pressed directly
+}
+
+}  // namespace
+}  // namespace feldspar

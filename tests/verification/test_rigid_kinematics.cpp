@@ -1,0 +1,304 @@
+// Bodies that are rigid, grains or inner particles: how they turn, what their contacts conserve, where they bend, how they are drawn.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/base/rng.hpp"
+#include "feldspar/geometry/polygon.hpp"
+#include "feldspar/lab/grain_fields.hpp"
+#include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
+#include "feldspar/step/step.hpp"
+#include "fixtures.hpp"
+
+namespace feldspar {
+namespace {
+
+IndexRange all_contacts(const Assembly& assembly) { return {0, static_cast<int>(assembly.contacts.size())}; }
+
+class RigidModels : public testing::TestWithParam<ModelSpec> {
+protected:
+    std::shared_ptr<const Specimen> specimen() const {
+        const bool inner = GetParam().kind == GrainKind::inner_particles;   // ten times as many bodies: a smaller specimen
+        return fixtures::make(fixtures::filled_for(GetParam(), inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04)));
+    }
+    Assembly bodies(const Specimen& s) const { return assemble(s, GetParam(), fixtures::granite(), fixtures::material(GetParam())); }
+};
+INSTANTIATE_TEST_SUITE_P(Models, RigidModels, testing::ValuesIn(fixtures::rigid_models()),
+                         [](const auto& tested) { return fixtures::label(tested.param); });
+
+// Turns all bodies about the origin to `angle` as a step would: displacements, arcs, and the velocities that lead there.
+void turn_to(Assembly& assembly, double angle) {
+    Nodes& nodes = assembly.nodes;
+    for (const Body& body : assembly.bodies) {
+        const int centre = body.centre_node, turn = centre + 1;
+        const Vec2 X = nodes.reference[centre];
+        const Vec2 after = turned(X, angle) - X, arc = {angle * body.radius_m, 0.0};
+        nodes.velocity[centre] = after - nodes.displacement[centre];
+        nodes.velocity[turn] = arc - nodes.displacement[turn];
+        nodes.displacement[centre] = after;
+        nodes.displacement[turn] = arc;
+    }
+}
+
+struct Gaps {
+    double un = 0.0, us = 0.0;
+};
+
+Gaps gaps_after_turning(Assembly assembly, int steps) {
+    for (int k = 1; k <= steps; ++k) {
+        turn_to(assembly, 0.3 * k / steps);
+        contact_forces(assembly, all_contacts(assembly), StepSettings{}, k);
+    }
+    Gaps largest;
+    for (const ContactPoint& point : assembly.points) {
+        largest.un = std::max(largest.un, std::abs(point.bond.un_m));
+        largest.us = std::max(largest.us, std::abs(point.bond.us_m));
+    }
+    return largest;
+}
+
+TEST_P(RigidModels, RigidRotationOpensContactsOnlyByTheStepsOwnErrorWhichVanishesWithTheStep) {
+    const Assembly assembly = bodies(*specimen());
+    const Gaps coarse = gaps_after_turning(assembly, 1000), fine = gaps_after_turning(assembly, 2000);
+    EXPECT_LT(coarse.un, 5e-7);
+    EXPECT_LT(coarse.us, 5e-7);
+    EXPECT_GT(coarse.un, 0.0);
+    // The turn moves a point by its arc, the centre by its chord: of first order in the step, along the line of centres. Across it
+    // the line turns with the bodies, and what is left is of second order; across the edge's normal it is of first order too.
+    const bool along_centres = GetParam().normal == ContactNormal::centres;
+    EXPECT_NEAR(coarse.un / fine.un, 2.0, 0.02);
+    EXPECT_NEAR(coarse.us / fine.us, along_centres ? 4.0 : 2.0, along_centres ? 0.04 : 0.02);
+}
+
+TEST_P(RigidModels, ContactForcesConserveLinearAndAngularMomentum) {
+    Assembly assembly = bodies(*specimen());
+    RandomStream random(7, "momentum of rigid bodies");
+    for (const Body& body : assembly.bodies) {
+        const Vec2 X = assembly.nodes.reference[body.centre_node];
+        assembly.nodes.displacement[body.centre_node] = turned(X, 0.1) - X + Vec2{1e-7 * random.normal(), 1e-7 * random.normal()};
+        assembly.nodes.displacement[body.centre_node + 1].x = (0.1 + 1e-4 * random.normal()) * body.radius_m;
+        assembly.nodes.velocity[body.centre_node] = {1e-9 * random.normal(), 1e-9 * random.normal()};
+        assembly.nodes.velocity[body.centre_node + 1].x = 1e-9 * random.normal();
+    }
+    contact_forces(assembly, all_contacts(assembly), StepSettings{}, 0);
+    double sheared = 0.0;
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+        const Contact& contact = assembly.contacts[c];
+        const SlotForces &a = assembly.slots[2 * c], &b = assembly.slots[2 * c + 1];
+        const double size = norm(a[0]);
+        ASSERT_GT(size, 0.0);
+        EXPECT_LT(norm(a[0] + b[0]), 1e-12 * size);   // rounding of the sums over three points
+        double moment = 0.0;
+        for (const auto& [side, slot] : {std::pair{contact.a, a}, std::pair{contact.b, b}}) {
+            const Body& body = assembly.bodies[side.body];
+            moment += cross(assembly.centre(side.body), slot[0]) + slot[1].x * body.radius_m;
+            EXPECT_EQ(slot[1].y, 0.0);
+            EXPECT_EQ(slot[2], Vec2{});
+        }
+        // Lever arms of up to the body's height; three points may pull against each other and leave a small sum.
+        EXPECT_LT(std::abs(moment), 1e-10 * (size + std::abs(a[1].x) + std::abs(b[1].x)) * 0.04);
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) sheared = std::max(sheared, std::abs(assembly.points[p].bond.Fs_N));
+    }
+    EXPECT_GT(sheared, 0.0);
+}
+
+TEST_P(RigidModels, ForcesOfLoadedContactsTurnWithTheBodies) {
+    // Loaded by small random motions, then turned: what the turning itself adds is of first order in the step (see above), so the
+    // change against the turned forces of twice as many steps is half as large.
+    const auto turned_error = [&](int steps) {
+        Assembly assembly = bodies(*specimen());
+        RandomStream random(9, "turned forces");
+        std::vector<Vec2> loaded(assembly.nodes.reference.size());
+        for (const Body& body : assembly.bodies) {
+            loaded[body.centre_node] = {1e-7 * random.normal(), 1e-7 * random.normal()};
+            loaded[body.centre_node + 1] = {1e-7 * random.normal(), 0.0};
+        }
+        assembly.nodes.displacement = assembly.nodes.velocity = loaded;
+        StepSettings elastic;
+        elastic.strength = Strength::unlimited;
+        contact_forces(assembly, all_contacts(assembly), elastic, 0);
+        const std::vector<SlotForces> before = assembly.slots;
+        for (int k = 1; k <= steps; ++k) {
+            const double angle = 0.3 * k / steps;
+            for (const Body& body : assembly.bodies) {
+                const int centre = body.centre_node, turn = centre + 1;
+                const Vec2 X = assembly.nodes.reference[centre];
+                const Vec2 after = turned(X + loaded[centre], angle) - X;
+                const Vec2 arc = loaded[turn] + Vec2{angle * body.radius_m, 0.0};
+                assembly.nodes.velocity[centre] = after - assembly.nodes.displacement[centre];
+                assembly.nodes.velocity[turn] = arc - assembly.nodes.displacement[turn];
+                assembly.nodes.displacement[centre] = after;
+                assembly.nodes.displacement[turn] = arc;
+            }
+            contact_forces(assembly, all_contacts(assembly), elastic, k);
+        }
+        double error = 0.0, size = 0.0;
+        for (std::size_t slot = 0; slot < before.size(); ++slot) {
+            error = std::max(error, norm(assembly.slots[slot][0] - turned(before[slot][0], 0.3)));
+            size = std::max(size, norm(before[slot][0]));
+        }
+        return error / size;
+    };
+    const double coarse = turned_error(1000), fine = turned_error(2000);
+    EXPECT_LT(coarse, 1.0);
+    EXPECT_NEAR(coarse / fine, 2.0, 0.2);
+}
+
+TEST_P(RigidModels, DrawnGrainsFollowARigidMotionExactly) {
+    const auto s = specimen();
+    Assembly assembly = bodies(*s);
+    turn_to(assembly, 0.3);
+    const std::vector<Vec2> drawn = mesh_displacements(assembly, *s, assembly.nodes.displacement);
+    ASSERT_EQ(drawn.size(), s->mesh.nodes.size());
+    for (std::size_t n = 0; n < drawn.size(); ++n) {
+        const Vec2 X = s->mesh.nodes[n];
+        EXPECT_LT(norm(drawn[n] - (turned(X, 0.3) - X)), 1e-14);   // rounding of the least squares over 0.04 m
+    }
+}
+
+TEST_P(RigidModels, AGrainsBodiesHaveItsVolumeAndItsMass) {
+    const auto s = specimen();
+    Assembly assembly = bodies(*s);
+    set_real_masses(assembly, 2650.0);
+    std::vector<double> volume(s->cells.cells.size(), 0.0), mass = volume;
+    for (const Body& body : assembly.bodies) {
+        volume[body.grain] += body.volume_m3;
+        mass[body.grain] += assembly.nodes.mass[body.centre_node];
+        EXPECT_GT(body.gyration_m2, 0.0);
+    }
+    for (std::size_t g = 0; g < volume.size(); ++g) {
+        std::vector<Vec2> corners;
+        for (const int v : s->cells.cells[g].vertices) corners.push_back(s->cells.vertices[v]);
+        const double expected = signed_area(corners) * assembly.thickness_m;
+        EXPECT_NEAR(volume[g] / expected, 1.0, 1e-12);
+        EXPECT_NEAR(mass[g] / (2650.0 * expected), 1.0, 1e-12);
+    }
+}
+
+TEST(InnerParticles, DrawnGrainsFollowAHomogeneousStrainExactly) {
+    const ModelSpec model = fixtures::model(GrainKind::inner_particles);
+    const auto s = fixtures::make(fixtures::filled_for(model, fixtures::rectangle(0.02, 0.04)));
+    Assembly assembly = assemble(*s, model, fixtures::granite(), fixtures::material(model));
+    const auto field = [](Vec2 X) { return Vec2{1e-3 + 2e-3 * X.x - 1e-3 * X.y, -3e-3 * X.x + 0.5e-3 * X.y}; };
+    for (const Body& body : assembly.bodies) assembly.nodes.displacement[body.centre_node] = field(assembly.nodes.reference[body.centre_node]);
+    const std::vector<Vec2> drawn = mesh_displacements(assembly, *s, assembly.nodes.displacement);
+    for (std::size_t n = 0; n < drawn.size(); ++n) EXPECT_LT(norm(drawn[n] - field(s->mesh.nodes[n])), 1e-16);   // of displacements of 1e-3
+}
+
+TEST(InnerParticles, PullingAGrainApartNeverBreaksIt) {
+    const ModelSpec model = fixtures::model(GrainKind::inner_particles);
+    const auto s = fixtures::two_grain_bar(0.003, 0.003, 26.0);
+    Assembly assembly = assemble(*s, model, fixtures::granite(), fixtures::material(model));
+    ContactFinder finder(assembly, 1e-4);
+    for (int k = 1; k <= 10; ++k) {   // to twice its size
+        for (const Body& body : assembly.bodies) {
+            const Vec2 X = assembly.nodes.reference[body.centre_node], after = (0.1 * k) * X;
+            assembly.nodes.velocity[body.centre_node] = after - assembly.nodes.displacement[body.centre_node];
+            assembly.nodes.displacement[body.centre_node] = after;
+        }
+        contact_forces(assembly, all_contacts(assembly), StepSettings{}, k);
+    }
+    finder.update(assembly, 1.0);
+    int inside = 0, across = 0;
+    for (const Contact& contact : assembly.contacts) {
+        const BondState& bond = assembly.points[contact.first_point].bond;
+        if (contact.material == inside_grains) {
+            ++inside;
+            EXPECT_FALSE(contact.dropped);
+            EXPECT_EQ(bond.damage, 0.0);
+            EXPECT_NEAR(bond.Fn_N / (-4.9e13 * assembly.points[contact.first_point].area_m2 * bond.un_m), 1.0, 1e-12);
+            EXPECT_GT(bond.un_m, 0.0);
+        } else {
+            ++across;
+            EXPECT_TRUE(contact.dropped);   // the others break and go
+        }
+    }
+    EXPECT_EQ(inside, static_cast<int>(s->filling.inside.size()));
+    EXPECT_EQ(across, static_cast<int>(s->filling.across.size()));
+    EXPECT_GT(across, 0);
+}
+
+TEST(InnerParticles, ContactsAcrossAnEdgeShareItsAreaAndThoseInsideHaveTheSmallerDiameter) {
+    for (const ContactNormal normal : {ContactNormal::centres, ContactNormal::edge}) {
+        const ModelSpec model = fixtures::model(GrainKind::inner_particles, ContactKind::point, normal);
+        const auto s = fixtures::make(fixtures::filled_for(model, fixtures::rectangle(0.02, 0.04)));
+        const Assembly assembly = assemble(*s, model, fixtures::granite(), fixtures::material(model));
+        double across = 0.0, edges = 0.0;
+        for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+            const Contact& contact = assembly.contacts[c];
+            const Body &a = assembly.bodies[contact.a.body], &b = assembly.bodies[contact.b.body];
+            const double area = assembly.points[contact.first_point].area_m2;
+            if (contact.material == inside_grains) {
+                EXPECT_EQ(a.grain, b.grain);
+                EXPECT_DOUBLE_EQ(area, 2.0 * std::min(a.radius_m, b.radius_m) * assembly.thickness_m);
+                continue;
+            }
+            EXPECT_NE(a.grain, b.grain);
+            across += area;
+            const ContactFrame frame = contact_frame(assembly, contact);
+            const Vec2 edge = assembly.origins[c].to - assembly.origins[c].from;
+            if (normal == ContactNormal::edge) {
+                EXPECT_NEAR(dot(frame.n, edge) / norm(edge), 0.0, 1e-12);
+                EXPECT_GT(dot(frame.n, assembly.centre(contact.b.body) - assembly.centre(contact.a.body)), 0.0);   // out of A
+            } else {
+                EXPECT_NEAR(std::abs(cross(frame.n, assembly.centre(contact.b.body) - assembly.centre(contact.a.body))), 0.0, 1e-16);
+            }
+            EXPECT_NEAR(cross(frame.reference_point - assembly.origins[c].from, edge) / norm(edge), 0.0, 1e-14);   // on the edge's line
+        }
+        for (const Cell& cell : s->cells.cells)
+            for (std::size_t k = 0; k < cell.vertices.size(); ++k)
+                if (cell.neighbours[k] >= 0)
+                    edges += 0.5 * norm(s->cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] - s->cells.vertices[cell.vertices[k]]);
+        EXPECT_NEAR(across / (edges * assembly.thickness_m), 1.0, 1e-12);
+    }
+}
+
+TEST(RigidGrains, ASquareHasTheClosedFormsMassAndMomentOfInertia) {
+    const double h = 0.003, mass = 2650.0 * h * h * 0.08;
+    Assembly assembly = assemble(*fixtures::two_grain_bar(h, 0.5 * h), fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table1(GrainKind::rigid));
+    set_real_masses(assembly, 2650.0);
+    EXPECT_NEAR(assembly.nodes.mass[0] / mass, 1.0, 1e-12);
+    EXPECT_NEAR(assembly.nodes.mass[1] * 0.25 * h * h / (mass * h * h / 6.0), 1.0, 1e-12);              // m (h^2 + h^2) / 12
+    EXPECT_NEAR(assembly.nodes.mass[3] * h * h / 16.0 / (0.5 * mass * 1.25 * h * h / 12.0), 1.0, 1e-12);   // m (h^2 + (h/2)^2) / 12
+    EXPECT_NEAR(assembly.nodes.inverse_mass[0].x * mass, 1.0, 1e-12);
+    EXPECT_EQ(assembly.nodes.inverse_mass[1].y, 0.0);   // of a turn only x moves
+}
+
+// Moment about the middle of the edge between two square grains when the upper one turns about it by a small angle, over
+// Kn t L^3 / 12 times the angle.
+double bending_moment(const ModelSpec& model) {
+    constexpr double kSide = 0.003, kAngle = 1e-9;
+    const ContactMaterial material = fixtures::material(model);
+    Assembly assembly = assemble(*fixtures::two_grain_bar(kSide), model, fixtures::granite(), material);
+    const Vec2 middle = {0.5 * kSide, kSide};
+    const Body& upper = assembly.bodies[1];
+    for (int n = upper.node_begin; n < upper.node_end; ++n) {
+        Vec2& u = assembly.nodes.displacement[n];
+        u = kAngle * rot90(assembly.nodes.reference[n] - middle);
+        if (upper.kind == BodyKind::rigid && n > upper.centre_node) u = {kAngle * upper.radius_m, 0.0};
+    }
+    assembly.nodes.velocity = assembly.nodes.displacement;
+    contact_forces(assembly, {0, 1}, StepSettings{}, 0);
+    double moment = 0.0;
+    const Contact& contact = assembly.contacts[0];
+    const SlotForces& on_upper = assembly.slots[1];
+    if (upper.kind == BodyKind::rigid) {
+        moment = cross(assembly.centre(1) - middle, on_upper[0]) + on_upper[1].x * upper.radius_m;
+    } else {
+        for (int i = 0; i < 3; ++i) moment += cross(assembly.nodes.position(contact.b.node[i]) - middle, on_upper[i]);
+    }
+    return -moment / (material.Kn_Pa_m * assembly.thickness_m * kSide * kSide * kSide / 12.0 * kAngle);
+}
+
+TEST(Bending, ThreePointsCarryTheClosedFormsMomentAndOnePointCarriesNone) {
+    for (const GrainKind grains : {GrainKind::rigid, GrainKind::flexible}) {
+        // Lobatto's rule is exact for W^2: 2 (1/6) (L/2)^2 = L^2 / 12. Gaps of 1e-12 m leave the angle's square and rounding.
+        EXPECT_NEAR(bending_moment(fixtures::model(grains)), 1.0, 1e-6) << name(grains);
+        EXPECT_NEAR(bending_moment(fixtures::model(grains, ContactKind::point)), 0.0, 1e-6) << name(grains);
+    }
+}
+
+}  // namespace
+}  // namespace feldspar
