@@ -11,8 +11,9 @@ namespace {
 constexpr double kMostSlowing = 0.85;
 constexpr double kMostHastening = 1.06;
 // A local crack rings for a travel time whatever the speed is. If the load changes by no more than this share meanwhile, going
-// slower does not change what the crack does. At an accuracy of 0.5 %; it grows with the accuracy, that is with the square of R*.
-constexpr double kLoadWhileCracking = 0.0025;
+// slower does not change what the crack does. At an accuracy of 0.5 %; it grows with the target, and no further than this: at three
+// times the limit a Brazilian test with the brittle law ran through its strength.
+constexpr double kLoadWhileCracking = 0.0025, kMostLoadWhileCracking = 0.01;
 // Where nothing is out of balance the record still has to resolve the load: by a hundredth from row to row.
 constexpr double kLoadPerStep = 1e-3;
 constexpr double kSpeedAfterPeak = 1e-7;   // heights a step: neither crawling beside a dynamic failure nor racing down a soft branch
@@ -42,7 +43,8 @@ double RateControl::next(double speed, double unbalanced_N, double platen_force_
     // Once the specimen fails by itself, crawling does not help; a branch that softens quietly stays under control.
     const bool failing = past_peak && now > kFailing;
     const double per_travel_time = platen_travel_m / travel_time_;
-    const double crawling = relative_target_ * std::max(6e-9 * height_m_, relative_target_ * kLoadWhileCracking * per_travel_time);
+    const double share = std::min(relative_target_ * kLoadWhileCracking, kMostLoadWhileCracking);
+    const double crawling = std::max(relative_target_ * 6e-9 * height_m_, share * per_travel_time);
     const double after_peak = kSpeedAfterPeak * height_m_;
     const double slowest = failing ? std::max(crawling, after_peak) : crawling;
     const double resolved = std::min(0.4 * per_travel_time, relative_target_ * kLoadPerStep * platen_travel_m);
