@@ -151,8 +151,8 @@ void add_bonded_contact(Assembly& assembly, ContactKind kind, int ga, int ka, in
     const GrainEdge& edge_a = assembly.edges[assembly.bodies[ga].edge_begin + ka];
     const GrainEdge& edge_b = assembly.edges[assembly.bodies[gb].edge_begin + kb];
     Contact contact;
-    contact.a = {edge_a.node, ga};
-    contact.b = {edge_b.node, gb};
+    contact.a = side_of(assembly, ga, edge_a.node);
+    contact.b = side_of(assembly, gb, edge_b.node);
     const Vec2 p0 = edge_a.from, p1 = edge_a.to;
     const double area = norm(p1 - p0) * assembly.thickness_m;
     place_on_line(assembly, contact, p0, p1);
@@ -192,42 +192,54 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
     }
 }
 
-ContactSide side_of(const Assembly& assembly, int body) {
+// A disc hangs by its centre and its turn.
+SideNodes nodes_of_disc(const Assembly& assembly, int body) {
     const std::int32_t node = assembly.bodies[body].node_begin;
-    return {{node, node + 1, -1}, body};
+    return {node, node + 1, -1};
 }
+
+ContactSide side_of(const Assembly& assembly, int body) { return side_of(assembly, body, nodes_of_disc(assembly, body)); }
 
 double smaller_diameter(const Assembly& assembly, int a, int b) {
     return 2.0 * std::min(assembly.bodies[a].radius_m, assembly.bodies[b].radius_m);
 }
 
-void add_contacts_of_particles(Assembly& assembly, const Filling& filling, ContactNormal normal) {
-    for (const InsideContact& pair : filling.inside) {
-        Contact contact;
-        contact.a = side_of(assembly, pair.a);
-        contact.b = side_of(assembly, pair.b);
-        contact.offset_m = plane_between_circles(assembly, contact);
-        contact.material = inside_grains;
-        contact.first_point = static_cast<std::int32_t>(assembly.points.size());
-        contact.points = 1;
-        add_point(assembly, 0.0, smaller_diameter(assembly, pair.a, pair.b) * assembly.thickness_m);
-        add_contact(assembly, contact, {});
+void add_inside_contact(Assembly& assembly, const InsideContact& pair) {
+    Contact contact;
+    contact.a = side_of(assembly, pair.a);
+    contact.b = side_of(assembly, pair.b);
+    contact.offset_m = plane_between_circles(assembly, contact);
+    contact.material = inside_grains;
+    contact.first_point = static_cast<std::int32_t>(assembly.points.size());
+    contact.points = 1;
+    add_point(assembly, 0.0, smaller_diameter(assembly, pair.a, pair.b) * assembly.thickness_m);
+    add_contact(assembly, contact, {});
+}
+
+void add_across_contact(Assembly& assembly, const AcrossContact& across, ContactNormal normal) {
+    Contact contact;
+    contact.a = side_of(assembly, across.a);
+    contact.b = side_of(assembly, across.b);
+    place_on_line(assembly, contact, across.from, across.to);
+    if (normal == ContactNormal::edge) {
+        const Vec2 line = across.to - across.from;
+        contact.edge_normal = (-1.0 / norm(line)) * rot90(line);   // out of A's cell, which lies to the left of its edges
     }
-    for (const AcrossContact& across : filling.across) {
-        Contact contact;
-        contact.a = side_of(assembly, across.a);
-        contact.b = side_of(assembly, across.b);
-        place_on_line(assembly, contact, across.from, across.to);
-        if (normal == ContactNormal::edge) {
-            const Vec2 line = across.to - across.from;
-            contact.edge_normal = (-1.0 / norm(line)) * rot90(line);   // out of A's cell, which lies to the left of its edges
-        }
-        set_closing_distance(assembly, contact);
-        contact.first_point = static_cast<std::int32_t>(assembly.points.size());
-        contact.points = 1;
-        add_point(assembly, 0.0, norm(across.to - across.from) * assembly.thickness_m);
-        if (normal == ContactNormal::centres) assembly.points.back().free_gap_m = free_gap_between_circles(assembly, contact);
-        add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
+    set_closing_distance(assembly, contact);
+    contact.first_point = static_cast<std::int32_t>(assembly.points.size());
+    contact.points = 1;
+    add_point(assembly, 0.0, norm(across.to - across.from) * assembly.thickness_m);
+    if (normal == ContactNormal::centres) assembly.points.back().free_gap_m = free_gap_between_circles(assembly, contact);
+    add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
+}
+
+// Grain by grain, so that a sweep over the contacts goes through the particles once.
+void add_contacts_of_particles(Assembly& assembly, const Filling& filling, ContactNormal normal) {
+    auto inside = filling.inside.begin();
+    auto across = filling.across.begin();
+    for (int g = 0; g + 1 < std::ssize(filling.particle_begin); ++g) {
+        for (; inside != filling.inside.end() && inside->a < filling.particle_begin[g + 1]; ++inside) add_inside_contact(assembly, *inside);
+        for (; across != filling.across.end() && across->cell_a <= g; ++across) add_across_contact(assembly, *across, normal);
     }
 }
 
@@ -260,7 +272,7 @@ struct ClosestEdge {
 
 ClosestEdge closest_edge(const Assembly& assembly, int index, Vec2 x) {
     const Body& body = assembly.bodies[index];
-    if (body.edge_begin == body.edge_end) return {side_of(assembly, index).node, 2.0 * body.radius_m};
+    if (body.edge_begin == body.edge_end) return {nodes_of_disc(assembly, index), 2.0 * body.radius_m};
     ClosestEdge best;
     double best_distance = std::numeric_limits<double>::infinity();
     for (int e = body.edge_begin; e < body.edge_end; ++e) {
@@ -314,10 +326,16 @@ Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainM
     return assembly;
 }
 
+ContactSide side_of(const Assembly& assembly, int body, const SideNodes& node) {
+    const Body& b = assembly.bodies[body];
+    return {node, body, b.centre_node, b.radius_m > 0.0 ? 1.0 / b.radius_m : 0.0};
+}
+
 void add_contact(Assembly& assembly, const Contact& contact, const ContactOrigin& origin) {
     assembly.contacts.push_back(contact);
     assembly.origins.push_back(origin);
-    if (assembly.bodies[contact.a.body].kind == BodyKind::flexible) remember_shapes(assembly, contact);
+    assembly.contacts.back().flexible = assembly.bodies[contact.a.body].kind == BodyKind::flexible;
+    if (assembly.contacts.back().flexible) remember_shapes(assembly, contact);
 }
 
 void index_slots(Assembly& assembly) {
@@ -349,8 +367,8 @@ void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_ove
     contact.new_contact = true;
     const Vec2 x = xa + ((0.5 * d + contact.offset_m) / d) * line;
     const ClosestEdge edge_a = closest_edge(assembly, body_a, x), edge_b = closest_edge(assembly, body_b, x);
-    contact.a = {edge_a.node, body_a};
-    contact.b = {edge_b.node, body_b};
+    contact.a = side_of(assembly, body_a, edge_a.node);
+    contact.b = side_of(assembly, body_b, edge_b.node);
     contact.first_point = static_cast<std::int32_t>(assembly.points.size());
     contact.points = 1;
     ContactPoint point;

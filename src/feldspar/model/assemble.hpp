@@ -17,6 +17,9 @@ namespace feldspar {
 /// @throws InputError  inner particles are asked for, but the specimen is not filled
 Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact);
 
+/// The side of a contact that hangs on these nodes of a body.
+ContactSide side_of(const Assembly& assembly, int body, const SideNodes& node);
+
 /// Adds a contact with its origin and, between flexible bodies, its remembered shape functions; its points must stand at the
 /// end of Assembly::points.
 void add_contact(Assembly& assembly, const Contact& contact, const ContactOrigin& origin);

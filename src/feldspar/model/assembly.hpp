@@ -74,9 +74,12 @@ struct GrainEdge {
     Vec2 from, to;             ///< m, undeformed
 };
 
+/// One side of a contact, with what the step needs of its body.
 struct ContactSide {
     SideNodes node{};
     std::int32_t body = -1;
+    std::int32_t centre_node = 0;   ///< of the body
+    double inverse_radius = 0.0;    ///< 1/m, of the body's contact circle
 };
 
 /// Two facing edges, or an edge and a plate (always side B).
@@ -92,6 +95,7 @@ struct Contact {
     std::int32_t points = 0;
     std::int32_t material = 0;       ///< into Assembly::laws
     bool plate = false;              ///< side B is a plate
+    bool flexible = false;           ///< side A is a flexible grain, and side B if it is no plate
     bool initial_shape = false;      ///< uses the shape functions of the undeformed state (fall-back)
     bool dropped = false;            ///< carries nothing any more
     bool new_contact = false;        ///< made after detachment
@@ -190,12 +194,12 @@ struct ContactFrame {
 
 inline ContactFrame contact_frame(const Assembly& assembly, const Contact& contact) {
     ContactFrame f;
-    const Vec2 xa = assembly.centre(contact.a.body);
+    const Vec2 xa = assembly.nodes.position(contact.a.centre_node);
     double s = contact.offset_m;
     if (contact.plate) {
         f.n = assembly.bodies[contact.b.body].normal;
     } else {
-        const Vec2 line = assembly.centre(contact.b.body) - xa;
+        const Vec2 line = assembly.nodes.position(contact.b.centre_node) - xa;
         f.distance_m = norm(line);
         f.n = (1.0 / f.distance_m) * line;
         s += 0.5 * f.distance_m;

@@ -52,7 +52,7 @@ public:
         : centre_(assembly.nodes.position(side.node[0])),
           velocity_(assembly.nodes.velocity[side.node[0]]),
           arc_velocity_(assembly.nodes.velocity[side.node[1]].x),
-          inverse_radius_(1.0 / assembly.bodies[side.body].radius_m) {}
+          inverse_radius_(side.inverse_radius) {}
 
     Weights at(Vec2 x) const { return inverse_radius_ * rot90(x - centre_); }
     Vec2 velocity(Weights arc) const { return velocity_ + arc_velocity_ * arc; }
@@ -82,16 +82,12 @@ private:
     Vec2 velocity_;
 };
 
-/// Nodes of a side of a body of this kind.
-constexpr int side_nodes(BodyKind kind) { return kind == BodyKind::flexible ? 3 : kind == BodyKind::rigid ? 2 : 1; }
-
 /// Calls work.template operator()<A, B>() with the attachments of a contact's two sides.
 template <class Work>
-decltype(auto) with_attachments(const Assembly& assembly, const Contact& contact, Work&& work) {
-    const bool flexible = assembly.bodies[contact.a.body].kind == BodyKind::flexible;
+decltype(auto) with_attachments(const Contact& contact, Work&& work) {
     if (contact.plate)
-        return flexible ? work.template operator()<TriangleAttachment, PlateAttachment>() : work.template operator()<RigidAttachment, PlateAttachment>();
-    return flexible ? work.template operator()<TriangleAttachment, TriangleAttachment>() : work.template operator()<RigidAttachment, RigidAttachment>();
+        return contact.flexible ? work.template operator()<TriangleAttachment, PlateAttachment>() : work.template operator()<RigidAttachment, PlateAttachment>();
+    return contact.flexible ? work.template operator()<TriangleAttachment, TriangleAttachment>() : work.template operator()<RigidAttachment, RigidAttachment>();
 }
 
 }  // namespace feldspar

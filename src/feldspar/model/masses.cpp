@@ -48,7 +48,7 @@ template <class Visit>
 void visit_points(const Assembly& assembly, const Contact& contact, Visit visit) {
     const BondLaw& law = assembly.laws[contact.material];
     const ContactFrame frame = contact_frame(assembly, contact);
-    with_attachments(assembly, contact, [&]<class A, class B>() {
+    with_attachments(contact, [&]<class A, class B>() {
         const A a(assembly, contact.a);
         const B b(assembly, contact.b);
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {

@@ -70,8 +70,8 @@ int add_plate(Assembly& assembly, Vec2 place, Vec2 normal, Vec2 free) {
 void add_plate_contact(Assembly& assembly, const OutlineSite& site, int plate, Vec2 touch, double area_m2, double gap_m, ContactRole material) {
     const Vec2 normal = assembly.bodies[plate].normal, arm = touch - assembly.centre(site.body);
     Contact contact;
-    contact.a = {site.node, site.body};
-    contact.b = {{assembly.bodies[plate].centre_node, -1, -1}, plate};
+    contact.a = side_of(assembly, site.body, site.node);
+    contact.b = side_of(assembly, plate, {assembly.bodies[plate].centre_node, -1, -1});
     contact.plate = true;
     contact.material = material;
     contact.offset_m = dot(arm, normal);

@@ -1,20 +1,31 @@
 #include <cmath>
 
-#include "feldspar/model/attachment.hpp"
 #include "feldspar/step/step.hpp"
 
 namespace feldspar {
 namespace {
 
 void gather_contacts(Assembly& assembly, const Body& body) {
-    const int nodes = side_nodes(body.kind);
     for (int n = body.node_begin; n < body.node_end; ++n) assembly.nodes.force[n] = {};
     for (int i = body.slot_begin; i < body.slot_end; ++i) {
         const int slot = assembly.slots_of_bodies[i];
         const Contact& contact = assembly.contacts[slot / 2];
         const SideNodes& node = slot % 2 == 0 ? contact.a.node : contact.b.node;
-        for (int k = 0; k < nodes; ++k) assembly.nodes.force[node[k]] += assembly.slots[slot][k];
+        for (int k = 0; k < 3; ++k) assembly.nodes.force[node[k]] += assembly.slots[slot][k];
     }
+}
+
+// All slots of a rigid body act on its centre and its turn; a plate has no turn, and nothing in its second slot.
+void gather_at_centre(Assembly& assembly, const Body& body) {
+    Vec2 force;
+    double moment = 0.0;   // over the radius
+    for (int i = body.slot_begin; i < body.slot_end; ++i) {
+        const SlotForces& slot = assembly.slots[assembly.slots_of_bodies[i]];
+        force += slot[0];
+        moment += slot[1].x;
+    }
+    assembly.nodes.force[body.centre_node] = force;
+    if (body.kind == BodyKind::rigid) assembly.nodes.force[body.centre_node + 1] = {moment, 0.0};
 }
 
 void add_triangles(Assembly& assembly, const Body& body) {
@@ -109,8 +120,12 @@ void body_forces(Assembly& assembly, IndexRange bodies, const StepSettings& sett
     for (int b = bodies.begin; b < bodies.end; ++b) {
         const Body& body = assembly.bodies[b];
         BodyWork& work = assembly.body_work[b];
-        gather_contacts(assembly, body);
-        add_triangles(assembly, body);
+        if (body.kind == BodyKind::flexible) {
+            gather_contacts(assembly, body);
+            add_triangles(assembly, body);
+        } else {
+            gather_at_centre(assembly, body);
+        }
         add_pressure(assembly, body, work, settings.dt);
         if (settings.damping == Damping::local) {
             integrate<Damping::local>(assembly, body, settings, work);

@@ -62,7 +62,7 @@ void contact_forces(Assembly& assembly, IndexRange contacts, const StepSettings&
         SlotForces& slot_b = assembly.slots[2 * c + 1];
         slot_a = slot_b = SlotForces{};
         if (contact.dropped) continue;
-        with_attachments(assembly, contact,
+        with_attachments(contact,
                          [&]<class A, class B>() { forces_of_contact<A, B>(assembly, contact, slot_a, slot_b, settings, step); });
     }
 }

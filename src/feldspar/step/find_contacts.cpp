@@ -143,7 +143,7 @@ ShapeChoice choose_shape_functions(Assembly& assembly, double mass_factor) {
     ShapeChoice choice;
     for (Contact& contact : assembly.contacts) {
         contact.initial_shape = false;
-        if (contact.dropped || assembly.bodies[contact.a.body].kind != BodyKind::flexible) continue;
+        if (contact.dropped || !contact.flexible) continue;
         const ContactFrame frame = contact_frame(assembly, contact);
         const bool b_is_grain = !contact.plate;
         const auto pa = corners(assembly.nodes, contact.a.node);
