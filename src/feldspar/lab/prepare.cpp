@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/geometry/polygon.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
 
@@ -26,30 +27,37 @@ void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
         throw NumericalError(fmt::format("the elastic start did not relax: residual {:.3g} after {} steps, wanted {:.3g}", r.residual, r.steps, tolerance));
 }
 
+// What a node of a body takes of an affine field: a rigid body does not turn, a plate moves where it may.
+Vec2 share_of_field(const Assembly& assembly, const Body& body, int node, Vec2 field) {
+    switch (body.kind) {
+        case BodyKind::flexible: return field;
+        case BodyKind::rigid: return node == body.centre_node ? field : Vec2{};
+        case BodyKind::plate: return {assembly.nodes.inverse_mass[node].x != 0.0 ? field.x : 0.0, 0.0};
+    }
+    return {};
+}
+
+// Where the field leaves x alone: at the node that a row of nodes holds, else in the middle of the width.
+double fixed_x(const Assembly& assembly, const Box& box) {
+    for (const Body& body : assembly.bodies)
+        for (int n = body.node_begin; body.kind == BodyKind::flexible && n < body.node_end; ++n)
+            if (assembly.nodes.inverse_mass[n].x == 0.0) return assembly.nodes.reference[n].x;
+    return 0.5 * (box.lower.x + box.upper.x);
+}
+
 // Moves everything by an affine field: shortening by `travel_m` over the height, widening by nu. The contacts follow the motion
 // as they do in a step, so that gaps that it opens or closes between rigid bodies and at plates are felt.
 void add_affine(Experiment& e, double travel_m) {
     Assembly& assembly = e.assembly;
     Nodes& nodes = assembly.nodes;
-    double bottom = std::numeric_limits<double>::infinity(), left = bottom, right = -bottom;
-    for (const Vec2 x : nodes.reference) {
-        bottom = std::min(bottom, x.y);
-        left = std::min(left, x.x);
-        right = std::max(right, x.x);
-    }
-    double held = 0.5 * (left + right);
-    for (const Body& body : assembly.bodies)   // the node that a row of nodes holds
-        for (int n = body.node_begin; body.kind == BodyKind::flexible && n < body.node_end; ++n)
-            if (nodes.inverse_mass[n].x == 0.0) held = nodes.reference[n].x;
+    const Box box = bounding_box(nodes.reference);
+    const Vec2 origin = {fixed_x(assembly, box), box.lower.y};
     const double strain = assembly.platens[0].mode.y * travel_m / e.height_m;
     const std::vector<Vec2> velocity = nodes.velocity;
     for (const Body& body : assembly.bodies)
         for (int n = body.node_begin; n < body.node_end; ++n) {
-            const Vec2 x = nodes.reference[n];
-            nodes.velocity[n] = {-e.elastic_guess.nu * strain * (x.x - held), strain * (x.y - bottom)};
-            if (body.kind == BodyKind::rigid && n > body.centre_node) nodes.velocity[n] = {};   // it does not turn
-            if (body.kind == BodyKind::plate && nodes.inverse_mass[n].x == 0.0) nodes.velocity[n] = {};
-            if (body.kind == BodyKind::plate && nodes.inverse_mass[n].x != 0.0) nodes.velocity[n].y = 0.0;
+            const Vec2 x = nodes.reference[n] - origin;
+            nodes.velocity[n] = share_of_field(assembly, body, n, {-e.elastic_guess.nu * strain * x.x, strain * x.y});
         }
     for (const int node : assembly.platens[0].nodes) nodes.velocity[node].y = assembly.platens[0].mode.y * travel_m;
     StepSettings elastic;
@@ -85,7 +93,7 @@ void set_loading_mode(Experiment& e, const BodyState& from, const BodyState& to)
     for (const int node : e.assembly.platens[1].nodes) nodes.loading_mode[node].y = 0.0;
 }
 
-// Axial loading of the relaxed state `base` up to just below the first damage; sets B. Rows of nodes as platens.
+// Axial loading of the relaxed state `base` up to just below the first damage; sets B. Platens that stay in touch.
 void elastic_loading(Experiment& e, const BodyState& base) {
     const double force_before = platen_force(e);
     add_affine(e, 1e-5 * e.height_m);
