@@ -89,5 +89,17 @@ TEST_P(EnergyBalance, ClosesThroughFailure) {
     EXPECT_GT(strongest, 1e6);
 }
 
+TEST(EnergyOfOneMoment, ClosesToRoundingErrorsOfTheLawWhateverTheSpeedDoes) {   // (L13)
+    // Measured 1.6e-5 and 8.0e-5. With bodies that do not follow a change of speed, or with the works half a step ahead of the
+    // energies, it is 2e-3: that the bound of the tests above lets pass.
+    for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
+        TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, fixtures::model(grains));
+        s.numerics.accuracy = 0.02;
+        const TestResult r = run_test(s, fixtures::threads(1));
+        EXPECT_TRUE(r.properties.peak_reached);
+        EXPECT_LT(r.energy_residual, 3e-4) << name(grains);
+    }
+}
+
 }  // namespace
 }  // namespace feldspar
