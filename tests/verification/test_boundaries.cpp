@@ -84,8 +84,8 @@ TEST(Boundaries, PlateContactsHaveTheirStiffnessFrictionAndFirstTouch) {   // (C
             ASSERT_EQ(contact.points, 1);
             const ContactPoint& point = e.assembly.points[contact.first_point];
             EXPECT_DOUBLE_EQ(point.area_m2, 2.0 * e.assembly.bodies[contact.a.body].radius_m * e.assembly.thickness_m);
-            EXPECT_EQ(point.bond.damage, 1.0);
-            smallest = std::min(smallest, point.bond.un_m);
+            EXPECT_EQ(e.assembly.bonds.at(point.state).damage, 1.0);
+            smallest = std::min(smallest, e.assembly.bonds.at(point.state).un_m);
         }
         EXPECT_NEAR(smallest, 0.0, 1e-15);
     }
@@ -111,7 +111,7 @@ double share_of_first_damage(double tau_Pa, double sigma_nt_Pa) {
     double share = 0.0;
     for (const ContactPoint& point : e.assembly.points) {
         const BondLaw& law = e.assembly.laws[0];
-        share = std::max({share, point.bond.un_m / law.normal.x0, std::abs(point.bond.us_m) / law.shear.x0});
+        share = std::max({share, e.assembly.bonds.at(point.state).un_m / law.normal.x0, std::abs(e.assembly.bonds.at(point.state).us_m) / law.shear.x0});
     }
     return share;
 }
