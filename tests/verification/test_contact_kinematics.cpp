@@ -28,7 +28,7 @@ TEST(ContactKinematics, ForcesOfLoadedContactsTurnWithTheBody) {
     const IndexRange all{0, static_cast<int>(assembly.contacts.size())};
     contact_forces(assembly, all, StepSettings{}, 0);
     const std::vector<SlotForces> before = assembly.slots;
-    const std::vector<Vec2> strained = assembly.nodes.displacement;
+    const Array<Vec2> strained = assembly.nodes.displacement;
     constexpr int kSteps = 100;
     for (int k = 1; k <= kSteps; ++k) {
         for (int n = 0; n < assembly.nodes.count(); ++n) {

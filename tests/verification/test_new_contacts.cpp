@@ -41,7 +41,7 @@ TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
     EXPECT_EQ(changes.made, 0);
     lift(assembly, 1e-9);   // circles of radius kSide / 2 just apart
     EXPECT_EQ(finder.update(assembly, 1.0).made, 0);
-    const std::vector<double> mass_before = assembly.nodes.mass;
+    const Array<double> mass_before = assembly.nodes.mass;
     std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{3e-9, 4e-9});
     lift(assembly, -1e-8);
     changes = finder.update(assembly, 1.0);

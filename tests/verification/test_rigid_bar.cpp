@@ -134,7 +134,7 @@ TEST(TwoRigidGrains, ABrokenOpenContactIsDroppedAndReturnsAsFrictionOnTheShorter
     const Vec2 beside = assembly.nodes.reference[0] + Vec2{touching, 0.0} - assembly.nodes.reference[upper];
     assembly.nodes.displacement[upper] = beside + Vec2{1e-9, 0.0};
     EXPECT_EQ(finder.update(assembly, 1.0).made, 0);
-    const std::vector<double> mass = assembly.nodes.mass;
+    const Array<double> mass = assembly.nodes.mass;
     for (Vec2& v : assembly.nodes.velocity) v = {3e-9, 0.0};
     assembly.nodes.displacement[upper] = beside + Vec2{-1e-8, 0.0};
     const ContactFinder::Changes changes = finder.update(assembly, 1.0);

@@ -107,7 +107,7 @@ TEST_P(RigidModels, ForcesOfLoadedContactsTurnWithTheBodies) {
     const auto turned_error = [&](int steps) {
         Assembly assembly = bodies(*specimen());
         RandomStream random(9, "turned forces");
-        std::vector<Vec2> loaded(assembly.nodes.reference.size());
+        Array<Vec2> loaded(assembly.nodes.reference.size());
         for (const Body& body : assembly.bodies) {
             loaded[body.centre_node] = {1e-7 * random.normal(), 1e-7 * random.normal()};
             loaded[body.centre_node + 1] = {1e-7 * random.normal(), 0.0};

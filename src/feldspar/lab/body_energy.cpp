@@ -7,7 +7,7 @@ namespace feldspar {
 StoredEnergy stored_energy(const Assembly& assembly, double since) {
     StoredEnergy sum;
     const Nodes& nodes = assembly.nodes;
-    std::vector<Vec2> u = nodes.displacement;
+    Array<Vec2> u = nodes.displacement;
     for (std::size_t n = 0; n < u.size(); ++n) u[n] -= since * nodes.velocity[n];
     for (const Triangle& triangle : assembly.triangles)
         sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity, displacement_gradient(u, triangle));

@@ -45,7 +45,7 @@ BodyState superpose(const BodyState& base, const BodyState& state, double factor
     sum.platen_travel_m = mix(base.platen_travel_m, state.platen_travel_m);
     for (std::size_t n = 0; n < sum.displacement_m.size(); ++n)
         sum.displacement_m[n] += factor * (state.displacement_m[n] - base.displacement_m[n]);
-    for (std::vector<double> Bonds::*quantity : {&Bonds::un_m, &Bonds::us_m, &Bonds::Fn_N, &Bonds::Fs_N})
+    for (Array<double> Bonds::*quantity : {&Bonds::un_m, &Bonds::us_m, &Bonds::Fn_N, &Bonds::Fs_N})
         for (std::size_t i = 0; i < (sum.bonds.*quantity).size(); ++i)
             (sum.bonds.*quantity)[i] = mix((base.bonds.*quantity)[i], (state.bonds.*quantity)[i]);
     return sum;
@@ -78,7 +78,7 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
     Nodes& nodes = assembly.nodes;
     std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
     evaluate_forces(assembly, team, strength);
-    std::vector<Vec2> force_before = nodes.force, velocity_before = nodes.velocity;
+    Array<Vec2> force_before = nodes.force, velocity_before = nodes.velocity;
     PlatenWork none;
     Relaxation result;
     while (result.steps < maximum_steps && !(stop && stop())) {

@@ -14,7 +14,7 @@ namespace feldspar {
 /// Everything of a body that moves or remembers, besides velocities.
 struct BodyState {
     double platen_travel_m = 0.0;               ///< along the loading platen's mode
-    std::vector<Vec2> displacement_m;
+    Array<Vec2> displacement_m;
     Bonds bonds;
 };
 

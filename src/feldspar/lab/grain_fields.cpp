@@ -23,7 +23,7 @@ struct LinearField {
     Vec2 at(Vec2 x) const { return u0 + G * (x - x0); }
 };
 
-LinearField fit(const Assembly& assembly, int begin, int end, const std::vector<Vec2>& u) {
+LinearField fit(const Assembly& assembly, int begin, int end, std::span<const Vec2> u) {
     LinearField field;
     const double weight = 1.0 / (end - begin);
     for (int b = begin; b < end; ++b) {
@@ -43,14 +43,14 @@ LinearField fit(const Assembly& assembly, int begin, int end, const std::vector<
     return field;
 }
 
-Vec2 moved_rigidly(const Assembly& assembly, const Body& body, Vec2 X, const std::vector<Vec2>& u) {
+Vec2 moved_rigidly(const Assembly& assembly, const Body& body, Vec2 X, std::span<const Vec2> u) {
     const Vec2 arm = X - assembly.nodes.reference[body.centre_node];
     return u[body.centre_node] + turned(arm, u[body.centre_node + 1].x / body.radius_m) - arm;
 }
 
 }  // namespace
 
-std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& specimen, const std::vector<Vec2>& u) {
+std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& specimen, std::span<const Vec2> u) {
     const GrainMesh& mesh = specimen.mesh;
     std::vector<Vec2> displacements(mesh.nodes.size());
     if (assembly.bodies.front().kind == BodyKind::flexible) {

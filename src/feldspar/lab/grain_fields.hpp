@@ -3,6 +3,7 @@
 // stress a grain, from the forces on it.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "feldspar/model/assembly.hpp"
@@ -11,7 +12,7 @@
 namespace feldspar {
 
 /// Displacement of each node of the grain mesh, m. @param u  displacements of the assembly's nodes at the moment in question
-std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& specimen, const std::vector<Vec2>& u);
+std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& specimen, std::span<const Vec2> u);
 
 /// Mean Cauchy stress of each grain in the present state from the forces at its contacts, Pa, tension positive and symmetric:
 /// sigma = 1/V sum of x (x) F over the contacts with other grains and with plates (Love 1892, Weber 1966).

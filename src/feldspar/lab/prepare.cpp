@@ -53,7 +53,7 @@ void add_affine(Experiment& e, double travel_m) {
     const Box box = bounding_box(nodes.reference);
     const Vec2 origin = {fixed_x(assembly, box), box.lower.y};
     const double strain = assembly.platens[0].mode.y * travel_m / e.height_m;
-    const std::vector<Vec2> velocity = nodes.velocity;
+    const Array<Vec2> velocity = nodes.velocity;
     for (const Body& body : assembly.bodies)
         for (const int n : body.nodes()) {
             const Vec2 x = nodes.reference[n] - origin;
@@ -256,7 +256,7 @@ void prepare_plainly(Experiment& e) {
     }
     const double travel = e.platen_travel_m, unit = 1e-6 * e.height_m;
     const BodyState before = capture(e.assembly, travel);
-    const std::vector<Vec2> velocity = e.assembly.nodes.velocity;
+    const Array<Vec2> velocity = e.assembly.nodes.velocity;
     add_affine(e, unit);
     const BodyState moved = capture(e.assembly, e.platen_travel_m);
     go_to(e, before);

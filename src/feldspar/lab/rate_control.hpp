@@ -69,7 +69,7 @@ private:
     long long start_step_ = -1;
     double start_travel_m_ = 0.0;
     double largest_residual_ = 0.0;
-    std::vector<Vec2> start_displacement_m_;
+    Array<Vec2> start_displacement_m_;
 };
 
 }  // namespace feldspar

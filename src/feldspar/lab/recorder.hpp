@@ -28,7 +28,7 @@ private:
     struct Fields {   // what a snapshot needs, copied cheaply; stresses are computed at the end
         std::string label;
         HistoryRow row;
-        std::vector<Vec2> displacement;   // a node of the assembly
+        Array<Vec2> displacement;   // a node of the assembly
         std::vector<Mat2> grain_stress;   // a grain, unless grains have triangles of their own
         std::vector<float> damage;     // a contact point
         std::vector<double> opening;   // a contact point

@@ -4,6 +4,7 @@
 //   un  normal gap, m, > 0 open           Fn  normal force, N, compression positive
 //   us  shear displacement, m             Fs  shear force, N, on side A along the tangent with the sign of -us
 //   k   Kn A and eta Kn A                 D   damage, 0 intact ... 1 broken, never decreases
+// While D = 0:  Fn = -kn un, Fs = -ks us.
 // While D < 1 (forces are incremental, so tension unloads with the slope kn from the current point):
 //     trial    Fn' = Fn - kn dun,  Fs' = Fs - ks dus
 //     D        = min(1, Dn(max un) + Ds(max |us|))                               (26)-(27), which must mean 1 - D
@@ -92,8 +93,8 @@ inline bool update_elastic(const BondLaw& law, double area_m2, double dun_m, dou
     if (s.damage >= 1.0) return false;
     s.un_m += dun_m;
     s.us_m += dus_m;
-    s.Fn_N -= law.Kn_Pa_m * area_m2 * dun_m;
-    s.Fs_N -= law.Ks_Pa_m * area_m2 * dus_m;
+    s.Fn_N = s.damage == 0.0 ? -(law.Kn_Pa_m * area_m2) * s.un_m : s.Fn_N - law.Kn_Pa_m * area_m2 * dun_m;
+    s.Fs_N = s.damage == 0.0 ? -(law.Ks_Pa_m * area_m2) * s.us_m : s.Fs_N - law.Ks_Pa_m * area_m2 * dus_m;
     return true;
 }
 
@@ -177,8 +178,8 @@ inline BondEvent update_bond(const BondLaw& law, double area_m2, double dun_m, d
     if (s.damage == 0.0 && un <= law.normal.x0 && std::abs(us) <= law.shear.x0) {
         s.un_m = un;
         s.us_m = us;
-        s.Fn_N -= law.Kn_Pa_m * area_m2 * dun_m;
-        s.Fs_N -= law.Ks_Pa_m * area_m2 * dus_m;
+        s.Fn_N = -(law.Kn_Pa_m * area_m2) * un;
+        s.Fs_N = -(law.Ks_Pa_m * area_m2) * us;
         return BondEvent::none;
     }
     return detail::update_damaged(law, area_m2, dun_m, dus_m, s);

@@ -17,7 +17,7 @@ namespace {
 constexpr Vec2 kFree{1.0, 1.0};
 constexpr Vec2 kTurn{1.0, 0.0};   // of a turn only x moves
 
-Triangle make_triangle(const std::vector<Vec2>& X, const SideNodes& node, double thickness_m) {
+Triangle make_triangle(std::span<const Vec2> X, const SideNodes& node, double thickness_m) {
     const Vec2 e1 = X[node[1]] - X[node[0]], e2 = X[node[2]] - X[node[0]];
     const double twice_area = cross(e1, e2);
     Triangle triangle;
@@ -464,8 +464,8 @@ double Assembly::memory_bytes() const {
     double sum = bytes(nodes.reference) * 6.0 + bytes(nodes.mass) + bytes(triangles) + bytes(bodies) + bytes(edges) + bytes(node_of_mesh) + bytes(contacts) +
                  bytes(origins) + bytes(points) + bytes(bonds.un_m) * 9.0 + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) +
                  bytes(pressure_edges) + bytes(body_work);
-    sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.field_of_edge) + bytes(packs.fields) + bytes(packs.inverse_cross) +
-           bytes(packs.slot_of_edge) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.field_a) * 2.0 + bytes(packs.along) * 2.0;
+    sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.line_of_edge) + bytes(packs.lines) + bytes(packs.inverse_cross) +
+           bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0;
     return sum;
 }
 

@@ -9,8 +9,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "feldspar/base/array.hpp"
 #include "feldspar/base/vec2.hpp"
 #include "feldspar/laws/bond.hpp"
 #include "feldspar/laws/plane_elasticity.hpp"
@@ -26,13 +28,13 @@ namespace feldspar {
 /// free. So forces, masses, damping, loading mode, stability and energy have one form for all bodies; a force on a turn is a
 /// moment over the radius, its mass the moment of inertia over the radius squared. A plate has one node, free where it may move.
 struct Nodes {
-    std::vector<Vec2> reference;      ///< m; of a turn: that of its centre
-    std::vector<Vec2> displacement;   ///< m
-    std::vector<Vec2> velocity;       ///< m per unit of time (a step, or a second with real masses)
-    std::vector<Vec2> force;          ///< N, of the last step: contacts, triangles and pressure, without damping
-    std::vector<Vec2> inverse_mass;   ///< 1/kg; 0 in a direction whose motion is imposed
-    std::vector<Vec2> loading_mode;   ///< B: motion of the node per unit of platen motion; imposed where inverse_mass is 0
-    std::vector<double> mass;         ///< kg, scaled or real
+    Array<Vec2> reference;      ///< m; of a turn: that of its centre
+    Array<Vec2> displacement;   ///< m
+    Array<Vec2> velocity;       ///< m per unit of time (a step, or a second with real masses)
+    Array<Vec2> force;          ///< N, of the last step: contacts, triangles and pressure, without damping
+    Array<Vec2> inverse_mass;   ///< 1/kg; 0 in a direction whose motion is imposed
+    Array<Vec2> loading_mode;   ///< B: motion of the node per unit of platen motion; imposed where inverse_mass is 0
+    Array<double> mass;         ///< kg, scaled or real
 
     int count() const { return static_cast<int>(reference.size()); }
     Vec2 position(int node) const { return reference[node] + displacement[node]; }
@@ -155,9 +157,17 @@ struct InitialShape {
     std::array<double, 3> covered_a{}, covered_b{};  ///< |N_i| sum|N_j| that the masses of the nodes already allow for
 };
 
+/// Notes how and when a point broke. Bodies that were joined over a free gap push each other from now on only when they meet.
+inline void note_break(ContactPoint& point, const BondLaw& law, BondEvent event, long long step, BondState& bond) {
+    point.broken_step = step;
+    point.broke_in_tension = event == BondEvent::broke_in_tension;
+    point.lost_compression = event == BondEvent::broke_in_shear_losing_compression;
+    if (point.free_gap_m > 0.0) free_gap(law, point.area_m2, point.free_gap_m, bond);
+}
+
 /// The bonds of all contact points, quantity by quantity (BondState).
 struct Bonds {
-    std::vector<double> un_m, us_m, Fn_N, Fs_N, max_un_m, max_us_m, damage, fracture_J, friction_J;
+    Array<double> un_m, us_m, Fn_N, Fs_N, max_un_m, max_us_m, damage, fracture_J, friction_J;
 
     void resize(std::size_t count);
     BondState at(std::size_t i) const {
@@ -165,25 +175,6 @@ struct Bonds {
     }
     void set(std::size_t i, const BondState& s);
 };
-
-/// What a contact does to one of its bodies: the force, and its first moment about the body's centre, sum of F (x) (x - centre).
-/// A linear velocity field v + L (x - centre) gets the power F v + M : L, so this is all that a body needs to know, be it the
-/// triangle behind an edge, a rigid body (turning moment Myx - Mxy) or a plate.
-struct alignas(64) SlotForces {
-    Vec2 force;    ///< N
-    Mat2 moment;   ///< N m
-
-    void add(Vec2 F, Vec2 arm) {
-        force += F;
-        moment.xx += F.x * arm.x;
-        moment.xy += F.x * arm.y;
-        moment.yx += F.y * arm.x;
-        moment.yy += F.y * arm.y;
-    }
-};
-
-/// About the body's centre, N m.
-inline double turning_moment(const SlotForces& slot) { return slot.moment.yx - slot.moment.xy; }
 
 /// What loads the specimen: rows of its own nodes (flexible grains between platens), or the node of a plate in contact with it.
 struct Platen {
@@ -223,7 +214,7 @@ struct Assembly {
     std::vector<ContactPoint> points;
     Bonds bonds;                               ///< of the points, in the order of the packs
     std::vector<InitialShape> initial_shapes;  ///< a contact point; empty where no body is flexible
-    std::vector<SlotForces> slots;             ///< 2 x contact + side; behind them those of the packs
+    std::vector<SlotForces> slots;             ///< 2 x contact + side; packs leave forces in their own lines instead
     std::vector<std::int32_t> slots_of_bodies; ///< slot numbers, contiguous by body
     std::vector<PressureEdge> pressure_edges;  ///< contiguous by body
     std::vector<BodyWork> body_work;
@@ -243,7 +234,7 @@ struct Assembly {
 };
 
 /// G = F - I of a triangle, from the displacements of all nodes.
-inline Mat2 displacement_gradient(const std::vector<Vec2>& u, const Triangle& triangle) {
+inline Mat2 displacement_gradient(std::span<const Vec2> u, const Triangle& triangle) {
     const auto [i, j, k] = triangle.node;
     const Vec2 gj = triangle.gradient[0], gk = triangle.gradient[1];
     const Vec2 uj = u[j] - u[i], uk = u[k] - u[i];

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "feldspar/model/assembly.hpp"
@@ -22,6 +23,7 @@ struct Topology {
 std::optional<Topology> topology_of(const GrainMesh& mesh, int g) {
     const int nv = mesh.vertex_count[g], nodes = mesh.node_begin[g + 1] - mesh.node_begin[g];
     const int triangles = mesh.triangle_begin[g + 1] - mesh.triangle_begin[g];
+    if (nv > kMostVertices) return std::nullopt;
     Topology topology{nv, nodes == 2 * nv, 0};
     if (nodes != 2 * nv + 1 - topology.collapsed || triangles != 3 * nv - 2 * topology.collapsed) return std::nullopt;
     const auto owned = [&](int k) {   // triangles from this edge's to the next one's
@@ -80,7 +82,10 @@ std::vector<GrainPack> pack_grains(const GrainMesh& mesh) {
     }
     std::vector<std::size_t> order(packs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return heights[l] < heights[r]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
+        const bool l_full = packs[l].lanes == kMostLanes, r_full = packs[r].lanes == kMostLanes;
+        return l_full != r_full ? l_full : heights[l] < heights[r];
+    });
     std::vector<GrainPack> ordered;
     int node = 0, edge = 0, triangle = 0;
     for (const std::size_t i : order) {
@@ -93,25 +98,27 @@ std::vector<GrainPack> pack_grains(const GrainMesh& mesh) {
     return ordered;
 }
 
-std::int32_t Packs::field_of(const Assembly& assembly, int body, int edge) const {
-    return edge >= 0 && assembly.bodies[body].kind == BodyKind::flexible ? field_of_edge[edge] : field_of_first_body + body;
+std::int32_t Packs::line_of(const Assembly& assembly, int body, int edge) const {
+    return edge >= 0 && assembly.bodies[body].kind == BodyKind::flexible ? line_of_edge[edge] : line_of_first_body + body;
 }
 
 void index_grain_packs(Assembly& assembly) {
     Packs& packs = assembly.packs;
-    packs.field_of_edge.assign(assembly.edges.size(), -1);
-    std::vector<bool> packed(assembly.bodies.size(), false);
-    int fields = 0;
-    for (const GrainPack& pack : packs.grains) {
+    packs.line_of_edge.assign(assembly.edges.size(), -1);
+    packs.pack_of_body.assign(assembly.bodies.size(), -1);
+    packs.forces.assign(packs.grains.size(), PackForces::own);
+    int lines = 0;
+    for (std::size_t p = 0; p < packs.grains.size(); ++p) {
+        const GrainPack& pack = packs.grains[p];
         packs.scale.resize(static_cast<std::size_t>(pack.first_triangle + pack.triangles() * pack.lanes));
-        fields = pack.first_edge + pack.vertices * pack.lanes;
+        lines = pack.first_edge + pack.vertices * pack.lanes;
         for (int l = 0; l < pack.lanes; ++l) {
             const Body& body = assembly.bodies[pack.grain[l]];
-            packed[pack.grain[l]] = true;
+            packs.pack_of_body[pack.grain[l]] = static_cast<std::int32_t>(p);
             int t = 0;
             for (int k = 0; k < pack.vertices; ++k) {
                 const int edge = (k + pack.start[l]) % pack.vertices;
-                packs.field_of_edge[body.edge_begin + edge] = pack.first_edge + k * pack.lanes + l;
+                packs.line_of_edge[body.edge_begin + edge] = pack.first_edge + k * pack.lanes + l;
                 // The mesh has the triangles of its edges one after the other; the collapsed edge, the last here, has one.
                 const int before = pack.collapsed && edge >= pack.start[l] && pack.start[l] > 0 ? 2 : 0;
                 const int own = body.triangle_begin + 3 * edge - before;
@@ -121,60 +128,66 @@ void index_grain_packs(Assembly& assembly) {
             }
         }
     }
-    for (std::int32_t& field : packs.field_of_edge)
-        if (field < 0) field = fields++;
-    packs.field_of_first_body = fields;
-    packs.rigid_begin = packs.rigid_end = 0;
+    for (int b = 0; b < std::ssize(assembly.bodies); ++b)
+        if (assembly.bodies[b].kind == BodyKind::flexible && packs.pack_of_body[b] < 0)
+            for (int e = assembly.bodies[b].edge_begin; e < assembly.bodies[b].edge_end; ++e) packs.line_of_edge[e] = lines++;
+    packs.line_of_first_body = lines;
+    packs.rigid_end = 0;
     packs.loose_bodies.clear();
     for (int b = 0; b < std::ssize(assembly.bodies); ++b) {
         if (assembly.bodies[b].kind == BodyKind::rigid) {
             packs.rigid_end = b + 1;   // rigid bodies come first, plates behind them
-        } else if (!packed[b]) {
+        } else if (packs.pack_of_body[b] < 0) {
             packs.loose_bodies.push_back(b);
         }
     }
-    packs.fields.assign(static_cast<std::size_t>(fields) + assembly.bodies.size(), {});
-    packs.inverse_cross.assign(static_cast<std::size_t>(fields), 0.0);
+    packs.lines.assign(static_cast<std::size_t>(lines) + assembly.bodies.size(), {});
+    packs.inverse_cross.assign(static_cast<std::size_t>(lines), 0.0);
 }
 
 void index_contact_packs(Assembly& assembly) {
     Packs& packs = assembly.packs;
     const int contacts = static_cast<int>(assembly.contacts.size());
 
-    // Slots: two a contact, an empty one, and a sum for each edge that several contacts share.
-    const std::int32_t empty = 2 * contacts;
-    packs.slot_of_edge.assign(packs.inverse_cross.size(), empty);
-    packs.shared_edges.clear();
-    packs.shared_slots.clear();
-    std::map<std::int32_t, std::vector<std::int32_t>> shared;   // by field
-    std::vector<std::int32_t> body_of_field(packs.inverse_cross.size(), -1);
+    assembly.slots.assign(static_cast<std::size_t>(2 * contacts), {});
+    packs.rigid_forces.assign(packs.rigid_end > 0 ? assembly.slots.size() : 0, {});
+
+    // Slots of the contacts on each edge: none, one, or several that share it.
+    const std::size_t edges = packs.inverse_cross.size();
+    std::vector<std::int32_t> only(edges, -1), pack_of_line(edges, -1);
+    std::map<std::int32_t, std::vector<std::int32_t>> several;   // by line
     for (int c = 0; c < contacts; ++c) {
         const Contact& contact = assembly.contacts[c];
         if (contact.dropped || !contact.flexible) continue;
         for (int side = 0; side < 2 - contact.plate; ++side) {
             const ContactSide& s = side == 0 ? contact.a : contact.b;
-            const std::int32_t field = packs.field_of_edge[s.edge];
-            std::int32_t& slot = packs.slot_of_edge[field];
-            body_of_field[field] = s.body;
-            if (slot != empty) {
-                auto& all = shared[field];
-                if (all.empty()) all.push_back(slot);
+            const std::int32_t line = packs.line_of_edge[s.edge];
+            pack_of_line[line] = packs.pack_of_body[s.body];
+            if (only[line] >= 0) {
+                auto& all = several[line];
+                if (all.empty()) all.push_back(only[line]);
                 all.push_back(2 * c + side);
             } else {
-                slot = 2 * c + side;
+                only[line] = 2 * c + side;
             }
         }
     }
-    std::int32_t sum = empty + 1;
-    for (const auto& [field, slots] : shared) {
+    packs.bare.assign(edges, 0);
+    for (std::size_t line = 0; line < edges; ++line)
+        if (only[line] < 0) {
+            packs.bare[line] = 1;
+            packs.lines[line].forces = {};
+        }
+    packs.shared_edges.clear();
+    packs.shared_slots.clear();
+    packs.shared.assign(edges, 0);
+    for (const auto& [line, slots] : several) {
+        packs.shared[line] = 1;
         const auto begin = static_cast<std::int32_t>(packs.shared_slots.size());
         packs.shared_slots.insert(packs.shared_slots.end(), slots.begin(), slots.end());
-        packs.shared_edges.push_back({body_of_field[field], sum, begin, static_cast<std::int32_t>(packs.shared_slots.size())});
-        packs.slot_of_edge[field] = sum++;
+        packs.shared_edges.push_back({pack_of_line[line], line, begin, static_cast<std::int32_t>(packs.shared_slots.size())});
     }
-    std::stable_sort(packs.shared_edges.begin(), packs.shared_edges.end(), [](const SharedEdge& l, const SharedEdge& r) { return l.body < r.body; });
-    assembly.slots.resize(static_cast<std::size_t>(sum));
-    std::fill(assembly.slots.begin() + empty, assembly.slots.end(), SlotForces{});
+    std::stable_sort(packs.shared_edges.begin(), packs.shared_edges.end(), [](const SharedEdge& l, const SharedEdge& r) { return l.pack < r.pack; });
 
     packs.along.resize(assembly.bonds.un_m.size());
     packs.area.resize(assembly.bonds.un_m.size());
@@ -185,10 +198,11 @@ void index_contact_packs(Assembly& assembly) {
     packs.contacts.clear();
     packs.loose_contacts.clear();
     for (auto* array : {&packs.offset, &packs.tangent_x, &packs.tangent_y}) array->clear();
-    for (auto* array : {&packs.field_a, &packs.field_b}) array->clear();
+    for (auto* array : {&packs.line_a, &packs.line_b}) array->clear();
+    for (auto* array : {&packs.apart_a, &packs.apart_b}) array->clear();
     for (int c = 0; c < contacts;) {
         const Contact& first = assembly.contacts[c];
-        ContactPack pack{c, 1, first.points, assembly.points[first.first_point].state, first.material, !first.flexible};
+        ContactPack pack{c, 1, first.points, assembly.points[first.first_point].state, first.material, !first.flexible, false, false, 0};
         // The lanes' points stand as the layout asks if those of the first point are consecutive and those of the second follow.
         const auto stands = [&](int lane, int lanes) {
             const Contact& contact = assembly.contacts[c + lane];
@@ -203,27 +217,47 @@ void index_contact_packs(Assembly& assembly) {
             packs.offset.push_back(contact.offset_m);
             packs.tangent_x.push_back(contact.tangent.x);
             packs.tangent_y.push_back(contact.tangent.y);
-            packs.field_a.push_back(packs.field_of(assembly, contact.a.body, contact.a.edge));
-            packs.field_b.push_back(packs.field_of(assembly, contact.b.body, contact.b.edge));
+            const std::int32_t a = packs.line_of(assembly, contact.a.body, contact.a.edge), b = packs.line_of(assembly, contact.b.body, contact.b.edge);
+            packs.line_a.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(a)));
+            packs.line_b.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(b)));
+            packs.apart_a.push_back(several.contains(a));
+            packs.apart_b.push_back(several.contains(b));
         }
         packs.contacts.push_back(pack);
         c += pack.lanes;
     }
+    for (auto* array : {&packs.line_a, &packs.line_b}) array->resize(array->size() + kMostLanes * kFetchAhead, 0);
 }
 
-void sort_out_contacts(Assembly& assembly) {
-    assembly.packs.loose_contacts.clear();
-    for (ContactPack& pack : assembly.packs.contacts) {
+void sort_out_packs(Assembly& assembly) {
+    Packs& packs = assembly.packs;
+    std::fill(packs.forces.begin(), packs.forces.end(), PackForces::own);
+    for (const Platen& platen : assembly.platens)
+        for (const int node : platen.nodes) {
+            const auto behind = std::upper_bound(packs.grains.begin(), packs.grains.end(), node, [](int n, const GrainPack& pack) { return n < pack.first_node; });
+            if (behind == packs.grains.begin()) continue;
+            const GrainPack& pack = *(behind - 1);
+            if (node < pack.first_node + pack.nodes() * pack.lanes) packs.forces[static_cast<std::size_t>(&pack - packs.grains.data())] = PackForces::kept;
+        }
+    if (assembly.pressure_Pa != 0.0)
+        for (std::size_t b = 0; b < assembly.bodies.size(); ++b)
+            if (packs.pack_of_body[b] >= 0 && assembly.bodies[b].pressure_begin < assembly.bodies[b].pressure_end)
+                packs.forces[packs.pack_of_body[b]] = PackForces::on_top_of_others;
+    packs.loose_contacts.clear();
+    for (std::size_t p = 0; p < packs.contacts.size(); ++p) {
+        ContactPack& pack = packs.contacts[p];
         pack.active = 0;
+        pack.plain = pack.lanes == kMostLanes;
         for (int lane = 0; lane < pack.lanes; ++lane) {
             const Contact& contact = assembly.contacts[pack.first_contact + lane];
-            if (contact.dropped) continue;
-            if (is_loose(contact)) {
-                assembly.packs.loose_contacts.push_back(pack.first_contact + lane);
-            } else {
-                pack.active = static_cast<std::uint8_t>(pack.active | 1U << lane);
-            }
+            const bool takes_part = !contact.dropped && !is_loose(contact);
+            if (takes_part) pack.active = static_cast<std::uint8_t>(pack.active | 1U << lane);
+            if (!contact.dropped && !takes_part) packs.loose_contacts.push_back(pack.first_contact + lane);
+            const std::size_t at = kMostLanes * p + static_cast<std::size_t>(lane);
+            pack.plain = pack.plain && takes_part && !packs.apart_a[at] && !packs.apart_b[at];
         }
+        const double* damage = &assembly.bonds.damage[pack.first_state];
+        pack.intact = std::all_of(damage, damage + pack.lanes * pack.points, [](double D) { return D == 0.0; });
     }
 }
 

@@ -3,15 +3,20 @@
 // A lane is a grain in a grain pack and a contact in a contact pack; no lane ever looks at another. All arrays that a step
 // streams through are laid out pack by pack, each quantity of all lanes together:
 //
-//     node i of lane l        first_node + i x lanes + l       all node arrays (Nodes); vertices, centre, ring
-//     edge k of lane l        first_edge + k x lanes + l       fields, inverse_cross, slot_of_edge
+//     node i of lane l        first_node + i x lanes + l       all node arrays (Nodes): vertices, centre, ring
+//     edge k of lane l        first_edge + k x lanes + l       lines, inverse_cross, bare
 //     triangle t of lane l    first_triangle + t x lanes + l   scale
 //     point j of lane l       first_state + j x lanes + l      bonds (Bonds), along, area
 //
 // Grains are grouped by topology: the number of vertices, and whether the shortest edge of the ring is collapsed
-// (specimen theory, section 4). Vertices are counted from behind the collapsed edge, so that it is the last one. Packs are ordered by
-// height, so that the contiguous share of a thread is a band of the specimen.
-// What is not in a pack (finely meshed grains, contacts at plates or with a normal of their own, contacts on the fall-back
+// (specimen theory, section 4). Vertices are counted from behind the collapsed edge, so that it is the last one. Full packs are ordered by
+// height, so that the contiguous share of a thread is a band of the specimen; the few that are not full stand at the end.
+//
+// A grain edge has one line of 64 bytes between its grain and its contact: the grain leaves in it how the edge moves, the contact
+// reads that, and leaves in it what the edge feels. Rigid bodies have a line each, for how they move, and a short line
+// for each of their contacts' forces.
+//
+// What is not in a pack (finely meshed grains, plates, contacts at plates or with a normal of their own, contacts on the fall-back
 // shape functions) is loose, and goes through the readable form of the same stage.
 #pragma once
 
@@ -19,6 +24,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "feldspar/base/array.hpp"
 #include "feldspar/base/vec2.hpp"
 
 namespace feldspar {
@@ -27,6 +33,15 @@ struct GrainMesh;
 struct Assembly;
 
 inline constexpr int kMostLanes = 8;
+inline constexpr int kFetchAhead = 3;      ///< packs of contacts whose lines are fetched before they are needed
+inline constexpr int kMostVertices = 32;   ///< of a packed grain; those with more stay loose
+
+/// What else a step has to do for a pack of grains.
+enum class PackForces : std::uint8_t {
+    own,              ///< nothing: only contacts and triangles act on it, and nobody reads its node forces
+    kept,             ///< its node forces are read by others: a platen's reaction
+    on_top_of_others  ///< node forces already hold what acts from outside, the lateral pressure, and are kept
+};
 
 /// Grains of one topology.
 struct GrainPack {
@@ -54,44 +69,95 @@ struct ContactPack {
     std::int32_t first_state = 0;
     std::int32_t material = 0;
     bool rigid = false;          ///< both sides are rigid bodies
+    bool intact = false;         ///< no point of it has any damage
+    bool plain = false;          ///< all lanes are taken, take part, and may leave their forces in the lines that they read
     std::uint8_t active = 0;     ///< lane l takes part if bit l is set
 };
 
 /// How a body's side of a contact moves: v + L (x - centre), of the triangle behind the edge, or of the rigid body.
-struct alignas(64) SideField {
+struct SideField {
     Vec2 centre;     ///< m, of the contact circle
     Vec2 velocity;   ///< of the field at the centre, m per unit of time
     Mat2 gradient;   ///< L, 1 per unit of time
 };
 
-/// A side whose edge has several contacts: their slots are summed before the body looks at them.
+/// What a contact does to one of its bodies: the force, and its first moment about the body's centre, sum of F (x) (x - centre).
+/// A linear velocity field v + L (x - centre) gets the power F v + M : L, so this is all that a body needs to know, be it the
+/// triangle behind an edge, a rigid body (turning moment Myx - Mxy) or a plate.
+struct SlotForces {
+    Vec2 force;     ///< N
+    Mat2 moment;    ///< N m
+
+    void add(Vec2 F, Vec2 arm) {
+        force += F;
+        moment.xx += F.x * arm.x;
+        moment.xy += F.x * arm.y;
+        moment.yx += F.y * arm.x;
+        moment.yy += F.y * arm.y;
+    }
+    void add(const SlotForces& other) {
+        force += other.force;
+        moment.xx += other.moment.xx;
+        moment.xy += other.moment.xy;
+        moment.yx += other.moment.yx;
+        moment.yy += other.moment.yy;
+    }
+};
+
+/// About the body's centre, N m.
+inline double turning_moment(const SlotForces& slot) { return slot.moment.yx - slot.moment.xy; }
+
+/// A line between a body and a contact: first how the side moves, then what it feels.
+union alignas(64) SideLine {
+    SideField field;
+    SlotForces forces;
+
+    SideLine() : field{} {}
+};
+
+/// Force and turning moment of a contact on a rigid body.
+struct alignas(32) RigidForces {
+    Vec2 force;
+    double moment = 0.0;
+    double unused = 0.0;
+};
+
+/// An edge with several contacts: they leave their forces in their own slots, which are summed before the grain looks at them.
 struct SharedEdge {
-    std::int32_t body = 0;
-    std::int32_t sum = 0;                      ///< the slot that holds the sum
+    std::int32_t pack = -1;
+    std::int32_t line = 0;
     std::int32_t begin = 0, end = 0;           ///< into Packs::shared_slots
 };
 
 /// Everything that the packs add to an assembly. Derived: follows from bodies, contacts and points.
 struct Packs {
     std::vector<GrainPack> grains;
+    std::vector<PackForces> forces;                  ///< of each pack of grains
+    std::vector<std::int32_t> pack_of_body;          ///< -1: in none
     std::vector<std::int32_t> loose_bodies;          ///< not in a grain pack and not rigid: plates, finely meshed grains
-    std::int32_t rigid_begin = 0, rigid_end = 0;     ///< bodies
-    std::vector<double> scale;                       ///< of each triangle: 1 / (4 x area), 1/m2
-    std::vector<std::int32_t> field_of_edge;         ///< of each GrainEdge; bodies without edges have theirs behind all edges
-    std::int32_t field_of_first_body = 0;
-    std::vector<SideField> fields;                   ///< written by the body stage, read by the contact stage
-    std::vector<double> inverse_cross;               ///< of each edge field: 1 / (2 x present area of its triangle)
-    std::vector<std::int32_t> slot_of_edge;          ///< of each edge field: the slot with its contact's force; of the empty slot if it has none
-    std::vector<SharedEdge> shared_edges;            ///< by body
+    std::int32_t rigid_end = 0;                      ///< bodies [0, rigid_end) are rigid
+    Array<double> scale;                             ///< of each triangle: 1 / (4 x area), 1/m2
+    std::vector<std::int32_t> line_of_edge;          ///< of each GrainEdge of a flexible body
+    std::int32_t line_of_first_body = 0;
+    Array<SideLine> lines;                           ///< of the edges of flexible grains; then of the bodies
+    Array<double> inverse_cross;                     ///< of each edge line: 1 / (2 x present area of its triangle)
+    std::vector<std::uint8_t> bare;                  ///< of each edge line: 1 if no contact hangs on the edge: it stays zero
+    std::vector<std::uint8_t> shared;                ///< of each edge line: 1 if several contacts hang on the edge
+    std::vector<SharedEdge> shared_edges;            ///< by pack
     std::vector<std::int32_t> shared_slots;
 
     std::vector<ContactPack> contacts;
     std::vector<std::int32_t> loose_contacts;
-    std::vector<double> offset, tangent_x, tangent_y;   ///< kMostLanes a pack
-    std::vector<std::int32_t> field_a, field_b;         ///< kMostLanes a pack
-    std::vector<double> along, area;                    ///< as bonds
+    Array<double> offset, tangent_x, tangent_y;      ///< kMostLanes a pack
+    Array<std::uint32_t> line_a, line_b;             ///< kMostLanes a pack: distance in bytes from the first line; some more at the end
+    std::vector<std::uint8_t> apart_a, apart_b;      ///< kMostLanes a pack: 1 if the side's edge has other contacts
+    Array<double> along, area;                       ///< as bonds
+    Array<RigidForces> rigid_forces;                 ///< 2 x contact + side; none without rigid bodies
 
-    std::int32_t field_of(const Assembly& assembly, int body, int edge) const;
+    /// Whether an edge of a flexible grain has one contact, which leaves its forces in the edge's line.
+    bool only_contact_on(int edge) const { return edge >= 0 && !shared[line_of_edge[edge]]; }
+    /// Where a contact on this edge of this body finds how it moves.
+    std::int32_t line_of(const Assembly& assembly, int body, int edge) const;
 };
 
 /// Makes the packs of grains of an assembly that has its nodes in their order; once.
@@ -100,7 +166,8 @@ void index_grain_packs(Assembly& assembly);
 /// Makes the packs of contacts; after contacts were added or dropped.
 void index_contact_packs(Assembly& assembly);
 
-/// Decides which contacts take part in their packs and which are loose, by their present flags.
-void sort_out_contacts(Assembly& assembly);
+/// Decides by the present flags which contacts take part in their packs and which are loose, and by pressure and platens what else
+/// acts on the packs of grains. Before a block of steps.
+void sort_out_packs(Assembly& assembly);
 
 }  // namespace feldspar

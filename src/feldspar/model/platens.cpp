@@ -78,8 +78,10 @@ void add_plate_contact(Assembly& assembly, const OutlineSite& site, int plate, V
     contact.offset_m = dot(arm, normal);
     contact.points = 1;
     BondState bond;
-    bond.un_m = gap_m;
-    if (assembly.laws[material].sigma_nt_Pa == 0.0) bond.damage = 1.0;   // not glued
+    if (assembly.laws[material].sigma_nt_Pa == 0.0) {   // not glued
+        bond.un_m = gap_m;
+        bond.damage = 1.0;
+    }
     contact.first_point = assembly.add_point(dot(arm, rot90(normal)), area_m2, bond);
     add_contact(assembly, contact, {-1, -1, site.from, site.to});
 }

@@ -1,3 +1,4 @@
+#include "feldspar/step/advance_packs.hpp"
 #include "feldspar/step/step.hpp"
 
 namespace feldspar {
@@ -5,6 +6,7 @@ namespace feldspar {
 void advance(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work) {
     const int contacts = static_cast<int>(assembly.contacts.size()), bodies = static_cast<int>(assembly.bodies.size());
     const double travel = settings.dt * settings.speed;
+    if (settings.kernels != nullptr) return advance_packs(assembly, team, settings, first_step, count, work);
     team.run([&](int thread) {
         for (int k = 0; k < count; ++k) {
             contact_forces(assembly, team.share(contacts, thread), settings, first_step + k);

@@ -32,7 +32,7 @@ void gather_at_centre(Assembly& assembly, const Body& body) {
 }
 
 void add_triangles(Assembly& assembly, const Body& body) {
-    const std::vector<Vec2>& u = assembly.nodes.displacement;
+    const std::span<const Vec2> u = assembly.nodes.displacement;
     for (int t = body.triangle_begin; t < body.triangle_end; ++t) {
         const Triangle& triangle = assembly.triangles[t];
         const auto [i, j, k] = triangle.node;
@@ -45,6 +45,8 @@ void add_triangles(Assembly& assembly, const Body& body) {
 }
 
 double pressed_length(const PressureEdge& edge, Vec2 from, Vec2 to) { return edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(to - from); }
+
+}  // namespace
 
 // The pressure keeps the direction of the undeformed face and acts over its current length. Its work is counted with the
 // mean of the velocities before and after (docs/theory/loading.md), the later one in integrate().
@@ -59,6 +61,8 @@ void add_pressure(Assembly& assembly, const Body& body, BodyWork& work, double d
         work.pressure += 0.5 * dt * dot(half, assembly.nodes.velocity[edge.node_a] + assembly.nodes.velocity[edge.node_b]);
     }
 }
+
+namespace {
 
 struct Motion {
     double velocity;
@@ -105,6 +109,8 @@ void integrate(Assembly& assembly, const Body& body, const StepSettings& setting
     work.damping += dissipated;
 }
 
+}  // namespace
+
 // The second half of the pressure's work: the same forces with the new velocities.
 void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, double dt) {
     if (assembly.pressure_Pa == 0.0) return;
@@ -116,8 +122,6 @@ void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, 
         work.pressure += 0.5 * dt * dot(half, va + vb);
     }
 }
-
-}  // namespace
 
 void body_forces(Assembly& assembly, IndexRange bodies, const StepSettings& settings) {
     for (int b = bodies.begin; b < bodies.end; ++b) {

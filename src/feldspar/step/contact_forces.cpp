@@ -42,12 +42,7 @@ void forces_of_contact(Assembly& assembly, const Contact& contact, SlotForces& s
         BondState bond = assembly.bond(p);
         const BondEvent event = apply_law(law, point.area_m2, settings.dt * dot(relative, frame.n), settings.dt * dot(relative, s),
                                           settings.strength, bond);
-        if (event != BondEvent::none) {
-            point.broken_step = step;
-            point.broke_in_tension = event == BondEvent::broke_in_tension;
-            point.lost_compression = event == BondEvent::broke_in_shear_losing_compression;
-            if (point.free_gap_m > 0.0) free_gap(law, point.area_m2, point.free_gap_m, bond);
-        }
+        if (event != BondEvent::none) note_break(point, law, event, step, bond);
         assembly.set_bond(p, bond);
         const Vec2 on_b = bond.Fn_N * frame.n + bond.Fs_N * s;   // compression pushes B along n
         slot_a.add(-on_b, a.arm(Na, x));

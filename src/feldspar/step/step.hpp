@@ -5,13 +5,15 @@
 //   platen_reactions   reads node forces of the platens; writes nothing
 //   find_contacts      (between steps) makes and drops frictional contacts, chooses the fall-back shape functions
 //
-// advance() runs contact_forces and body_forces for a number of steps on a team, with a barrier after each stage.
+// advance() runs both for a number of steps on a team, with a barrier after each stage. What stands in packs goes through the kernels of
+// fast/, the rest, or all of it if so wanted, through the readable stages declared here.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "feldspar/base/parallel.hpp"
+#include "feldspar/fast/kernels.hpp"
 #include "feldspar/model/assembly.hpp"
 
 namespace feldspar {
@@ -31,6 +33,7 @@ struct StepSettings {
     double viscous = 0.0;                  ///< deviation: c, 1 per unit of time
     Strength strength = Strength::real;
     double speed = 0.0;                    ///< v: platen motion per unit of time
+    const Kernels* kernels = &best_kernels();   ///< of the packs; none: the readable stages only
 };
 
 /// Work of the platens on the body, J, accumulated every step.
@@ -49,6 +52,10 @@ void contact_forces(Assembly& assembly, IndexRange contacts, const StepSettings&
 
 /// Stage 2: gather, triangles, pressure, damping, velocity and displacement of the bodies [begin, end).
 void body_forces(Assembly& assembly, IndexRange bodies, const StepSettings& settings);
+
+/// The lateral pressure's forces on a body, before it moves, with the first half of their work; and after it has moved the second half.
+void add_pressure(Assembly& assembly, const Body& body, BodyWork& work, double dt);
+void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, double dt);
 
 /// Stage 3: ordered sums.
 Reactions platen_reactions(const Assembly& assembly);

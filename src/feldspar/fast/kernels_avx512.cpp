@@ -1,0 +1,8 @@
+#define FELDSPAR_LANES 8
+#include "feldspar/fast/pack_kernels.hpp"
+
+namespace feldspar {
+
+const Kernels kernels_avx512{"avx512", FELDSPAR_LANES, contacts, grains, rigid, grain_lines, rigid_lines};
+
+}  // namespace feldspar

@@ -1,0 +1,653 @@
+// The stages over packs, in vectors of FELDSPAR_LANES doubles. Included once by each kernels_<instruction set>.cpp.
+//
+// Formulas: contacts (C1)-(C19) of docs/theory/contacts.md, laws/bond.hpp; triangles laws/plane_elasticity.hpp; motion step/body_forces.cpp.
+// Here they stand in the form that costs least; tests/unit/fast compares them with the readable stages.
+#pragma once
+
+#include <cmath>
+
+#include "feldspar/fast/kernels.hpp"
+#include "feldspar/fast/lanes.hpp"
+
+namespace feldspar {
+namespace {
+
+// Lanes [begin, begin + count) of a pack, as many as a vector has, or fewer in the last one.
+struct Chunk {
+    int begin;
+    int count;
+};
+
+// Calls work(chunk) for the vectors of a pack. Where all lanes are taken, `count` is a constant to the compiler.
+template <class Work>
+FELDSPAR_INLINE void for_each_chunk(int lanes, Work work) {
+    int first = 0;
+    for (; first + kWidth <= lanes; first += kWidth) work(Chunk{first, kWidth});
+    if (first < lanes) work(Chunk{first, lanes - first});
+}
+
+FELDSPAR_INLINE Real dot(Real2 a, Real2 b) { return a.x * b.x + a.y * b.y; }
+FELDSPAR_INLINE Real cross(Real2 a, Real2 b) { return a.x * b.y - a.y * b.x; }
+FELDSPAR_INLINE Real2 operator+(Real2 a, Real2 b) { return {a.x + b.x, a.y + b.y}; }
+FELDSPAR_INLINE Real2 operator-(Real2 a, Real2 b) { return {a.x - b.x, a.y - b.y}; }
+FELDSPAR_INLINE Real2 operator*(Real a, Real2 b) { return {a * b.x, a * b.y}; }
+
+// ---------------------------------------------------------------------------------------------------------------- contacts
+
+// How one side of each lane moves: centre, velocity and gradient.
+struct Side {
+    Real2 centre, velocity;
+    Real xx, xy, yx, yy;
+};
+
+FELDSPAR_INLINE double* doubles(SideLine* line) { return reinterpret_cast<double*>(line); }
+FELDSPAR_INLINE double* line_at(SideLine* lines, std::uint32_t bytes) { return reinterpret_cast<double*>(reinterpret_cast<char*>(lines) + bytes); }
+
+FELDSPAR_INLINE void load_motion(double* const (&line)[kWidth], Side& side) {
+    const Real4 q = load_quads(line);
+    side.centre = {q.q[0], q.q[1]};
+    side.velocity = {q.q[2], q.q[3]};
+}
+
+// A rigid body's field has the turning speed as its only gradient: L = (0, -w; w, 0).
+template <bool rigid>
+FELDSPAR_INLINE void load_gradient(double* const (&line)[kWidth], Side& side) {
+    if constexpr (rigid) {
+
+        for (int lane = 0; lane < kWidth; ++lane) side.yx[lane] = line[lane][6];
+    } else {
+        double* high[kWidth];
+        for (int lane = 0; lane < kWidth; ++lane) high[lane] = line[lane] + 4;
+        const Real4 q = load_quads(high);
+        side.xx = q.q[0];
+        side.xy = q.q[1];
+        side.yx = q.q[2];
+        side.yy = q.q[3];
+    }
+}
+
+// A line of forces: F and the moment M = sum of F (x) arm.
+FELDSPAR_INLINE void store_forces(double* const (&line)[kWidth], Real2 F, Real xx, Real xy, Real yx, Real yy) {
+    double* high[kWidth];
+    for (int lane = 0; lane < kWidth; ++lane) high[lane] = line[lane] + 4;
+    store_quads(line, {{F.x, F.y, xx, xy}});
+    store_quads(high, {{yx, yy, Real{}, Real{}}});
+}
+
+// 1 - f(x) / F of an envelope.
+FELDSPAR_INLINE Real envelope_damage(const SofteningEnvelope& e, Real x) {
+    if (e.brittle || !(e.x_y > e.x0)) return Real{};
+    const Real first = 0.75 * (x - e.x0) / (e.x_y - e.x0), second = 1.0 - 0.25 * (e.x_f - x) / (e.x_f - e.x_y);
+    const Real softened = x <= all(e.x_y) ? first : x < all(e.x_f) ? second : all(1.0);
+    return x <= all(e.x0) ? Real{} : softened;
+}
+
+struct BondLanes {
+    Real un, us, Fn, Fs, max_un, max_us, damage, fracture, friction;
+};
+
+FELDSPAR_INLINE Real elastic_energy_of(const BondLaw& law, Real inverse_kn, const BondLanes& s) {
+    const Real energy = 0.5 * s.Fn * s.Fn * inverse_kn;
+    if (!law.secant_unloading) return energy;
+    return (s.un > 0.0) & (s.damage > 0.0) ? 0.5 * absolute(s.Fn) * s.un : energy;
+}
+
+// update_damaged() of laws/bond.hpp, lane by lane; `s` is the bond before. @return lanes that break now
+FELDSPAR_INLINE Mask update_damaged(const BondLaw& law, Real area, Real dun, Real dus, BondLanes& s, Real& Fn_trial_out) {
+    const Real kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
+    const Real inverse_kn = 1.0 / kn, inverse_ks = law.Ks_Pa_m > 0.0 ? 1.0 / ks : Real{};
+    const Real normal_energy_before = elastic_energy_of(law, inverse_kn, s);
+    const Real Fn_before = s.Fn, Fs_before = s.Fs;
+    const Mask broken_before = s.damage >= 1.0;
+    const Real Fn_trial = s.Fn - kn * dun, Fs_trial = s.Fs - ks * dus;
+    const Real pressed = larger(Fn_trial, Real{});
+    s.un += dun;
+    s.us += dus;
+
+    Real measure = absolute(s.us);
+    if (law.shear_beyond_friction) measure -= law.mu * pressed * inverse_ks;
+    s.max_un = broken_before ? s.max_un : larger(s.max_un, s.un);
+    s.max_us = broken_before ? s.max_us : larger(s.max_us, measure);
+    Real damage = larger(s.damage, smaller(all(1.0), envelope_damage(law.normal, s.max_un) + envelope_damage(law.shear, s.max_us)));
+    const Real tension_limit = (1.0 - damage) * law.sigma_nt_Pa * area;
+    Real cohesion_limit = (1.0 - damage) * law.tau_Pa * area;
+    if (law.normal.brittle) damage = Fn_trial < -tension_limit ? all(1.0) : damage;
+    if (law.shear.brittle) damage = absolute(Fs_trial) > cohesion_limit + law.mu * pressed ? all(1.0) : damage;
+    s.damage = broken_before ? s.damage : damage;
+    Real Fn = larger(Fn_trial, -tension_limit);
+    if (law.secant_unloading) Fn = (s.un > 0.0) & (s.max_un > law.normal.x0) ? -tension_limit * s.un / s.max_un : Fn;
+    const Mask broken = s.damage >= 1.0;
+    s.Fn = broken ? (s.un < 0.0 ? -kn * s.un : Real{}) : Fn;
+    cohesion_limit = broken ? Real{} : cohesion_limit;
+    const Real friction_limit = law.mu * larger(s.Fn, Real{}), limit = cohesion_limit + friction_limit;
+    s.Fs = larger(smaller(Fs_trial, limit), -limit);
+
+    const Real work_n = -0.5 * (Fn_before + s.Fn) * dun, work_s = -0.5 * (Fs_before + s.Fs) * dus;
+    const Real dissipated_s = work_s + 0.5 * (Fs_before * Fs_before - s.Fs * s.Fs) * inverse_ks;
+    const Real dissipated_n = work_n + normal_energy_before - elastic_energy_of(law, inverse_kn, s);
+    const Real share = limit > 0.0 ? friction_limit / limit : Real{};
+    const Real friction_share = broken_before ? all(1.0) : share;
+    s.friction += friction_share * dissipated_s;
+    s.fracture += dissipated_n + (1.0 - friction_share) * dissipated_s;
+    Fn_trial_out = Fn_trial;
+    return broken & ~broken_before;
+}
+
+// Tells who broke, and takes back what that changed.
+[[gnu::noinline]] void tell_broken(const KernelArrays& a, const KernelStep& step, int first_contact, int point, int state, Mask broke, Real Fn_trial,
+                                   Real un, int count, Real& Fn, Real& Fs) {
+    for (int lane = 0; lane < count; ++lane) {
+        if (broke[lane] == 0) continue;
+        const BondEvent event = Fn_trial[lane] < 0.0 ? BondEvent::broke_in_tension
+                                : Fn_trial[lane] > 0.0 && un[lane] > 0.0 ? BondEvent::broke_in_shear_losing_compression
+                                                                         : BondEvent::broke_in_shear;
+        a.broke(*a.assembly, first_contact + lane, point, event, step.step);
+        Fn[lane] = a.Fn[state + lane];
+        Fs[lane] = a.Fs[state + lane];
+    }
+}
+
+// The points of a pack that is not intact, or not for long; or of which not all lanes take part.
+struct PointForces {
+    Real Fn, Fs;
+};
+[[gnu::noinline]] PointForces update_points(const KernelArrays& a, const KernelStep& step, const ContactPack& pack, Chunk chunk, int j, const Real& dun, const Real& dus) {
+    const BondLaw& law = a.laws[pack.material];
+    const int state = pack.first_state + j * pack.lanes + chunk.begin, count = chunk.count;
+    const Mask takes_part = lanes_of(pack.active >> chunk.begin) & lanes_of((1U << count) - 1U);
+    const Real area = load(a.area + state, count), kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
+    BondLanes s{load(a.un + state, count), load(a.us + state, count), load(a.Fn + state, count), load(a.Fs + state, count), load(a.max_un + state, count),
+                load(a.max_us + state, count), load(a.damage + state, count), load(a.fracture + state, count), load(a.friction + state, count)};
+    const Mask intact = s.damage == 0.0;
+    s.Fn = intact ? -kn * s.un : s.Fn;   // of intact points it is not kept
+    s.Fs = intact ? -ks * s.us : s.Fs;
+    const Real un = s.un + dun, us = s.us + dus;
+    const Real Fn_elastic = intact ? -kn * un : s.Fn - kn * dun, Fs_elastic = intact ? -ks * us : s.Fs - ks * dus;
+    const Mask linear = step.unlimited ? s.damage < 1.0 : intact & (un <= law.normal.x0) & (absolute(us) <= law.shear.x0);
+
+    Real Fn_trial{};
+    const Mask broke = update_damaged(law, area, dun, dus, s, Fn_trial) & takes_part & ~linear;
+    Real Fn = linear ? Fn_elastic : s.Fn, Fs = linear ? Fs_elastic : s.Fs;
+    store_where(a.un + state, un, takes_part, count);
+    store_where(a.us + state, us, takes_part, count);
+    store_where(a.Fn + state, Fn, takes_part, count);
+    store_where(a.Fs + state, Fs, takes_part, count);
+    const Mask damaged = takes_part & ~linear;
+    store_where(a.max_un + state, s.max_un, damaged, count);
+    store_where(a.max_us + state, s.max_us, damaged, count);
+    store_where(a.damage + state, s.damage, damaged, count);
+    store_where(a.fracture + state, s.fracture, damaged, count);
+    store_where(a.friction + state, s.friction, damaged, count);
+    if (any(broke)) tell_broken(a, step, pack.first_contact + chunk.begin, j, state, broke, Fn_trial, un, count, Fn, Fs);
+    return {Fn, Fs};
+}
+
+template <bool rigid, bool plain>
+FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelStep& step, ContactPack& pack, int pack_index, Chunk chunk) {
+    const KernelArrays a = arrays;   // a copy that nobody else can change: its pointers stay in registers
+    const int constants = kMostLanes * pack_index + chunk.begin;
+    double *line_a[kWidth], *line_b[kWidth];
+    for (int lane = 0; lane < kWidth; ++lane) {
+        line_a[lane] = line_at(a.lines, a.line_a[constants + lane]);
+        line_b[lane] = line_at(a.lines, a.line_b[constants + lane]);
+    }
+    Side A{}, B{};
+    load_motion(line_a, A);
+    load_motion(line_b, B);
+    const Real2 line = B.centre - A.centre;
+    const Real distance = square_root(dot(line, line));
+    Real inverse = 1.0 / distance;
+    begin_now(inverse);   // the gradients are loaded meanwhile, not before
+    load_gradient<rigid>(line_a, A);
+    load_gradient<rigid>(line_b, B);
+    const Real2 n = inverse * line, s = {-n.y, n.x};
+    const Real tx = load(a.tangent_x + constants), ty = load(a.tangent_y + constants);
+    const Real2 t = tx * n + ty * s;
+    const Real along_n = 0.5 * distance + load(a.offset + constants), from_b = along_n - distance;
+
+    // Relative velocity on the edge's line: v0 + w v1, w from the reference point.
+    Real2 v0, v1;
+    if constexpr (rigid) {   // L r = w rot90(r)
+        v0 = B.velocity - A.velocity + (B.yx * from_b - A.yx * along_n) * s;
+        const Real turn = B.yx - A.yx;
+        v1 = {-turn * t.y, turn * t.x};
+    } else {
+        const Real2 an = {A.xx * n.x + A.xy * n.y, A.yx * n.x + A.yy * n.y}, bn = {B.xx * n.x + B.xy * n.y, B.yx * n.x + B.yy * n.y};
+        v0 = B.velocity - A.velocity + from_b * bn - along_n * an;
+        const Real xx = B.xx - A.xx, xy = B.xy - A.xy, yx = B.yx - A.yx, yy = B.yy - A.yy;
+        v1 = {xx * t.x + xy * t.y, yx * t.x + yy * t.y};
+    }
+    const Real n0 = step.dt * dot(v0, n), s0 = step.dt * dot(v0, s), n1 = step.dt * dot(v1, n), s1 = step.dt * dot(v1, s);
+
+    Real Fn_sum{}, Fs_sum{}, Fn_moment{}, Fs_moment{};
+    const auto add = [&](Real w, Real Fn, Real Fs) FELDSPAR_LAMBDA {
+        Fn_sum += Fn;
+        Fs_sum += Fs;
+        Fn_moment += w * Fn;
+        Fs_moment += w * Fs;
+    };
+    const int points = pack.points, stride = pack.lanes, first = pack.first_state + chunk.begin;
+    if (plain && pack.intact) {
+        const BondLaw& law = a.laws[pack.material];
+        const double x0n = step.unlimited ? __builtin_inf() : law.normal.x0, x0s = step.unlimited ? __builtin_inf() : law.shear.x0;
+        const double Kn = law.Kn_Pa_m, Ks = law.Ks_Pa_m;
+        for (int j = 0; j < points; ++j) {
+            const int state = first + j * stride;
+            const Real w = load(a.along + state), area = load(a.area + state), dun = n0 + w * n1, dus = s0 + w * s1;
+            const Real un = load(a.un + state) + dun, us = load(a.us + state) + dus;
+            Real Fn = -Kn * area * un, Fs = -Ks * area * us;
+            if (any((un > x0n) | (absolute(us) > x0s))) [[unlikely]] {
+                const PointForces damaged = update_points(arrays, step, pack, chunk, j, dun, dus);
+                Fn = damaged.Fn;
+                Fs = damaged.Fs;
+                pack.intact = false;
+            } else {
+                store(a.un + state, un);
+                store(a.us + state, us);
+                if (step.keep_forces) {
+                    store(a.Fn + state, Fn);
+                    store(a.Fs + state, Fs);
+                }
+            }
+            add(w, Fn, Fs);
+        }
+    } else {
+        for (int j = 0; j < points; ++j) {
+            const Real w = load(a.along + first + j * stride, chunk.count);
+            const PointForces point = update_points(arrays, step, pack, chunk, j, n0 + w * n1, s0 + w * s1);
+            add(w, point.Fn, point.Fs);
+        }
+    }
+
+    // On B: force F, and W = sum of w F. Arms: along n to the reference point, then w along t.
+    const Real2 F = Fn_sum * n + Fs_sum * s, W = Fn_moment * n + Fs_moment * s;
+    const int contact = pack.first_contact + chunk.begin;
+    alignas(64) double nowhere[8];
+    if constexpr (rigid) {   // a short line a side: F and the turning moment
+        const Real across = cross(t, W);
+        double *short_a[kWidth], *short_b[kWidth];
+        for (int lane = 0; lane < kWidth; ++lane) {
+            const bool takes_part = plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U));
+            double* const forces = reinterpret_cast<double*>(a.rigid_forces + 2 * (contact + lane));
+            short_a[lane] = takes_part ? forces : nowhere;
+            short_b[lane] = takes_part ? forces + 4 : nowhere;
+        }
+        store_quads(short_a, {{-F.x, -F.y, -(along_n * Fs_sum + across), Real{}}});
+        store_quads(short_b, {{F.x, F.y, from_b * Fs_sum + across, Real{}}});
+    } else {
+        const Real Wxx = W.x * t.x, Wxy = W.x * t.y, Wyx = W.y * t.x, Wyy = W.y * t.y;
+        const Real2 at_a = along_n * n, at_b = from_b * n;
+        const Real2 minus_F = {-F.x, -F.y};
+        if constexpr (!plain) {
+            alignas(64) double slot_a[kWidth][8], slot_b[kWidth][8];
+            for (int lane = 0; lane < kWidth; ++lane) {
+                const bool takes_part = lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U);
+                if (!takes_part || a.apart_a[constants + lane]) line_a[lane] = slot_a[lane];
+                if (!takes_part || a.apart_b[constants + lane]) line_b[lane] = slot_b[lane];
+            }
+            store_forces(line_a, minus_F, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
+            store_forces(line_b, F, F.x * at_b.x + Wxx, F.x * at_b.y + Wxy, F.y * at_b.x + Wyx, F.y * at_b.y + Wyy);
+            for (int lane = 0; lane < chunk.count; ++lane) {
+                if (!(pack.active >> (chunk.begin + lane) & 1U)) continue;
+                const auto slot = [](const double* f) { return SlotForces{{f[0], f[1]}, {f[2], f[3], f[4], f[5]}}; };
+                if (a.apart_a[constants + lane]) a.slots[2 * (contact + lane)] = slot(slot_a[lane]);
+                if (a.apart_b[constants + lane]) a.slots[2 * (contact + lane) + 1] = slot(slot_b[lane]);
+            }
+        } else {
+            store_forces(line_a, minus_F, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
+            store_forces(line_b, F, F.x * at_b.x + Wxx, F.x * at_b.y + Wxy, F.y * at_b.x + Wyx, F.y * at_b.y + Wyy);
+        }
+    }
+}
+
+template <bool rigid>
+FELDSPAR_INLINE void contacts_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
+    if (pack.plain) {
+        for (int first = 0; first < kMostLanes; first += kWidth) contacts_of_chunk<rigid, true>(a, step, pack, index, Chunk{first, kWidth});
+    } else if (pack.active != 0) {
+        for (int first = 0; first < pack.lanes; first += kWidth)
+            contacts_of_chunk<rigid, false>(a, step, pack, index, Chunk{first, pack.lanes - first < kWidth ? pack.lanes - first : kWidth});
+    }
+}
+
+void contacts(const KernelArrays& a, const KernelStep& step, int begin, int end) {
+    SideLine* const lines = a.lines;
+    const std::uint32_t *line_a = a.line_a + kMostLanes * (begin + kFetchAhead), *line_b = a.line_b + kMostLanes * (begin + kFetchAhead);
+    for (int i = begin; i < end; ++i) {
+        ContactPack& pack = a.contact_packs[i];
+        for (int lane = 0; lane < kMostLanes; ++lane) {
+            __builtin_prefetch(line_at(lines, line_a[lane]));
+            __builtin_prefetch(line_at(lines, line_b[lane]));
+        }
+        line_a += kMostLanes;
+        line_b += kMostLanes;
+        if (pack.rigid) {
+            contacts_of_pack<true>(a, step, pack, i);
+        } else {
+            contacts_of_pack<false>(a, step, pack, i);
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------- grains
+
+constexpr int kMostNodes = 2 * kMostVertices + 1;
+
+// The nodes of a chunk while it is worked on; once a node has moved, its velocity takes the place of its force. (An array for each
+// quantity would have stores and loads a multiple of 4 KiB apart wait for each other.)
+struct NodeLanes {
+    Real2 X, u, f;
+
+    FELDSPAR_INLINE Real2 position() const { return {X.x + u.x, X.y + u.y}; }
+};
+struct GrainLanes {
+    NodeLanes node[kMostNodes];
+};
+
+struct Elastic {
+    Real volumetric, deviatoric;   // (D11 + D12) t / 2, (D11 - D12) t / 2
+};
+
+// 1 - 1/r from x = r^2 - 1: the binomial series, whose next term is below 1e-17 of the result for |x| < 1/512.
+FELDSPAR_INLINE Real one_minus_inverse_root(Real x) {
+    constexpr double kLargest = 1.0 / 512.0;
+    if (any(absolute(x) >= kLargest)) [[unlikely]] {
+        const Real r = square_root(1.0 + x);
+        return x / (r * (r + 1.0));
+    }
+    Real sum = all(-231.0 / 1024.0);
+    sum = sum * x + 63.0 / 256.0;
+    sum = sum * x - 35.0 / 128.0;
+    sum = sum * x + 5.0 / 16.0;
+    sum = sum * x - 3.0 / 8.0;
+    sum = sum * x + 0.5;
+    return x * sum;
+}
+
+// Adds the forces of the triangle (i, j, k): f_j = -V P grad N_j, V grad N_j = t/2 (y_k - y_i, x_i - x_k) undeformed.
+FELDSPAR_INLINE void add_triangle(Real2 Xi, Real2 Xj, Real2 Xk, Real2 ui, Real2 uj, Real2 uk, Real scale, const Elastic& D, Real2& fi, Real2& fj, Real2& fk) {
+    const Real2 E1 = Xj - Xi, E2 = Xk - Xi, d1 = uj - ui, d2 = uk - ui;
+    const Real Gxx = d1.x * E2.y - d2.x * E1.y, Gxy = d2.x * E1.x - d1.x * E2.x;   // x 2 A
+    const Real Gyx = d1.y * E2.y - d2.y * E1.y, Gyy = d2.y * E1.x - d1.y * E2.x;
+    const Real a = scale * (Gxx + Gyy), b = scale * (Gyx - Gxy), p = scale * (Gxx - Gyy), q = scale * (Gxy + Gyx);
+    const Real volumetric = D.volumetric * one_minus_inverse_root(2.0 * a + (a * a + b * b));
+    const Real c = volumetric + volumetric * a, vb = volumetric * b, dp = D.deviatoric * p, dq = D.deviatoric * q;
+    const Real Pxx = c + dp, Pxy = dq - vb, Pyx = dq + vb, Pyy = c - dp;
+    const Real2 gj = {Pxy * E2.x - Pxx * E2.y, Pyy * E2.x - Pyx * E2.y}, gk = {Pxx * E1.y - Pxy * E1.x, Pyx * E1.y - Pyy * E1.x};
+    fj = fj + gj;
+    fk = fk + gk;
+    fi = fi - gj - gk;
+}
+
+// The lines of an edge, of consecutive lanes; where there is no lane, nowhere.
+FELDSPAR_INLINE void lines_of_edge(double* first, int count, double* nowhere, double* (&line)[kWidth]) {
+    for (int lane = 0; lane < kWidth; ++lane) line[lane] = lane < count ? first + 8 * lane : nowhere;
+}
+
+// Adds what the contacts of an edge do to the corners (i, j, k) of its triangle: forces_on_corners() of model/attachment.hpp.
+FELDSPAR_INLINE void add_contact_forces(double* lines, int count, Real2 centre, Real2 xi, Real2 xj, Real2 xk, Real inverse, Real2& fi, Real2& fj, Real2& fk) {
+    double* line[kWidth];
+    lines_of_edge(lines, count, lines, line);
+    Side side;   // F in the place of the centre, M behind it
+    load_motion(line, side);
+    load_gradient<false>(line, side);
+    const Real2 F = side.centre, r = centre - xi, e1 = inverse * (xj - xi), e2 = inverse * (xk - xi);
+    const Real2 Mx = {side.velocity.x + r.x * F.x, side.xx + r.x * F.y}, My = {side.velocity.y + r.y * F.x, side.xy + r.y * F.y};
+    const Real2 gj = e2.y * Mx - e2.x * My, gk = e1.x * My - e1.y * Mx;
+    fj = fj + gj;
+    fk = fk + gk;
+    fi = fi + (F - gj - gk);
+}
+
+FELDSPAR_INLINE bool any_set(const std::uint8_t* flags, int count) {
+    std::uint64_t bits = 0;
+    __builtin_memcpy(&bits, flags, static_cast<std::size_t>(count));
+    return bits != 0;
+}
+
+// Stores the lines of the lanes that are not bare.
+[[gnu::noinline]] void store_lines_but(const std::uint8_t* bare, double* lines, int count, const Real4& lower, const Real4& upper) {
+    for (int lane = 0; lane < count; ++lane) {
+        if (bare[lane]) continue;
+        for (int i = 0; i < 4; ++i) {
+            lines[8 * lane + i] = lower.q[i][lane];
+            lines[8 * lane + 4 + i] = upper.q[i][lane];
+        }
+    }
+}
+
+// Writes how an edge moves: the linear velocity field of its triangle (i, j, k), at the grain's centre. Bare edges stay without force.
+FELDSPAR_INLINE void write_line(double* lines, double* inverse_cross, const std::uint8_t* bare, int count, Real2 centre, Real2 xi, Real2 xj, Real2 xk, Real2 vi,
+                                Real2 vj, Real2 vk) {
+    const Real2 e1 = xj - xi, e2 = xk - xi, d1 = vj - vi, d2 = vk - vi, r = centre - xi;
+    const Real inverse = 1.0 / cross(e1, e2);
+    store(inverse_cross, inverse, count);
+    const Real xx = inverse * (d1.x * e2.y - d2.x * e1.y), xy = inverse * (d2.x * e1.x - d1.x * e2.x);
+    const Real yx = inverse * (d1.y * e2.y - d2.y * e1.y), yy = inverse * (d2.y * e1.x - d1.y * e2.x);
+    const Real2 v = {vi.x + (xx * r.x + xy * r.y), vi.y + (yx * r.x + yy * r.y)};
+    const Real4 lower{{centre.x, centre.y, v.x, v.y}}, upper{{xx, xy, yx, yy}};
+    if (any_set(bare, count)) [[unlikely]] return store_lines_but(bare, lines, count, lower, upper);
+    alignas(64) double nowhere[8];
+    double *low[kWidth], *high[kWidth];
+    lines_of_edge(lines, count, nowhere, low);
+    for (int lane = 0; lane < kWidth; ++lane) high[lane] = low[lane] + 4;
+    store_quads(low, lower);
+    store_quads(high, upper);
+}
+
+struct Moved {
+    Real velocity, damping_work;
+};
+
+// m dV/dt = F - alpha |F| sign(V), one component.
+FELDSPAR_INLINE Moved damp_locally(const KernelStep& step, Real V, Real F, Real inverse_mass) {
+    const Real drag = (inverse_mass == 0.0) | (V == 0.0) ? Real{} : with_sign_of(step.alpha * F, V);
+    const Real next = V + step.dt * inverse_mass * (F - drag);
+    return {next, 0.5 * step.dt * drag * (V + next)};
+}
+
+// w <- (w (1 - h) + dt F/m) / (1 + h), h = c dt / 2, V = v B + w.
+struct DeviationDamping {
+    double kept, pushed;   // (1 - h) / (1 + h), dt / (1 + h)
+    double half;           // h
+
+    FELDSPAR_INLINE explicit DeviationDamping(const KernelStep& step)
+        : kept((1.0 - 0.5 * step.viscous * step.dt) / (1.0 + 0.5 * step.viscous * step.dt)), pushed(step.dt / (1.0 + 0.5 * step.viscous * step.dt)),
+          half(0.5 * step.viscous * step.dt) {}
+};
+
+// New velocity and displacement of a node from its force; the velocity is left in its place.
+// @return work taken out by the damping; of the deviation: that over h / 2
+template <bool local>
+FELDSPAR_INLINE Real move_node(const KernelArrays& a, const KernelStep& step, const DeviationDamping& damping, int node, int count, NodeLanes& n) {
+    const Real2 F = n.f;
+    const Real2 V = load_points(a.velocity + 2 * node, count), inverse_mass = load_points(a.inverse_mass + 2 * node, count);
+    Real work;
+    if constexpr (local) {
+        const Moved x = damp_locally(step, V.x, F.x, inverse_mass.x), y = damp_locally(step, V.y, F.y, inverse_mass.y);
+        n.f = {x.velocity, y.velocity};
+        work = x.damping_work + y.damping_work;
+    } else {
+        const Real2 B = load_points(a.loading_mode + 2 * node, count);
+        const Real mass = load(a.mass + node, count);
+        const Real2 loading = {step.speed * B.x, step.speed * B.y}, w = V - loading;   // w is 0 where the motion is imposed
+        const Real2 next = {w.x * damping.kept + damping.pushed * F.x * inverse_mass.x, w.y * damping.kept + damping.pushed * F.y * inverse_mass.y};
+        n.f = loading + next;
+        work = mass * ((w.x + next.x) * (V.x + n.f.x) + (w.y + next.y) * (V.y + n.f.y));
+    }
+    n.u = {n.u.x + step.dt * n.f.x, n.u.y + step.dt * n.f.y};
+    store_points(a.velocity + 2 * node, n.f, count);
+    store_points(a.displacement + 2 * node, n.u, count);
+    return work;
+}
+
+// Local numbers of the nodes: vertices, centre, ring.
+struct GrainNodes {
+    int vertices, ring_nodes;
+
+    FELDSPAR_INLINE int centre() const { return vertices; }
+    FELDSPAR_INLINE int ring(int k) const { return vertices + 1 + (k < ring_nodes ? k : 0); }
+    FELDSPAR_INLINE int next(int k) const { return k + 1 < vertices ? k + 1 : 0; }
+};
+
+FELDSPAR_INLINE void write_lines(const KernelArrays& a, const GrainPack& pack, const GrainLanes& g, Chunk chunk) {
+    const GrainNodes nodes{pack.vertices, pack.vertices - pack.collapsed};
+    const Real2 centre = g.node[nodes.centre()].position();
+    Real2 xi = g.node[0].position(), vi = g.node[0].f;
+    for (int k = 0; k < pack.vertices; ++k) {
+        const NodeLanes &next = g.node[nodes.next(k)], &ring = g.node[nodes.ring(k)];
+        const int field = pack.first_edge + k * pack.lanes + chunk.begin;
+        const Real2 xj = next.position(), vj = next.f;
+        write_line(doubles(a.lines + field), a.inverse_cross + field, a.bare + field, chunk.count, centre, xi, xj, ring.position(), vi, vj, ring.f);
+        xi = xj;
+        vi = vj;
+    }
+}
+
+template <bool local>
+FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelStep& step, const GrainPack& pack, PackForces forces, Chunk chunk) {
+    const KernelArrays a = arrays;   // a copy that nobody else can change: its pointers stay in registers
+    GrainLanes g;
+    const GrainNodes nodes{pack.vertices, pack.vertices - pack.collapsed};
+    const int count = pack.nodes(), first = pack.first_node + chunk.begin;
+    for (int i = 0; i < count; ++i) {
+        const int node = first + i * pack.lanes;
+        g.node[i].X = load_points(a.reference + 2 * node, chunk.count);
+        g.node[i].u = load_points(a.displacement + 2 * node, chunk.count);
+        g.node[i].f = forces == PackForces::on_top_of_others ? load_points(a.force + 2 * node, chunk.count) : Real2{};
+    }
+
+    const Elastic D{all(0.5 * a.thickness * (a.D11 + a.D12)), all(0.5 * a.thickness * (a.D11 - a.D12))};
+    NodeLanes& hub = g.node[nodes.centre()];
+    const Real2 centre = hub.position();
+    Real2 centre_force = hub.f;
+    const double* scale = a.scale + pack.first_triangle + chunk.begin;
+    for (int k = 0; k < pack.vertices; ++k) {
+        const int next = nodes.next(k), edge = pack.first_edge + k * pack.lanes + chunk.begin;
+        NodeLanes &i = g.node[k], &j = g.node[next], &r = g.node[nodes.ring(k)];
+        Real2 fi = i.f, fj = j.f, fr = r.f;
+        add_contact_forces(doubles(a.lines + edge), chunk.count, centre, i.position(), j.position(), r.position(), load(a.inverse_cross + edge, chunk.count), fi, fj, fr);
+        add_triangle(i.X, j.X, r.X, i.u, j.u, r.u, load(scale, chunk.count), D, fi, fj, fr);
+        scale += pack.lanes;
+        if (k + 1 < pack.vertices || !pack.collapsed) {
+            NodeLanes& s = g.node[nodes.ring(next)];
+            Real2 fs = s.f;
+            add_triangle(j.X, s.X, r.X, j.u, s.u, r.u, load(scale, chunk.count), D, fj, fs, fr);
+            scale += pack.lanes;
+            add_triangle(hub.X, r.X, s.X, hub.u, r.u, s.u, load(scale, chunk.count), D, centre_force, fr, fs);
+            scale += pack.lanes;
+            s.f = fs;
+        }
+        i.f = fi;
+        j.f = fj;
+        r.f = fr;
+    }
+    hub.f = centre_force;
+
+    if (forces != PackForces::own || step.keep_forces)
+        for (int i = 0; i < count; ++i) store_points(a.force + 2 * (first + i * pack.lanes), g.node[i].f, chunk.count);
+    Real work{};
+    const DeviationDamping damping(step);
+    for (int i = 0; i < count; ++i) work += move_node<local>(a, step, damping, first + i * pack.lanes, chunk.count, g.node[i]);
+    if constexpr (!local) work *= 0.5 * damping.half;
+    for (int lane = 0; lane < chunk.count; ++lane) a.body_work[pack.grain[chunk.begin + lane]].damping += work[lane];
+    write_lines(a, pack, g, chunk);
+}
+
+void grains(const KernelArrays& a, const KernelStep& step, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+        const GrainPack& pack = a.grain_packs[i];
+        if (step.local_damping) {
+            for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA { grains_of_chunk<true>(a, step, pack, a.pack_forces[i], chunk); });
+        } else {
+            for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA { grains_of_chunk<false>(a, step, pack, a.pack_forces[i], chunk); });
+        }
+    }
+}
+
+void grain_lines(const KernelArrays& a, int begin, int end) {
+    GrainLanes g;
+    for (int p = begin; p < end; ++p) {
+        const GrainPack& pack = a.grain_packs[p];
+        for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA {
+            for (int i = 0; i < pack.nodes(); ++i) {
+                const int node = pack.first_node + chunk.begin + i * pack.lanes;
+                g.node[i].X = load_points(a.reference + 2 * node, chunk.count);
+                g.node[i].u = load_points(a.displacement + 2 * node, chunk.count);
+                g.node[i].f = load_points(a.velocity + 2 * node, chunk.count);
+            }
+            write_lines(a, pack, g, chunk);
+        });
+    }
+}
+
+// ---------------------------------------------------------------------------------------------------------------- rigid bodies
+
+// Centre and turn of a body as one vector of four: x, y, arc, and nothing.
+template <bool local>
+FELDSPAR_INLINE Quad move_rigid(const KernelStep& step, Quad V, Quad F, Quad inverse_mass, Quad mass, Quad B, Quad& damping_work) {
+    const Quad none{};
+    if constexpr (local) {
+        typedef std::int64_t QuadMask __attribute__((vector_size(32)));
+        const Quad size = step.alpha * F;
+        const Quad signed_size = reinterpret_cast<Quad>((reinterpret_cast<QuadMask>(size) & INT64_MAX) | (reinterpret_cast<QuadMask>(V) & INT64_MIN));
+        const Quad drag = (inverse_mass == 0.0) | (V == 0.0) ? none : signed_size;
+        const Quad next = V + step.dt * inverse_mass * (F - drag);
+        damping_work = 0.5 * step.dt * drag * (V + next);
+        return next;
+    } else {
+        const double half = 0.5 * step.viscous * step.dt, inverse = 1.0 / (1.0 + half);
+        const Quad loading = step.speed * B, w = V - loading;
+        const Quad next = (w * (1.0 - half) + step.dt * inverse_mass * F) * inverse;
+        const Quad moving = inverse_mass == 0.0 ? none : mass;
+        damping_work = half * moving * (0.5 * (w + next) * (V + loading + next));
+        return loading + next;
+    }
+}
+
+FELDSPAR_INLINE void write_rigid_line(const KernelArrays& a, int body, const Body& b, Quad u, Quad v) {
+    double* line = doubles(a.lines + a.line_of_first_body + body);
+    const double* X = a.reference + 2 * b.first_node;
+    const double turning = v[2] / b.radius_m;
+    store_quad(line, Quad{X[0] + u[0], X[1] + u[1], v[0], v[1]});
+    store_quad(line + 4, Quad{0.0, -turning, turning, 0.0});
+}
+
+template <bool local>
+FELDSPAR_INLINE void rigid_bodies(const KernelArrays& a, const KernelStep& step, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+        const Body& body = a.bodies[i];
+        Quad F{};   // Fx, Fy, moment
+        for (int s = body.slot_begin; s < body.slot_end; ++s) F += load_quad(&a.rigid_forces[a.slots_of_bodies[s]].force.x);
+        F[2] /= body.radius_m;
+        const int node = 2 * body.first_node;
+        const Quad inverse_mass = load_quad(a.inverse_mass + node);
+        const double m = a.mass[body.first_node], turn_mass = a.mass[body.first_node + 1];
+        Quad work;
+        const Quad V = move_rigid<local>(step, load_quad(a.velocity + node), F, inverse_mass, Quad{m, m, turn_mass, turn_mass}, load_quad(a.loading_mode + node), work);
+        const Quad u = load_quad(a.displacement + node) + step.dt * V;
+        store_quad(a.velocity + node, V);
+        store_quad(a.displacement + node, u);
+        if (step.keep_forces) store_quad(a.force + node, F);
+        a.body_work[i].damping += work[0] + work[1] + work[2] + work[3];
+        write_rigid_line(a, i, body, u, V);
+    }
+}
+
+void rigid(const KernelArrays& a, const KernelStep& step, int begin, int end) {
+    if (step.local_damping) {
+        rigid_bodies<true>(a, step, begin, end);
+    } else {
+        rigid_bodies<false>(a, step, begin, end);
+    }
+}
+
+void rigid_lines(const KernelArrays& a, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+        const int node = 2 * a.bodies[i].first_node;
+        write_rigid_line(a, i, a.bodies[i], load_quad(a.displacement + node), load_quad(a.velocity + node));
+    }
+}
+
+}  // namespace
+}  // namespace feldspar

@@ -1,0 +1,284 @@
+// The kernels against the readable stages: one step from the same state, every kind of grain, test, law and option. Longer runs
+// cannot be compared so: round-off grows by orders of magnitude while a specimen breaks.
+#include <cmath>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "feldspar/base/rng.hpp"
+#include "feldspar/lab/experiment.hpp"
+#include "feldspar/model/assemble.hpp"
+#include "feldspar/model/masses.hpp"
+#include "feldspar/step/step.hpp"
+#include "fixtures.hpp"
+
+namespace feldspar {
+namespace {
+
+std::vector<const Kernels*> kernels_here() {
+    std::vector<const Kernels*> all;
+    for (const Kernels* kernels : all_kernels())
+        if (is_supported(*kernels)) all.push_back(kernels);
+    return all;
+}
+
+double size(double value) { return std::abs(value); }
+double size(Vec2 value) { return norm(value); }
+
+// Largest difference over the largest size.
+template <class Quantity>
+double difference(const Quantity& a, const Quantity& b) {
+    double largest = 0.0, apart = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        largest = std::max(largest, size(b[i]));
+        apart = std::max(apart, size(a[i] - b[i]));
+    }
+    return largest > 0.0 ? apart / largest : apart;
+}
+
+// Everything that a step writes.
+void expect_same(const Assembly& a, const Assembly& b, double tolerance, const std::string& what) {
+    EXPECT_LE(difference(a.nodes.displacement, b.nodes.displacement), tolerance) << what;
+    EXPECT_LE(difference(a.nodes.velocity, b.nodes.velocity), tolerance) << what;
+    EXPECT_LE(difference(a.nodes.force, b.nodes.force), tolerance) << what;
+    const std::vector<std::pair<const char*, Array<double> Bonds::*>> quantities = {
+        {"un", &Bonds::un_m}, {"us", &Bonds::us_m}, {"Fn", &Bonds::Fn_N}, {"Fs", &Bonds::Fs_N}, {"largest un", &Bonds::max_un_m}, {"largest us", &Bonds::max_us_m},
+        {"damage", &Bonds::damage}};
+    for (const auto& [name, quantity] : quantities) EXPECT_LE(difference(a.bonds.*quantity, b.bonds.*quantity), tolerance) << name << ", " << what;
+    // What a point dissipates is a small difference of its works: relative to what it holds.
+    double held = 0.0;
+    for (std::size_t i = 0; i < b.bonds.un_m.size(); ++i) held = std::max(held, std::abs(b.bonds.Fn_N[i] * b.bonds.un_m[i]));
+    for (std::size_t i = 0; i < b.bonds.un_m.size(); ++i) {
+        EXPECT_NEAR(a.bonds.fracture_J[i], b.bonds.fracture_J[i], tolerance * held) << what;
+        EXPECT_NEAR(a.bonds.friction_J[i], b.bonds.friction_J[i], tolerance * held) << what;
+    }
+    Array<double> damping_a, damping_b, pressure_a, pressure_b;
+    for (std::size_t i = 0; i < a.body_work.size(); ++i) {
+        damping_a.push_back(a.body_work[i].damping);
+        damping_b.push_back(b.body_work[i].damping);
+        pressure_a.push_back(a.body_work[i].pressure);
+        pressure_b.push_back(b.body_work[i].pressure);
+    }
+    EXPECT_LE(difference(damping_a, damping_b), tolerance) << what;
+    EXPECT_LE(difference(pressure_a, pressure_b), tolerance) << what;
+    for (std::size_t p = 0; p < a.points.size(); ++p) {
+        EXPECT_EQ(a.points[p].broken_step, b.points[p].broken_step) << what;
+        EXPECT_EQ(a.points[p].broke_in_tension, b.points[p].broke_in_tension) << what;
+        EXPECT_EQ(a.points[p].lost_compression, b.points[p].lost_compression) << what;
+    }
+}
+
+// A state in which everything happens: moved, turned and strained bodies; bonds intact, softened, broken, pressed, sliding, and about to break.
+void stir(Assembly& assembly) {
+    RandomStream random(5, "stirred");
+    for (const Body& body : assembly.bodies) {
+        const Vec2 push = {1e-7 * random.normal(), 1e-7 * random.normal()};
+        for (const int n : body.nodes()) {
+            const bool turn = body.kind == BodyKind::rigid && n != body.centre_node;
+            const Vec2 noise = {2e-8 * random.normal(), turn ? 0.0 : 2e-8 * random.normal()}, free = {assembly.nodes.inverse_mass[n].x != 0.0 ? 1.0 : 0.0, assembly.nodes.inverse_mass[n].y != 0.0 ? 1.0 : 0.0};
+            const Vec2 u = (turn ? Vec2{} : push) + noise;
+            assembly.nodes.displacement[n] += {free.x * u.x, free.y * u.y};
+            assembly.nodes.velocity[n] += {1e-2 * free.x * noise.x, 1e-2 * free.y * noise.y};
+        }
+    }
+    for (const Contact& contact : assembly.contacts) {
+        const BondLaw& law = assembly.laws[contact.material];
+        if (!std::isfinite(law.normal.x0) || contact.plate) continue;
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+            const double area = assembly.points[p].area_m2, kind = random.uniform();
+            BondState bond;
+            bond.un_m = law.normal.x0 * (2.4 * random.uniform() - 1.4);
+            bond.us_m = law.shear.x0 * (2.4 * random.uniform() - 1.2);
+            if (kind < 0.4) {   // intact
+                bond.un_m = std::min(bond.un_m, 0.999 * law.normal.x0);
+                bond.us_m *= 0.8;
+                bond.Fn_N = -(law.Kn_Pa_m * area) * bond.un_m;
+                bond.Fs_N = -(law.Ks_Pa_m * area) * bond.us_m;
+            } else if (kind < 0.8) {   // softened
+                bond.max_un_m = law.normal.x0 + random.uniform() * (law.normal.x_f - law.normal.x0);
+                bond.max_us_m = std::abs(bond.us_m);
+                bond.damage = std::min(0.999, std::max(1e-3, law.normal.damage(bond.max_un_m)));
+                bond.Fn_N = std::max(-(law.Kn_Pa_m * area) * bond.un_m, -(1.0 - bond.damage) * law.sigma_nt_Pa * area);
+                bond.Fs_N = 0.3 * (1.0 - bond.damage) * law.tau_Pa * area;
+            } else if (kind < 0.9) {   // on the brink: any opening breaks it
+                bond.un_m = bond.max_un_m = law.normal.x_f;
+                bond.max_us_m = std::abs(bond.us_m);
+                bond.damage = 1.0 - 1e-9;
+            } else {
+                bond.damage = 1.0;
+                bond.Fn_N = bond.un_m < 0.0 ? -(law.Kn_Pa_m * area) * bond.un_m : 0.0;
+                bond.Fs_N = 0.999 * law.mu * bond.Fn_N;
+            }
+            assembly.set_bond(p, bond);
+        }
+    }
+}
+
+// Contacts on the fall-back shape functions, dropped ones, and new ones on edges that have a contact already.
+void mix_contacts(Assembly& assembly) {
+    const int contacts = static_cast<int>(assembly.contacts.size());
+    for (int c = 0; c < contacts; ++c) {
+        Contact& contact = assembly.contacts[c];
+        if (contact.plate) continue;
+        if (c % 7 == 3) contact.dropped = true;
+        if (contact.flexible && c % 11 == 5) contact.initial_shape = true;
+        if (c % 13 != 1) continue;
+        const int a = contact.a.body, b = contact.b.body;   // `contact` goes with the old array
+        const double radii = assembly.bodies[a].radius_m + assembly.bodies[b].radius_m;
+        add_new_contact(assembly, a, b, std::min(0.0, radii - norm(assembly.centre(b) - assembly.centre(a)) - 1e-8), radii);
+    }
+    index_contacts(assembly);
+}
+
+struct Case {
+    TestKind test;
+    ModelSpec model;
+    ContactLaw law;
+    ShearMeasure measure = ShearMeasure::total;
+    TensionUnloading unloading = TensionUnloading::elastic;
+};
+
+std::vector<Case> cases() {
+    std::vector<Case> all;
+    std::vector<ModelSpec> models = fixtures::rigid_models();
+    models.push_back(fixtures::model(GrainKind::flexible));
+    models.push_back(fixtures::model(GrainKind::flexible, ContactKind::point));
+    for (const ModelSpec& model : models)
+        for (const TestKind test : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian})
+            all.push_back({test, model, ContactLaw::bilinear});
+    for (const ContactLaw law : {ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle})
+        for (const ShearMeasure measure : {ShearMeasure::total, ShearMeasure::beyond_friction})
+            for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant})
+                all.push_back({TestKind::uniaxial_compression, fixtures::model(GrainKind::flexible), law, measure, unloading});
+    return all;
+}
+
+std::string label(const testing::TestParamInfo<Case>& info) {
+    std::string text = std::string(name(info.param.test)) + "_" + fixtures::label(info.param.model) + "_" + name(info.param.law);
+    if (info.param.measure == ShearMeasure::beyond_friction) text += "_beyond_friction";
+    if (info.param.unloading == TensionUnloading::secant) text += "_secant";
+    std::erase(text, '-');
+    return text + "_" + std::to_string(info.index);
+}
+
+void PrintTo(const Case& c, std::ostream* out) { *out << name(c.test) << ", " << name(c.model.kind) << ", " << name(c.law); }
+
+class OneStep : public testing::TestWithParam<Case> {
+protected:
+    static TestSetup make() {
+        const Case& c = GetParam();
+        const SpecimenSpec spec = c.test == TestKind::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04);
+        TestSetup s = fixtures::setup(spec, c.test, c.model, c.law);
+        s.contact.shear_measure = c.measure;
+        s.contact.tension_unloading = c.unloading;
+        if (c.test == TestKind::biaxial) s.test.sigma3_Pa = 2e6;
+        s.test.membrane_plates = 4;
+        return s;
+    }
+};
+
+TEST_P(OneStep, IsThatOfTheReadableStages) {
+    const TestSetup setup = make();
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    if (GetParam().test == TestKind::biaxial) e.assembly.pressure_Pa = setup.test.sigma3_Pa;
+    stir(e.assembly);
+    mix_contacts(e.assembly);
+    for (const Damping damping : {Damping::deviation, Damping::local})
+        for (const Strength strength : {Strength::real, Strength::unlimited}) {
+            StepSettings settings = e.settings;
+            settings.damping = damping;
+            settings.viscous = 0.02;
+            settings.speed = 1e-9;
+            settings.strength = strength;
+            Assembly readable = e.assembly;
+            PlatenWork readable_work;
+            settings.kernels = nullptr;
+            advance(readable, e.team, settings, 7, 1, readable_work);
+            const auto broke = [](const ContactPoint& point) { return point.broken_step == 7; };
+            EXPECT_TRUE(strength == Strength::unlimited || std::any_of(readable.points.begin(), readable.points.end(), broke));
+            for (const Kernels* kernels : kernels_here()) {
+                Assembly fast = e.assembly;
+                PlatenWork work;
+                settings.kernels = kernels;
+                advance(fast, e.team, settings, 7, 1, work);
+                const std::string what = std::string(kernels->name) + (damping == Damping::local ? ", local damping" : "") + (strength == Strength::unlimited ? ", unlimited" : "");
+                // Rounding: gaps of 1e-8 m from velocities of bodies centimetres apart, forces of stiff contacts that nearly cancel.
+                expect_same(fast, readable, 1e-9, what);
+                EXPECT_NEAR(work.loading, readable_work.loading, 1e-9 * std::abs(readable_work.loading) + 1e-30) << what;
+            }
+        }
+}
+
+TEST_P(OneStep, HasTheSameBitsForAnyNumberOfThreads) {
+    const TestSetup setup = make();
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    stir(e.assembly);
+    mix_contacts(e.assembly);
+    StepSettings settings = e.settings;
+    settings.viscous = 0.02;
+    settings.speed = 1e-9;
+    for (const Kernels* kernels : kernels_here()) {
+        settings.kernels = kernels;
+        Assembly one = e.assembly;
+        PlatenWork one_work;
+        advance(one, e.team, settings, 0, 5, one_work);
+        for (const int threads : {2, 3}) {
+            Assembly several = e.assembly;
+            Team team(threads);
+            PlatenWork work;
+            advance(several, team, settings, 0, 5, work);
+            expect_same(several, one, 0.0, std::string(kernels->name) + " with " + std::to_string(threads) + " threads");
+            EXPECT_EQ(work.loading, one_work.loading);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, OneStep, testing::ValuesIn(cases()), label);
+
+TEST(Packs, HoldEveryGrainOfTheCommonTopologyOnce) {
+    const auto specimen = fixtures::make(fixtures::rectangle(0.04, 0.08));
+    const Assembly assembly = assemble(*specimen, fixtures::model(GrainKind::flexible), fixtures::granite(), fixtures::table7());
+    std::vector<int> seen(assembly.bodies.size(), 0);
+    for (const GrainPack& pack : assembly.packs.grains)
+        for (int lane = 0; lane < pack.lanes; ++lane) {
+            const Body& body = assembly.bodies[pack.grain[lane]];
+            ++seen[pack.grain[lane]];
+            EXPECT_EQ(body.node_count, pack.nodes());
+            EXPECT_EQ(body.triangle_end - body.triangle_begin, pack.triangles());
+            EXPECT_EQ(body.centre_node, body.node(pack.vertices));
+        }
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ssize(seen));
+    EXPECT_TRUE(assembly.packs.loose_bodies.empty());
+}
+
+TEST(Packs, LeaveFinelyMeshedGrainsLooseAndAgreeWithTheReadableStages) {
+    SpecimenSpec spec = fixtures::rectangle(0.02, 0.04);
+    spec.triangles_per_grain = 40;
+    TestSetup setup = fixtures::setup(fixtures::make(spec), TestKind::uniaxial_compression);
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    EXPECT_GT(e.assembly.packs.loose_bodies.size(), 20U);
+    stir(e.assembly);
+    StepSettings settings = e.settings;
+    settings.speed = 1e-9;
+    settings.kernels = nullptr;
+    Assembly readable = e.assembly;
+    PlatenWork work;
+    advance(readable, e.team, settings, 0, 3, work);
+    for (const Kernels* kernels : kernels_here()) {
+        settings.kernels = kernels;
+        Assembly fast = e.assembly;
+        advance(fast, e.team, settings, 0, 3, work);
+        expect_same(fast, readable, 1e-8, kernels->name);   // three steps: rounding has grown
+    }
+}
+
+}  // namespace
+}  // namespace feldspar
