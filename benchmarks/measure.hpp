@@ -1,0 +1,25 @@
+// Taking a reading: blocks of steps between calibrations, until enough of them were undisturbed.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "benchmarks/reading.hpp"
+
+namespace feldspar::benchmarks {
+
+struct MeasureSettings {
+    QuietRule quiet;
+    int most_blocks = 100;            ///< then the reading stays as it is, and is marked
+    double block_s = 0.01;            ///< length of a block, about; at least one step. Short, so that it fits between disturbances
+    double calibration_s = 0.002;
+};
+
+/// Measures `run(steps)` after one block that only warms up. Steps a block follow from the time of the first step.
+/// @param calibrate         GFLOP/s now, of the slowest core that takes part
+/// @param threads           that `run` uses
+/// @param best_calibration  the best seen so far with so many threads; grows when a better one is seen
+std::vector<Block> measure(const std::function<void(int)>& run, const std::function<double()>& calibrate, int threads,
+                           const MeasureSettings& settings, double& best_calibration);
+
+}  // namespace feldspar::benchmarks
