@@ -2,12 +2,15 @@
 #include <sched.h>
 #include <sys/utsname.h>
 
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include "benchmarks/calibration.hpp"
+#include "benchmarks/measure.hpp"
 #include "benchmarks/report.hpp"
 
 namespace feldspar::benchmarks {
@@ -33,6 +36,17 @@ int usable_cores() {
 }
 
 }  // namespace
+
+double waited_seconds() {
+    std::error_code failed;
+    double nanoseconds = 0.0;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", failed)) {
+        std::ifstream input(task.path() / "schedstat");   // time on a core, time waiting for one, number of turns
+        double running = 0.0, waiting = 0.0;
+        if (input >> running >> waiting) nanoseconds += waiting;
+    }
+    return 1e-9 * nanoseconds;
+}
 
 Machine this_machine() {
     Machine machine;

@@ -18,31 +18,32 @@ double processor_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-Block timed(const std::function<void(int)>& run, int steps) {
+Block timed(const std::function<void(int)>& run, const std::function<double()>& waited, int steps) {
     Block block;
     block.steps = steps;
-    const double wall = wall_seconds(), cpu = processor_seconds();
+    const double waited_before = waited(), wall = wall_seconds(), cpu = processor_seconds();
     run(steps);
     block.cpu_s = processor_seconds() - cpu;
     block.wall_s = wall_seconds() - wall;
+    block.waited_s = waited() - waited_before;
     return block;
 }
 
 // Doubles the steps until they are long enough to be judged by. That fills the caches besides.
-int steps_in_block(const std::function<void(int)>& run, double block_s) {
+int steps_in_block(const std::function<void(int)>& run, const std::function<double()>& waited, double block_s) {
     constexpr int kMost = 1 << 20;
     run(1);
     int steps = 1;
-    double wall_s = timed(run, steps).wall_s;
-    while (wall_s < 0.5 * block_s && steps < kMost) wall_s = timed(run, steps *= 2).wall_s;
+    double wall_s = timed(run, waited, steps).wall_s;
+    while (wall_s < 0.5 * block_s && steps < kMost) wall_s = timed(run, waited, steps *= 2).wall_s;
     return static_cast<int>(std::clamp(block_s / wall_s * steps, 1.0, 1.0 * kMost));
 }
 
 }  // namespace
 
-std::vector<Block> measure(const std::function<void(int)>& run, const std::function<double()>& calibrate, int threads,
-                           const MeasureSettings& settings, double& best_calibration) {
-    const int steps = steps_in_block(run, settings.block_s);
+std::vector<Block> measure(const std::function<void(int)>& run, const std::function<double()>& calibrate, const std::function<double()>& waited,
+                           int threads, const MeasureSettings& settings, double& best_calibration) {
+    const int steps = steps_in_block(run, waited, settings.block_s);
     const auto calibration = [&] {
         const double rate = calibrate();
         best_calibration = std::max(best_calibration, rate);
@@ -56,7 +57,7 @@ std::vector<Block> measure(const std::function<void(int)>& run, const std::funct
     double before = calibration();
     // Counted anew each time, because a better calibration may come late and show that earlier blocks were disturbed.
     while (static_cast<int>(blocks.size()) < settings.most_blocks && quiet_blocks(blocks) < settings.quiet.blocks) {
-        Block block = timed(run, steps);
+        Block block = timed(run, waited, steps);
         block.calibration_before = before;
         block.calibration_after = before = calibration();
         blocks.push_back(block);

@@ -7,6 +7,7 @@ namespace feldspar::benchmarks {
 
 bool is_quiet(const Block& block, int threads, double best_calibration, const QuietRule& rule) {
     if (std::min(block.calibration_before, block.calibration_after) < rule.share * best_calibration) return false;
+    if (block.waited_s > (1.0 - rule.share) * block.wall_s) return false;
     return threads > 1 || block.cpu_s >= rule.share * block.wall_s;
 }
 

@@ -12,6 +12,7 @@ struct Block {
     int steps = 0;
     double wall_s = 0.0;               ///< of all steps together
     double cpu_s = 0.0;                ///< processor time of the calling thread
+    double waited_s = 0.0;             ///< that threads were ready and had no core, all of them together
     double calibration_before = 0.0;   ///< GFLOP/s of the slowest core that took part
     double calibration_after = 0.0;
 };
@@ -39,14 +40,15 @@ struct Reading {
 
 /// When a block counts as undisturbed, and how many must.
 struct QuietRule {
-    double share = 0.9;   ///< of the best calibration seen in the run; of the wall time that one thread computed
+    double share = 0.9;   ///< of the best calibration seen in the run; of the wall time in which no thread had to wait for a core
     int blocks = 10;      ///< undisturbed blocks that a reading needs
 };
 
 /// Best calibration seen in a run by number of threads, GFLOP/s a core: with more cores at work each may be slower.
 using BestCalibrations = std::map<int, double>;
 
-/// Both calibrations near the best; and on one thread no core lost meanwhile, which processor time tells.
+/// Both calibrations near the best, and no core lost meanwhile to somebody else: that is what the system says of waiting threads, and
+/// on one thread its processor time.
 bool is_quiet(const Block& block, int threads, double best_calibration, const QuietRule& rule);
 
 /// A reading in a few numbers, seconds a step. Taken over the undisturbed blocks; over all if there is none.

@@ -55,6 +55,7 @@ json block_json(const Block& b) {
     return {{"steps", b.steps},
             {"wall_s", b.wall_s},
             {"cpu_s", b.cpu_s},
+            {"waited_s", b.waited_s},
             {"calibration_before_GFLOPs", b.calibration_before},
             {"calibration_after_GFLOPs", b.calibration_after}};
 }
@@ -64,9 +65,22 @@ Block block_from(const json& j) {
     j.at("steps").get_to(b.steps);
     j.at("wall_s").get_to(b.wall_s);
     j.at("cpu_s").get_to(b.cpu_s);
+    j.at("waited_s").get_to(b.waited_s);
     j.at("calibration_before_GFLOPs").get_to(b.calibration_before);
     j.at("calibration_after_GFLOPs").get_to(b.calibration_after);
     return b;
+}
+
+json calibrations_json(const BestCalibrations& best) {
+    json list = json::array();
+    for (const auto& [threads, rate] : best) list.push_back({{"threads", threads}, {"GFLOPs_a_core", rate}});
+    return list;
+}
+
+BestCalibrations calibrations_from(const json& list) {
+    BestCalibrations best;
+    for (const json& one : list) best[one.at("threads")] = one.at("GFLOPs_a_core");
+    return best;
 }
 
 json reading_json(const Reading& reading, const Report& report) {
@@ -98,14 +112,13 @@ Reading reading_from(const json& j) {
 }  // namespace
 
 std::string to_json(const Report& report) {
-    json best = json::array();
-    for (const auto& [threads, rate] : report.best) best.push_back({{"threads", threads}, {"GFLOPs_a_core", rate}});
     json readings = json::array();
     for (const Reading& reading : report.readings) readings.push_back(reading_json(reading, report));
     const json all = {{"format", kFormat},
                       {"machine", machine_json(report.machine)},
                       {"quiet", {{"share", report.quiet.share}, {"blocks", report.quiet.blocks}}},
-                      {"best_calibrations", best},
+                      {"best_calibrations", calibrations_json(report.best)},
+                      {"best_calibrations_on_record", calibrations_json(report.on_record)},
                       {"readings", readings}};
     return all.dump(1) + "\n";
 }
@@ -119,7 +132,8 @@ Report from_json(const std::string& text, const std::string& origin) {
         report.machine = machine_from(all.at("machine"));
         all.at("quiet").at("share").get_to(report.quiet.share);
         all.at("quiet").at("blocks").get_to(report.quiet.blocks);
-        for (const json& best : all.at("best_calibrations")) report.best[best.at("threads")] = best.at("GFLOPs_a_core");
+        report.best = calibrations_from(all.at("best_calibrations"));
+        report.on_record = calibrations_from(all.at("best_calibrations_on_record"));
         for (const json& reading : all.at("readings")) report.readings.push_back(reading_from(reading));
         return report;
     } catch (const json::exception& error) {

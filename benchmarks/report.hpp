@@ -26,7 +26,8 @@ struct Machine {
 struct Report {
     Machine machine;
     QuietRule quiet;
-    BestCalibrations best;
+    BestCalibrations best;       ///< of this run: what its blocks are judged by
+    BestCalibrations on_record;  ///< of all runs on this machine so far; may be empty
     std::vector<Reading> readings;
 };
 

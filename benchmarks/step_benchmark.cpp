@@ -1,5 +1,6 @@
 // The program behind ./bench: what a step costs, stage by stage. docs/performance.md says how to read it.
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "benchmarks/calibration.hpp"
+#include "benchmarks/calibration_record.hpp"
 #include "benchmarks/cases.hpp"
 #include "benchmarks/compare.hpp"
 #include "benchmarks/granite.hpp"
@@ -29,7 +31,7 @@ struct Options {
     std::vector<int> threads{1, 2};
     std::string out, compare;
     std::optional<double> fail_above_percent;
-    std::string packings = FELDSPAR_PACKINGS;
+    std::string cache = FELDSPAR_BENCHMARK_CACHE;
     MeasureSettings measure;
 };
 
@@ -47,7 +49,7 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--most-blocks", options.measure.most_blocks, "blocks after which a disturbed reading is given up")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
-    app.add_option("--packings", options.packings, "folder in which packings are kept")->type_name("DIR");
+    app.add_option("--cache", options.cache, "folder in which packings and the best calibrations are kept")->type_name("DIR");
 }
 
 // Bytes that can be had without swapping; absent where the system does not say.
@@ -101,7 +103,7 @@ Reading read(const Case& one, Granite& granite, Team& team, const MeasureSetting
     reading.threads = one.threads;
     reading.counts = granite.counts();
     reading.blocks = measure([&](int steps) { granite.run(one.stage, team, steps); }, [&] { return slowest_rate(team, settings.calibration_s); },
-                             one.threads, settings, best);
+                             waited_seconds, one.threads, settings, best);
     return reading;
 }
 
@@ -113,7 +115,7 @@ void run_on_specimen(const std::vector<Case>& cases, std::size_t begin, std::siz
         return;
     }
     fmt::print(stderr, "building {} ...\n", name(specimen));
-    Granite granite(specimen.grains, specimen.load, length_scale(specimen), options.packings);
+    Granite granite(specimen.grains, specimen.load, length_scale(specimen), options.cache);
     State state = State::elastic;   // as it was built
     for (std::size_t i = begin; i < end; ++i) {
         const Case& one = cases[i];
@@ -135,6 +137,7 @@ Report run(const std::vector<Case>& cases, const Options& options) {
         while (end < cases.size() && cases[end].specimen == cases[begin].specimen) ++end;
         run_on_specimen(cases, begin, end, options, teams, report);
     }
+    report.on_record = record_calibrations(std::filesystem::path(options.cache) / "calibrations.json", report.machine.processor, report.best);
     return report;
 }
 

@@ -14,7 +14,12 @@ std::string machine_text(const Report& report) {
     std::string text = fmt::format("{}, vectors of {} bits, {} core{}; {}\n", m.processor, m.vector_bits, m.cores, m.cores == 1 ? "" : "s", m.system);
     text += fmt::format("Feldspar {} ({}), {}, {} build, {}\n", m.version, m.commit, m.compiler, m.build_type, m.started);
     for (const auto& [threads, rate] : report.best) {
-        text += fmt::format("Best calibration with {} thread{}: {:.1f} GFLOP/s a core\n", threads, threads == 1 ? "" : "s", rate);
+        text += fmt::format("Best calibration with {} thread{}: {:.1f} GFLOP/s a core", threads, threads == 1 ? "" : "s", rate);
+        const auto record = report.on_record.find(threads);
+        if (record != report.on_record.end() && rate < report.quiet.share * record->second) {
+            text += fmt::format("; an earlier run saw {:.1f}: this whole run may have been disturbed", record->second);
+        }
+        text += '\n';
     }
     return text;
 }

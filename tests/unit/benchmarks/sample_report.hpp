@@ -9,7 +9,7 @@ namespace feldspar::benchmarks {
 
 /// A block of 10 steps of so many milliseconds, computed without a pause, between two calibrations of the given rate.
 inline Block sample_block(double ms_per_step, double calibration = 100.0) {
-    return {.steps = 10, .wall_s = 1e-2 * ms_per_step, .cpu_s = 1e-2 * ms_per_step, .calibration_before = calibration, .calibration_after = calibration};
+    return {.steps = 10, .wall_s = 1e-2 * ms_per_step, .cpu_s = 1e-2 * ms_per_step, .waited_s = 0.0, .calibration_before = calibration, .calibration_after = calibration};
 }
 
 /// A reading of three blocks: the given time, and 1.1 and 1.3 times it.
@@ -29,6 +29,7 @@ inline Report sample_report() {
                       .build_type = "Release", .version = "1.2.3", .commit = "abc", .started = "2026-11-22T06:00:00Z"};
     report.quiet = {.share = 0.9, .blocks = 3};
     report.best = {{1, 100.0}, {2, 95.0}};
+    report.on_record = {{1, 100.0}, {2, 110.0}};
     report.readings = {sample_reading("flexible/uniaxial/paper/elastic/step/1t", 0.5), sample_reading("rigid/uniaxial/paper/elastic/step/1t", 0.2)};
     return report;
 }

@@ -36,6 +36,16 @@ TEST(QuietBlock, OfOneThreadMustHaveComputedAllTheTime) {
     EXPECT_TRUE(is_quiet(block, 2, 100.0, kRule)) << "a thread that waits for another may sleep";
 }
 
+TEST(QuietBlock, HadItsCoresAllTheTime) {
+    for (const int threads : {1, 2}) {
+        Block block = sample_block(1.0);
+        block.waited_s = 0.09 * block.wall_s;
+        EXPECT_TRUE(is_quiet(block, threads, 100.0, kRule));
+        block.waited_s = 0.11 * block.wall_s;
+        EXPECT_FALSE(is_quiet(block, threads, 100.0, kRule));
+    }
+}
+
 TEST(Summary, TakesBestAndMedianOfTheUndisturbedBlocks) {
     Reading reading = sample_reading("a", 0.5);
     reading.blocks.push_back(sample_block(0.1, 50.0));   // faster than the others, which its calibration does not explain: not counted

@@ -17,6 +17,7 @@ void expect_same(const Report& a, const Report& b) {
     EXPECT_EQ(a.quiet.share, b.quiet.share);
     EXPECT_EQ(a.quiet.blocks, b.quiet.blocks);
     EXPECT_EQ(a.best, b.best);
+    EXPECT_EQ(a.on_record, b.on_record);
     ASSERT_EQ(a.readings.size(), b.readings.size());
     for (std::size_t i = 0; i < a.readings.size(); ++i) {
         const Reading &r = a.readings[i], &s = b.readings[i];
@@ -29,6 +30,7 @@ void expect_same(const Report& a, const Report& b) {
             EXPECT_EQ(r.blocks[k].steps, s.blocks[k].steps);
             EXPECT_EQ(r.blocks[k].wall_s, s.blocks[k].wall_s);
             EXPECT_EQ(r.blocks[k].cpu_s, s.blocks[k].cpu_s);
+            EXPECT_EQ(r.blocks[k].waited_s, s.blocks[k].waited_s);
             EXPECT_EQ(r.blocks[k].calibration_before, s.blocks[k].calibration_before);
             EXPECT_EQ(r.blocks[k].calibration_after, s.blocks[k].calibration_after);
         }
@@ -38,6 +40,7 @@ void expect_same(const Report& a, const Report& b) {
 TEST(Report, ComesBackFromItsJson) {
     Report report = sample_report();
     report.readings[0].blocks[0].wall_s = 0.1 / 3.0;   // every digit
+    report.readings[0].blocks[0].waited_s = 0.001;
     report.readings[1].threads = 2;
     expect_same(from_json(to_json(report), "text"), report);
     expect_same(from_json(to_json(Report{}), "text"), Report{});
@@ -79,6 +82,8 @@ TEST(Table, ShowsEveryReadingItsGoalAndWhetherItWasDisturbed) {
     EXPECT_NE(table.find("1 of 3 readings stayed disturbed"), std::string::npos);
     EXPECT_NE(table.find("333.33"), std::string::npos) << "0.5 ms over 1500 triangles, ns";
     EXPECT_NE(table.find("595.24"), std::string::npos) << "0.5 ms over 840 points, ns";
+    EXPECT_NE(table.find("95.0 GFLOP/s a core; an earlier run saw 110.0"), std::string::npos);
+    EXPECT_EQ(table.find("100.0 GFLOP/s a core;"), std::string::npos);
     EXPECT_NE(table.find("7.50"), std::string::npos) << "kB a grain";
 }
 
