@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <vector>
 
 #if defined(__x86_64__)
@@ -97,6 +98,13 @@ double rate_of(Rounds rounds, double seconds) {
     return 1e-9 * operations / elapsed;
 }
 
+// Of the calling thread.
+double thread_seconds() {
+    std::timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 }  // namespace
 
 int vector_bits() { return choose().bits; }
@@ -107,13 +115,41 @@ double multiply_add_rate(double seconds) {
     return rate_of(rounds, seconds);
 }
 
-double slowest_rate(Team& team, double seconds) {
-    std::vector<double> rates(static_cast<std::size_t>(team.size()));
+double read_rate(double seconds) {
+    constexpr std::size_t kNumbers = std::size_t{1} << 20, kPart = kNumbers / 64, kLanes = 16;
+    thread_local const std::vector<double> numbers(kNumbers, 1.0);
+    thread_local std::size_t place = 0;   // goes on where the last call ended
+    double sums[kLanes] = {}, bytes = 0.0, elapsed = 0.0;
+    const double begin = thread_seconds();
+    do {
+        for (std::size_t i = place; i < place + kPart; i += kLanes)
+            for (std::size_t k = 0; k < kLanes; ++k) sums[k] += numbers[i + k];
+        place = (place + kPart) % kNumbers;
+        bytes += static_cast<double>(kPart * sizeof(double));
+        elapsed = thread_seconds() - begin;
+    } while (elapsed < seconds);
+    double sum = 0.0;
+    for (const double one : sums) sum += one;
+    volatile double kept = sum;   // the results are used
+    static_cast<void>(kept);
+    return 1e-9 * bytes / elapsed;
+}
+
+Rates slowest_rates(Team& team, double seconds) {
+    std::vector<Rates> rates(static_cast<std::size_t>(team.size()));
     team.run([&](int thread) {
+        Rates& own = rates[static_cast<std::size_t>(thread)];
         team.barrier();
-        rates[static_cast<std::size_t>(thread)] = multiply_add_rate(seconds);
+        own.memory = read_rate(0.5 * seconds);
+        team.barrier();
+        own.multiply_add = multiply_add_rate(0.5 * seconds);
     });
-    return *std::min_element(rates.begin(), rates.end());
+    Rates slowest = rates.front();
+    for (const Rates& one : rates) {
+        slowest.multiply_add = std::min(slowest.multiply_add, one.multiply_add);
+        slowest.memory = std::min(slowest.memory, one.memory);
+    }
+    return slowest;
 }
 
 }  // namespace feldspar::benchmarks

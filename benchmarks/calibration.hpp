@@ -1,6 +1,8 @@
-// How fast the cores are right now: multiply-adds in registers, which depend on nothing but the core and who else uses it.
+// How fast the cores are right now. Multiply-adds in registers depend on nothing but the core and who else uses it; reading from the
+// shared cache depends on who else uses that.
 #pragma once
 
+#include "benchmarks/reading.hpp"
 #include "feldspar/base/parallel.hpp"
 
 namespace feldspar::benchmarks {
@@ -12,7 +14,11 @@ int vector_bits();
 /// GFLOP/s in double precision of the calling thread, over about so many seconds of wall time.
 double multiply_add_rate(double seconds);
 
-/// The same on every thread of the team at once: the rate of the slowest.
-double slowest_rate(Team& team, double seconds);
+/// GB/s of the calling thread that reads 8 MiB of its own again and again, over about so many seconds of processor time
+/// (that a core was lost shows in the other rate): more than a core's own caches hold, so that what it read before is gone from these.
+double read_rate(double seconds);
+
+/// Both on every thread of the team at once, each over half of the time: the rates of the slowest.
+Rates slowest_rates(Team& team, double seconds);
 
 }  // namespace feldspar::benchmarks

@@ -26,6 +26,7 @@ Change change_between(const Reading& before, const Report& old_report, const Rea
     change.new_s = new_one.best_s;
     change.ratio = new_one.best_s / old_one.best_s;
     change.disturbed = old_one.disturbed || new_one.disturbed;
+    change.memory_ratio = new_one.memory_rate / old_one.memory_rate;
     change.same_specimen = same_work(before.counts, after.counts);
     return change;
 }

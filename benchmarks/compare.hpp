@@ -10,6 +10,7 @@
 namespace feldspar::benchmarks {
 
 inline constexpr double kNotableChange = 0.05;   ///< smaller changes are not marked
+inline constexpr double kSameMemory = 0.20;      ///< memory rates that differ by more make two readings incomparable
 
 /// A case that both reports have.
 struct Change {
@@ -17,11 +18,13 @@ struct Change {
     double old_s = 0.0, new_s = 0.0;   ///< best, a step
     double ratio = 1.0;                ///< new / old
     bool disturbed = false;            ///< either reading
+    double memory_ratio = 1.0;         ///< rates at which the shared cache could be read, new / old
     bool same_specimen = true;         ///< as many grains, triangles and points in both
 
     bool slower() const { return trusted() && ratio > 1.0 + kNotableChange; }
     bool faster() const { return trusted() && ratio < 1.0 / (1.0 + kNotableChange); }
-    bool trusted() const { return !disturbed && same_specimen; }
+    bool same_memory() const { return memory_ratio < 1.0 + kSameMemory && memory_ratio > 1.0 / (1.0 + kSameMemory); }
+    bool trusted() const { return !disturbed && same_specimen && same_memory(); }
 };
 
 struct Comparison {

@@ -41,25 +41,26 @@ int steps_in_block(const std::function<void(int)>& run, const std::function<doub
 
 }  // namespace
 
-std::vector<Block> measure(const std::function<void(int)>& run, const std::function<double()>& calibrate, const std::function<double()>& waited,
-                           int threads, const MeasureSettings& settings, double& best_calibration) {
+std::vector<Block> measure(const std::function<void(int)>& run, const std::function<Rates()>& calibrate, const std::function<double()>& waited,
+                           int threads, const MeasureSettings& settings, double& best_rate) {
     const int steps = steps_in_block(run, waited, settings.block_s);
+    const int warm_up = steps / 20;   // brings the caches back that the calibration has used; nothing where a step is as long as a block
     const auto calibration = [&] {
-        const double rate = calibrate();
-        best_calibration = std::max(best_calibration, rate);
-        return rate;
+        const Rates rates = calibrate();
+        best_rate = std::max(best_rate, rates.multiply_add);
+        return rates;
     };
     const auto quiet_blocks = [&](const std::vector<Block>& blocks) {
-        return std::count_if(blocks.begin(), blocks.end(),
-                             [&](const Block& block) { return is_quiet(block, threads, best_calibration, settings.quiet); });
+        return std::count_if(blocks.begin(), blocks.end(), [&](const Block& block) { return is_quiet(block, threads, best_rate, settings.quiet); });
     };
     std::vector<Block> blocks;
-    double before = calibration();
+    Rates before = calibration();
     // Counted anew each time, because a better calibration may come late and show that earlier blocks were disturbed.
     while (static_cast<int>(blocks.size()) < settings.most_blocks && quiet_blocks(blocks) < settings.quiet.blocks) {
+        if (warm_up > 0) run(warm_up);
         Block block = timed(run, waited, steps);
-        block.calibration_before = before;
-        block.calibration_after = before = calibration();
+        block.before = before;
+        block.after = before = calibration();
         blocks.push_back(block);
     }
     return blocks;

@@ -18,12 +18,12 @@ struct MeasureSettings {
 /// How long the threads of this process have been ready so far and had no core, all of them together; 0 where the system does not say.
 double waited_seconds();
 
-/// Measures `run(steps)` after one block that only warms up. Steps a block follow from the time of the first step.
-/// @param calibrate         GFLOP/s now, of the slowest core that takes part
+/// Measures `run(steps)` after some steps that only warm up and tell how many make a block.
+/// @param calibrate         the rates now, of the slowest core that takes part
 /// @param waited            seconds so far that threads had no core: waited_seconds, except in tests
 /// @param threads           that `run` uses
-/// @param best_calibration  the best seen so far with so many threads; grows when a better one is seen
-std::vector<Block> measure(const std::function<void(int)>& run, const std::function<double()>& calibrate, const std::function<double()>& waited,
-                           int threads, const MeasureSettings& settings, double& best_calibration);
+/// @param best_rate         of multiply-adds: the best seen so far with so many threads; grows when a better one is seen
+std::vector<Block> measure(const std::function<void(int)>& run, const std::function<Rates()>& calibrate, const std::function<double()>& waited,
+                           int threads, const MeasureSettings& settings, double& best_rate);
 
 }  // namespace feldspar::benchmarks

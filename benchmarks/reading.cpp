@@ -6,7 +6,7 @@
 namespace feldspar::benchmarks {
 
 bool is_quiet(const Block& block, int threads, double best_calibration, const QuietRule& rule) {
-    if (std::min(block.calibration_before, block.calibration_after) < rule.share * best_calibration) return false;
+    if (std::min(block.before.multiply_add, block.after.multiply_add) < rule.share * best_calibration) return false;
     if (block.waited_s > (1.0 - rule.share) * block.wall_s) return false;
     return threads > 1 || block.cpu_s >= rule.share * block.wall_s;
 }
@@ -24,16 +24,18 @@ Summary summarise(const Reading& reading, const BestCalibrations& best, const Qu
     if (counted.empty())
         for (const Block& block : reading.blocks) counted.push_back(&block);
 
-    summary.best_s = summary.median_s = summary.cpu_s = std::nan("");
-    std::vector<double> wall, cpu;
+    summary.best_s = summary.median_s = summary.cpu_s = summary.memory_rate = std::nan("");
+    std::vector<double> wall, cpu, memory;
     for (const Block* block : counted) {
         wall.push_back(block->wall_s / block->steps);
         cpu.push_back(block->cpu_s / block->steps);
+        memory.push_back(std::min(block->before.memory, block->after.memory));
     }
     if (wall.empty()) return summary;
     summary.best_s = *std::min_element(wall.begin(), wall.end());
     summary.cpu_s = *std::min_element(cpu.begin(), cpu.end());
     summary.median_s = median(std::move(wall));
+    summary.memory_rate = median(std::move(memory));
     return summary;
 }
 

@@ -7,14 +7,19 @@
 
 namespace feldspar::benchmarks {
 
+/// How fast the cores were at a moment: of those that took part, the slowest.
+struct Rates {
+    double multiply_add = 0.0;   ///< GFLOP/s a core
+    double memory = 0.0;         ///< GB/s a core, read from 8 MiB that only the shared cache holds
+};
+
 /// A number of steps that were timed in one go, between two calibrations.
 struct Block {
     int steps = 0;
     double wall_s = 0.0;               ///< of all steps together
     double cpu_s = 0.0;                ///< processor time of the calling thread
     double waited_s = 0.0;             ///< that threads were ready and had no core, all of them together
-    double calibration_before = 0.0;   ///< GFLOP/s of the slowest core that took part
-    double calibration_after = 0.0;
+    Rates before, after;               ///< the calibrations on both sides
 };
 
 /// What a step has to do, for times per piece.
@@ -40,14 +45,14 @@ struct Reading {
 
 /// When a block counts as undisturbed, and how many must.
 struct QuietRule {
-    double share = 0.9;   ///< of the best calibration seen in the run; of the wall time in which no thread had to wait for a core
+    double share = 0.9;   ///< of the best rate of multiply-adds seen in the run; of the wall time in which no thread had to wait for a core
     int blocks = 10;      ///< undisturbed blocks that a reading needs
 };
 
-/// Best calibration seen in a run by number of threads, GFLOP/s a core: with more cores at work each may be slower.
+/// Best rate of multiply-adds seen in a run by number of threads, GFLOP/s a core: with more cores at work each may be slower.
 using BestCalibrations = std::map<int, double>;
 
-/// Both calibrations near the best, and no core lost meanwhile to somebody else: that is what the system says of waiting threads, and
+/// Both rates of multiply-adds near the best, and no core lost meanwhile to somebody else: that is what the system says of waiting threads, and
 /// on one thread its processor time.
 bool is_quiet(const Block& block, int threads, double best_calibration, const QuietRule& rule);
 
@@ -56,6 +61,7 @@ struct Summary {
     double best_s = 0.0;
     double median_s = 0.0;
     double cpu_s = 0.0;        ///< least processor time of the calling thread
+    double memory_rate = 0.0;  ///< GB/s a core: median of what the blocks' calibrations saw
     int quiet_blocks = 0;
     bool disturbed = true;     ///< fewer undisturbed blocks than the rule asks
 };

@@ -51,13 +51,17 @@ Counts counts_from(const json& j) {
     return c;
 }
 
+json rates_json(const Rates& r) { return {{"multiply_add_GFLOPs", r.multiply_add}, {"memory_GB_s", r.memory}}; }
+
+Rates rates_from(const json& j) { return {.multiply_add = j.at("multiply_add_GFLOPs"), .memory = j.at("memory_GB_s")}; }
+
 json block_json(const Block& b) {
     return {{"steps", b.steps},
             {"wall_s", b.wall_s},
             {"cpu_s", b.cpu_s},
             {"waited_s", b.waited_s},
-            {"calibration_before_GFLOPs", b.calibration_before},
-            {"calibration_after_GFLOPs", b.calibration_after}};
+            {"before", rates_json(b.before)},
+            {"after", rates_json(b.after)}};
 }
 
 Block block_from(const json& j) {
@@ -66,8 +70,8 @@ Block block_from(const json& j) {
     j.at("wall_s").get_to(b.wall_s);
     j.at("cpu_s").get_to(b.cpu_s);
     j.at("waited_s").get_to(b.waited_s);
-    j.at("calibration_before_GFLOPs").get_to(b.calibration_before);
-    j.at("calibration_after_GFLOPs").get_to(b.calibration_after);
+    b.before = rates_from(j.at("before"));
+    b.after = rates_from(j.at("after"));
     return b;
 }
 
@@ -94,6 +98,7 @@ json reading_json(const Reading& reading, const Report& report) {
             {"best_ms", 1e3 * s.best_s},
             {"median_ms", 1e3 * s.median_s},
             {"cpu_ms", 1e3 * s.cpu_s},
+            {"memory_GB_s", s.memory_rate},
             {"quiet_blocks", s.quiet_blocks},
             {"disturbed", s.disturbed},
             {"blocks", blocks}};

@@ -91,7 +91,7 @@ void look_for_best(Report& report, Teams& teams, const Options& options) {
     constexpr int kCalibrations = 25;
     for (const int threads : options.threads) {
         double& best = report.best[threads];
-        for (int k = 0; k < kCalibrations; ++k) best = std::max(best, slowest_rate(teams.of(threads), options.measure.calibration_s));
+        for (int k = 0; k < kCalibrations; ++k) best = std::max(best, slowest_rates(teams.of(threads), options.measure.calibration_s).multiply_add);
         fmt::print(stderr, "calibration with {} thread{}: {:.1f} GFLOP/s a core\n", threads, threads == 1 ? "" : "s", best);
     }
 }
@@ -102,7 +102,7 @@ Reading read(const Case& one, Granite& granite, Team& team, const MeasureSetting
     reading.stage = name(one.stage);
     reading.threads = one.threads;
     reading.counts = granite.counts();
-    reading.blocks = measure([&](int steps) { granite.run(one.stage, team, steps); }, [&] { return slowest_rate(team, settings.calibration_s); },
+    reading.blocks = measure([&](int steps) { granite.run(one.stage, team, steps); }, [&] { return slowest_rates(team, settings.calibration_s); },
                              waited_seconds, one.threads, settings, best);
     return reading;
 }

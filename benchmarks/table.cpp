@@ -1,6 +1,7 @@
 #include "benchmarks/table.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -33,10 +34,10 @@ std::string row(const Reading& reading, const Summary& s, int vector_bits, std::
     const Counts& c = reading.counts;
     const bool contacts = reading.stage != "bodies", bodies = reading.stage != "contacts";
     const std::optional<double> goal = goal_milliseconds(reading.name, vector_bits);
-    return fmt::format("{:<{}} {:>10.4f} {:>10.4f} {:>10} {:>9.0f} {:>8} {:>8} {:>8} {:>7.2f} {:>7} {:>4}{}\n", reading.name, name_width, 1e3 * s.best_s,
+    return fmt::format("{:<{}} {:>10.4f} {:>10.4f} {:>10} {:>9.0f} {:>8} {:>8} {:>8} {:>7.2f} {:>7} {:>6.1f} {:>4}{}\n", reading.name, name_width, 1e3 * s.best_s,
                        1e3 * s.median_s, reading.threads == 1 ? fmt::format("{:.4f}", 1e3 * s.cpu_s) : "", 1.0 / s.best_s,
                        per_piece(s.best_s, c.triangles, bodies), per_piece(s.best_s, c.points, contacts), per_piece(s.best_s, c.nodes, bodies),
-                       1e-3 * c.memory_bytes / static_cast<double>(std::max(c.grains, 1LL)), goal ? fmt::format("{:g}", *goal) : "", s.quiet_blocks,
+                       1e-3 * c.memory_bytes / static_cast<double>(std::max(c.grains, 1LL)), goal ? fmt::format("{:g}", *goal) : "", s.memory_rate, s.quiet_blocks,
                        s.disturbed ? "  disturbed" : "");
 }
 
@@ -49,6 +50,7 @@ std::size_t longest_name(const std::vector<std::string>& names) {
 std::string mark(const Change& change) {
     if (!change.same_specimen) return "another specimen";
     if (change.disturbed) return "disturbed";
+    if (!change.same_memory()) return fmt::format("memory {} by {:.0f} %", change.memory_ratio > 1.0 ? "faster" : "slower", 100.0 * std::abs(change.memory_ratio - 1.0));
     return change.slower() ? "SLOWER" : change.faster() ? "faster" : "";
 }
 
@@ -60,17 +62,17 @@ std::string report_table(const Report& report) {
     const std::size_t width = longest_name(names);
 
     std::string text = machine_text(report) + "\n";
-    text += fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>4}\n", "", width, "ms/step", "median", "cpu ms", "", "ns per",
-                        "ns per", "ns per", "kB per", "goal", "");
-    text += fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>4}\n", "case", width, "(best)", "", "(1 thr.)", "steps/s",
-                        "triangle", "point", "node", "grain", "ms", "ok");
+    text += fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>6} {:>4}\n", "", width, "ms/step", "median", "cpu ms", "", "ns per",
+                        "ns per", "ns per", "kB per", "goal", "memory", "");
+    text += fmt::format("{:<{}} {:>10} {:>10} {:>10} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>6} {:>4}\n", "case", width, "(best)", "", "(1 thr.)", "steps/s",
+                        "triangle", "point", "node", "grain", "ms", "GB/s", "ok");
     int disturbed = 0;
     for (const Reading& reading : report.readings) {
         const Summary summary = summarise(reading, report.best, report.quiet);
         disturbed += summary.disturbed;
         text += row(reading, summary, report.machine.vector_bits, width);
     }
-    text += fmt::format("\nok: undisturbed blocks, {} wanted. Goals: what the step is meant to cost one day; memory below {:g} kB a flexible grain.\n",
+    text += fmt::format("\nmemory: rate at which a core could read the shared cache meanwhile. ok: undisturbed blocks, {} wanted.\nGoals: what the step is meant to cost one day; memory below {:g} kB a flexible grain.\n",
                         report.quiet.blocks, 1e-3 * kGoalBytesPerGrain);
     if (disturbed > 0) {
         text += fmt::format("{} of {} readings stayed disturbed: somebody else used the cores. Their times are upper bounds.\n", disturbed,
@@ -99,7 +101,7 @@ std::string comparison_table(const Comparison& comparison) {
     };
     text += fmt::format("{} slower and {} faster by more than {:g} %, of {} cases that can be compared", count(&Change::slower), count(&Change::faster),
                         100.0 * kNotableChange, count(&Change::trusted));
-    text += fmt::format(" ({} disturbed or of another specimen", std::ssize(comparison.changes) - count(&Change::trusted));
+    text += fmt::format(" ({} disturbed, of another specimen, or with another memory rate", std::ssize(comparison.changes) - count(&Change::trusted));
     text += fmt::format(", {} only in the old report, {} only in the new one)\n", comparison.only_old.size(), comparison.only_new.size());
     return text;
 }

@@ -9,7 +9,8 @@ namespace feldspar::benchmarks {
 
 /// A block of 10 steps of so many milliseconds, computed without a pause, between two calibrations of the given rate.
 inline Block sample_block(double ms_per_step, double calibration = 100.0) {
-    return {.steps = 10, .wall_s = 1e-2 * ms_per_step, .cpu_s = 1e-2 * ms_per_step, .waited_s = 0.0, .calibration_before = calibration, .calibration_after = calibration};
+    return {.steps = 10, .wall_s = 1e-2 * ms_per_step, .cpu_s = 1e-2 * ms_per_step, .waited_s = 0.0, 
+            .before = {calibration, 20.0}, .after = {calibration, 20.0}};
 }
 
 /// A reading of three blocks: the given time, and 1.1 and 1.3 times it.

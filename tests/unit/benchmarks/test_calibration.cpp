@@ -17,7 +17,9 @@ TEST(Calibration, IsAPositiveRate) {
 
 TEST(Calibration, RunsOnATeam) {
     Team team(2);
-    EXPECT_GT(slowest_rate(team, 1e-4), 0.0);
+    const Rates rates = slowest_rates(team, 1e-4);
+    EXPECT_GT(rates.multiply_add, 0.0);
+    EXPECT_GT(rates.memory, 0.0);
 }
 
 }  // namespace

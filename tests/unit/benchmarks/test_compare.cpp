@@ -38,6 +38,20 @@ TEST(Compare, DoesNotTrustDisturbedReadings) {
     }
 }
 
+// The calibration in registers does not see who else uses the shared cache.
+TEST(Compare, DoesNotTrustAnotherMemoryRate) {
+    for (const double rate : {20.0, 23.0, 18.0}) {
+        Reading reading = sample_reading("a", 2.0);
+        for (Block& block : reading.blocks) block.before.memory = block.after.memory = rate;
+        EXPECT_TRUE(compare(report_of({sample_reading("a", 1.0)}), report_of({reading})).changes[0].slower()) << rate;
+    }
+    for (const double rate : {25.0, 15.0}) {
+        Reading reading = sample_reading("a", 2.0);
+        for (Block& block : reading.blocks) block.before.memory = block.after.memory = rate;
+        EXPECT_FALSE(compare(report_of({sample_reading("a", 1.0)}), report_of({reading})).changes[0].slower()) << rate;
+    }
+}
+
 TEST(Compare, DoesNotTrustAnotherSpecimen) {
     Reading smaller = sample_reading("a", 2.0);
     smaller.counts.points -= 1;

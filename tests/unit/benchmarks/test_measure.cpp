@@ -29,7 +29,7 @@ MeasureSettings short_blocks() {
 TEST(Measure, StopsWhenEnoughBlocksWereUndisturbed) {
     double best = 100.0;
     Work work;
-    const auto blocks = measure([&](int n) { work(n); }, [] { return 100.0; }, never, 2, short_blocks(), best);
+    const auto blocks = measure([&](int n) { work(n); }, [] { return Rates{100.0, 20.0}; }, never, 2, short_blocks(), best);
     EXPECT_EQ(blocks.size(), 4u);
     for (const Block& block : blocks) {
         EXPECT_GE(block.steps, 1);
@@ -42,7 +42,7 @@ TEST(Measure, StopsWhenEnoughBlocksWereUndisturbed) {
 TEST(Measure, GivesUpAfterTheMostBlocks) {
     double best = 100.0;
     Work work;
-    const auto blocks = measure([&](int n) { work(n); }, [] { return 50.0; }, never, 2, short_blocks(), best);
+    const auto blocks = measure([&](int n) { work(n); }, [] { return Rates{50.0, 20.0}; }, never, 2, short_blocks(), best);
     EXPECT_EQ(blocks.size(), 12u);
     EXPECT_DOUBLE_EQ(best, 100.0);
 }
@@ -52,10 +52,10 @@ TEST(Measure, RepeatsDisturbedBlocks) {
     int calls = 0;
     Work work;
     // The third and fourth calibration are low: they spoil the blocks 2, 3 and 4.
-    const auto blocks = measure([&](int n) { work(n); }, [&] { return ++calls == 3 || calls == 4 ? 40.0 : 100.0; }, never, 2, short_blocks(), best);
+    const auto blocks = measure([&](int n) { work(n); }, [&] { return Rates{++calls == 3 || calls == 4 ? 40.0 : 100.0, 20.0}; }, never, 2, short_blocks(), best);
     EXPECT_EQ(blocks.size(), 7u);
-    EXPECT_DOUBLE_EQ(blocks[1].calibration_after, 40.0);
-    EXPECT_DOUBLE_EQ(blocks[2].calibration_before, 40.0);
+    EXPECT_DOUBLE_EQ(blocks[1].after.multiply_add, 40.0);
+    EXPECT_DOUBLE_EQ(blocks[2].before.multiply_add, 40.0);
 }
 
 TEST(Measure, RepeatsBlocksThatHadToWaitForACore) {
@@ -63,7 +63,7 @@ TEST(Measure, RepeatsBlocksThatHadToWaitForACore) {
     int calls = 0;
     Work work;
     // Two calls a block, and some before in the warm-up; every second block waits for ever.
-    const auto blocks = measure([&](int n) { work(n); }, [] { return 100.0; }, [&] { return ++calls % 4 == 0 ? waited += 1000.0 : waited; }, 2,
+    const auto blocks = measure([&](int n) { work(n); }, [] { return Rates{100.0, 20.0}; }, [&] { return ++calls % 4 == 0 ? waited += 1000.0 : waited; }, 2,
                                 short_blocks(), best);
     EXPECT_GE(blocks.size(), 7u);
     EXPECT_LE(blocks.size(), 8u);
@@ -73,7 +73,7 @@ TEST(Measure, LearnsABetterCalibrationAndCountsAnew) {
     double best = 80.0;
     int calls = 0;
     Work work;
-    const auto blocks = measure([&](int n) { work(n); }, [&] { return ++calls <= 3 ? 80.0 : 100.0; }, never, 2, short_blocks(), best);
+    const auto blocks = measure([&](int n) { work(n); }, [&] { return Rates{++calls <= 3 ? 80.0 : 100.0, 20.0}; }, never, 2, short_blocks(), best);
     EXPECT_DOUBLE_EQ(best, 100.0);
     EXPECT_EQ(blocks.size(), 7u) << "two blocks at 80, one that ends at 100, four at 100";
 }

@@ -22,10 +22,10 @@ TEST(QuietBlock, NeedsBothCalibrationsNearTheBest) {
     EXPECT_TRUE(is_quiet(block, 1, 100.0, kRule));
     EXPECT_TRUE(is_quiet(block, 1, 111.0, kRule));
     EXPECT_FALSE(is_quiet(block, 1, 112.0, kRule));
-    block.calibration_before = 80.0;
+    block.before.multiply_add = 80.0;
     EXPECT_FALSE(is_quiet(block, 1, 100.0, kRule));
     block = sample_block(1.0);
-    block.calibration_after = 80.0;
+    block.after.multiply_add = 80.0;
     EXPECT_FALSE(is_quiet(block, 1, 100.0, kRule));
 }
 
@@ -53,13 +53,21 @@ TEST(Summary, TakesBestAndMedianOfTheUndisturbedBlocks) {
     EXPECT_DOUBLE_EQ(summary.best_s, 0.5e-3);
     EXPECT_DOUBLE_EQ(summary.median_s, 0.55e-3);
     EXPECT_DOUBLE_EQ(summary.cpu_s, 0.5e-3);
+    EXPECT_DOUBLE_EQ(summary.memory_rate, 20.0);
     EXPECT_EQ(summary.quiet_blocks, 3);
     EXPECT_FALSE(summary.disturbed);
 }
 
+TEST(Summary, HasTheMedianOfTheSlowerMemoryRates) {
+    Reading reading = sample_reading("a", 0.5);
+    reading.blocks[0].before.memory = 10.0;
+    reading.blocks[1].after.memory = 15.0;
+    EXPECT_DOUBLE_EQ(summarise(reading, {{1, 100.0}}, kRule).memory_rate, 15.0);
+}
+
 TEST(Summary, IsMarkedWithTooFewUndisturbedBlocks) {
     Reading reading = sample_reading("a", 0.5);
-    reading.blocks[1].calibration_after = 60.0;   // the fastest
+    reading.blocks[1].after.multiply_add = 60.0;   // the fastest
     const Summary summary = summarise(reading, {{1, 100.0}}, kRule);
     EXPECT_TRUE(summary.disturbed);
     EXPECT_EQ(summary.quiet_blocks, 2);

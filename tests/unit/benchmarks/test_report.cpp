@@ -31,8 +31,10 @@ void expect_same(const Report& a, const Report& b) {
             EXPECT_EQ(r.blocks[k].wall_s, s.blocks[k].wall_s);
             EXPECT_EQ(r.blocks[k].cpu_s, s.blocks[k].cpu_s);
             EXPECT_EQ(r.blocks[k].waited_s, s.blocks[k].waited_s);
-            EXPECT_EQ(r.blocks[k].calibration_before, s.blocks[k].calibration_before);
-            EXPECT_EQ(r.blocks[k].calibration_after, s.blocks[k].calibration_after);
+            EXPECT_EQ(r.blocks[k].before.multiply_add, s.blocks[k].before.multiply_add);
+            EXPECT_EQ(r.blocks[k].before.memory, s.blocks[k].before.memory);
+            EXPECT_EQ(r.blocks[k].after.multiply_add, s.blocks[k].after.multiply_add);
+            EXPECT_EQ(r.blocks[k].after.memory, s.blocks[k].after.memory);
         }
     }
 }
@@ -41,6 +43,8 @@ TEST(Report, ComesBackFromItsJson) {
     Report report = sample_report();
     report.readings[0].blocks[0].wall_s = 0.1 / 3.0;   // every digit
     report.readings[0].blocks[0].waited_s = 0.001;
+    report.readings[0].blocks[1].before = {.multiply_add = 1.0, .memory = 2.0};
+    report.readings[0].blocks[1].after = {.multiply_add = 3.0, .memory = 4.0};
     report.readings[1].threads = 2;
     expect_same(from_json(to_json(report), "text"), report);
     expect_same(from_json(to_json(Report{}), "text"), Report{});
