@@ -36,7 +36,7 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& options) {
-    app.add_flag("--full", options.full, "every stage, state and size (tens of minutes)");
+    app.add_flag("--full", options.full, "every stage, state and size");
     app.add_option("--filter", options.filter, "only the cases whose name this regular expression finds")->type_name("REGEX");
     app.add_flag("--list", options.list, "print the names of the cases and stop");
     app.add_option("--threads", options.threads, "numbers of threads")->check(CLI::Range(1, 1024))->capture_default_str();
@@ -48,6 +48,9 @@ void add_options(CLI::App& app, Options& options) {
     app.add_option("--blocks", options.measure.quiet.blocks, "undisturbed blocks that a reading needs")->check(CLI::Range(1, 1000))->capture_default_str();
     app.add_option("--most-blocks", options.measure.most_blocks, "blocks after which a disturbed reading is given up")
         ->check(CLI::Range(1, 100000))
+        ->capture_default_str();
+    app.add_option("--quiet-share", options.measure.quiet.share, "how near the best calibration an undisturbed one must come")
+        ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
     app.add_option("--cache", options.cache, "folder in which packings and the best calibrations are kept")->type_name("DIR");
 }
