@@ -50,7 +50,9 @@ std::size_t longest_name(const std::vector<std::string>& names) {
 std::string mark(const Change& change) {
     if (!change.same_specimen) return "another specimen";
     if (change.disturbed) return "disturbed";
-    if (!change.same_memory()) return fmt::format("memory {} by {:.0f} %", change.memory_ratio > 1.0 ? "faster" : "slower", 100.0 * std::abs(change.memory_ratio - 1.0));
+    if (!change.same_memory()) {
+        return fmt::format("memory {} by {:.0f} %", change.memory_ratio > 1.0 ? "faster" : "slower", 100.0 * std::abs(change.memory_ratio - 1.0));
+    }
     return change.slower() ? "SLOWER" : change.faster() ? "faster" : "";
 }
 
