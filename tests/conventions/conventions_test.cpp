@@ -194,8 +194,8 @@ TEST(Conventions, LinksInTheDocumentationWork) {
 
 TEST(Conventions, ScriptsStopAtTheFirstError) {
     std::vector<SourceFile> scripts = files_under("scripts", text_extensions);
-    for (const char* name : {"check", "demo", ".ci/run"}) scripts.push_back(read(fs::path(FELDSPAR_SOURCE_DIR) / name));
-    EXPECT_GE(scripts.size(), 5u);
+    for (const char* name : {"check", "demo", "bench", ".ci/run"}) scripts.push_back(read(fs::path(FELDSPAR_SOURCE_DIR) / name));
+    EXPECT_GE(scripts.size(), 6u);
     for (const SourceFile& script : scripts) {
         ASSERT_FALSE(script.lines.empty()) << script.name;
         EXPECT_NE(std::find(script.lines.begin(), script.lines.end(), "set -euo pipefail"), script.lines.end()) << script.name;
