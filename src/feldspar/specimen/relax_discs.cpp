@@ -8,6 +8,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
+#include "feldspar/specimen/fire.hpp"
 #include "feldspar/specimen/outline.hpp"
 #include "feldspar/specimen/pack_discs.hpp"
 
@@ -37,7 +38,6 @@ public:
           radii_(packing.radii_m),
           box_(bounding_box(outline)),
           force_(radii_.size()),
-          velocity_(radii_.size()),
           grid_(box_, radii_) {
         smallest_radius_ = *std::min_element(radii_.begin(), radii_.end());
         mean_diameter_ = 2.0 * std::accumulate(radii_.begin(), radii_.end(), 0.0) / static_cast<double>(radii_.size());
@@ -65,14 +65,12 @@ private:
         for (const Vec2 f : force_) sum += norm(f);
         return sum / static_cast<double>(force_.size());
     }
-    void advance(double& time_step, double& mixing, int& steps_downhill);
 
     const Outline& outline_;
     std::vector<Vec2>& centres_;
     const std::vector<double>& radii_;
     Box box_;
     std::vector<Vec2> force_;     ///< m (stiffness 1)
-    std::vector<Vec2> velocity_;  ///< m per unit of time (mass 1)
     std::vector<Vec2> listed_at_;
     DiscGrid grid_;
     NearList near_;
@@ -201,50 +199,12 @@ Sums Relaxation::forces() {
     return sums;
 }
 
-/// One step of FIRE with the forces at hand. Stiffness and mass are 1, so a disc held by six others has omega^2 of about 6
-/// and the largest of the assembly stays below 12: a time step of 0.4 keeps clear of the limit 2 / omega.
-void Relaxation::advance(double& time_step, double& mixing, int& steps_downhill) {
-    constexpr double longest_step = 0.4, first_mixing = 0.1;
-    double power = 0.0, speed2 = 0.0, force2 = 0.0;
-    for (std::size_t i = 0; i < force_.size(); ++i) power += dot(force_[i], velocity_[i]);
-    if (power > 0.0) {
-        if (++steps_downhill > 5) {
-            time_step = std::min(1.1 * time_step, longest_step);
-            mixing *= 0.99;
-        }
-    } else {
-        for (std::size_t i = 0; i < force_.size(); ++i) {
-            if (steps_downhill > 0) centres_[i] -= (0.5 * time_step) * velocity_[i];
-            velocity_[i] = {};
-        }
-        steps_downhill = 0;
-        time_step *= 0.5;
-        time_step = std::max(time_step, 0.01);
-        mixing = first_mixing;
-    }
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] += time_step * force_[i];
-        speed2 += dot(velocity_[i], velocity_[i]);
-        force2 += dot(force_[i], force_[i]);
-    }
-    const double turn = force2 > 0.0 ? mixing * std::sqrt(speed2 / force2) : 0.0;
-    const double farthest = 0.1 * smallest_radius_;
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] = (1.0 - mixing) * velocity_[i] + turn * force_[i];
-        Vec2 move = time_step * velocity_[i];
-        const double length2 = dot(move, move);
-        if (length2 > farthest * farthest) move *= farthest / std::sqrt(length2);
-        centres_[i] += move;
-    }
-}
-
 void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
-    double time_step = 0.1, mixing = 0.1;
-    int steps_downhill = 0;
+    Fire fire(radii_.size(), {.shortest_step = 0.01, .steps_back = true, .farthest_move_m = 0.1 * smallest_radius_});
     for (int step = 0; step <= criterion.most_steps; ++step) {
         const Sums sums = forces();
         if (step % 10 != 0) {  // the criterion costs a root for each disc, so it is judged at every tenth step
-            advance(time_step, mixing, steps_downhill);
+            fire.advance(centres_, force_);
             continue;
         }
         const double contacts = static_cast<double>(std::max(1L, sums.touching));
@@ -254,7 +214,7 @@ void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
         packing.overlap_max = sums.largest_overlap / mean_diameter_;
         packing.relaxation_steps = step;
         if (packing.residual <= criterion.residual || packing.overlap_mean <= criterion.loose_overlap) return;
-        advance(time_step, mixing, steps_downhill);
+        fire.advance(centres_, force_);
     }
     throw NumericalError(fmt::format("the relaxation of the packing stopped after {} steps at a residual of {:.2e} (allowed {:.1e})",
                                      criterion.most_steps, packing.residual, criterion.residual));

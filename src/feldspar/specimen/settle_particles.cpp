@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/specimen/fire.hpp"
 
 namespace feldspar {
 namespace {
@@ -24,9 +25,12 @@ constexpr int tries_per_disc = 12, most_moves = 5;
 class Settling {
 public:
     Settling(GrainRing& ring, std::span<const Vec2> corners)
-        : ring_(ring), corners_(corners), force_(ring.centres.size()), velocity_(ring.centres.size()) {}
+        : ring_(ring),
+          corners_(corners),
+          force_(ring.centres.size()),
+          fire_(ring.centres.size(), {.shortest_step = 0.05, .steps_back = false, .farthest_move_m = 0.1 * ring.diameter_m}) {}
 
-    /// FIRE with unit masses and stiffness until the largest force falls under 1e-3 diameters, or after so many steps.
+    /// FIRE until the largest force falls under 1e-3 diameters, or after so many steps.
     void run(double factor, int steps);
 
 private:
@@ -35,14 +39,13 @@ private:
     double forces(double factor);
     void push_from_walls(int i, double factor);
     void hold(int i);
-    void advance();
 
     GrainRing& ring_;
     std::span<const Vec2> corners_;
-    std::vector<Vec2> force_, velocity_, listed_at_;
+    std::vector<Vec2> force_, listed_at_;
+    Fire fire_;
     std::vector<std::pair<int, int>> near_;
-    double skin_ = 0.0, time_step_ = 0.1, mixing_ = 0.1;
-    int steps_downhill_ = 0;
+    double skin_ = 0.0;
 };
 
 void Settling::find_neighbours(double factor) {
@@ -106,42 +109,12 @@ double Settling::forces(double factor) {
     return largest2;
 }
 
-void Settling::advance() {
-    double power = 0.0, speed2 = 0.0, force2 = 0.0;
-    for (std::size_t i = 0; i < force_.size(); ++i) power += dot(force_[i], velocity_[i]);
-    if (power > 0.0) {
-        if (++steps_downhill_ > 5) {
-            time_step_ = std::min(1.1 * time_step_, 0.4);
-            mixing_ *= 0.99;
-        }
-    } else {
-        std::fill(velocity_.begin(), velocity_.end(), Vec2{});
-        steps_downhill_ = 0;
-        time_step_ = std::max(0.5 * time_step_, 0.05);
-        mixing_ = 0.1;
-    }
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] += time_step_ * force_[i];
-        speed2 += dot(velocity_[i], velocity_[i]);
-        force2 += dot(force_[i], force_[i]);
-    }
-    const double turn = force2 > 0.0 ? mixing_ * std::sqrt(speed2 / force2) : 0.0;
-    const double farthest = 0.1 * ring_.diameter_m;
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] = (1.0 - mixing_) * velocity_[i] + turn * force_[i];
-        Vec2 move = time_step_ * velocity_[i];
-        const double length = norm(move);
-        if (length > farthest) move *= farthest / length;
-        ring_.centres[i] += move;
-    }
-}
-
 void Settling::run(double factor, int steps) {
     listed_at_.clear();
     const double enough = 1e-3 * ring_.diameter_m;
     for (int step = 0; step < steps; ++step) {
         if (forces(factor) < enough * enough) return;
-        advance();
+        fire_.advance(ring_.centres, force_);
     }
 }
 
