@@ -36,12 +36,6 @@ SideNodes nodes_behind_edge(const GrainMesh& mesh, int g, int k) {
     throw NumericalError("a grain edge without a triangle of its own");
 }
 
-std::vector<Vec2> corners_of_cell(const Tessellation& cells, int g) {
-    std::vector<Vec2> corners;
-    for (const int v : cells.cells[g].vertices) corners.push_back(cells.vertices[v]);
-    return corners;
-}
-
 // The grain's outline; `nodes_of(k)` is where a contact on edge k hangs.
 template <class NodesOf>
 void add_edges(Assembly& assembly, Body& body, const Tessellation& cells, NodesOf nodes_of) {

@@ -21,10 +21,7 @@ using Polygons = std::vector<std::vector<Vec2>>;
 
 Polygons polygons_of(const Tessellation& cells) {
     Polygons polygons;
-    for (const Cell& cell : cells.cells) {
-        auto& corners = polygons.emplace_back();
-        for (const int v : cell.vertices) corners.push_back(cells.vertices[v]);
-    }
+    for (int g = 0; g < std::ssize(cells.cells); ++g) polygons.push_back(corners_of_cell(cells, g));
     return polygons;
 }
 

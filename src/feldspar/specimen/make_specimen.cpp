@@ -87,11 +87,9 @@ void measure_cells(const Specimen& specimen, SpecimenQuality& quality) {
     quality.smallest_edge_m = std::numeric_limits<double>::infinity();
     double area = 0.0;
     long vertices = 0;
-    std::vector<Vec2> corners;
     for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
         const Cell& cell = specimen.cells.cells[g];
-        corners.clear();
-        for (const int v : cell.vertices) corners.push_back(specimen.cells.vertices[v]);
+        const std::vector<Vec2> corners = corners_of_cell(specimen.cells, g);
         area += signed_area(corners);
         vertices += std::ssize(corners);
         for (std::size_t k = 0; k < corners.size(); ++k) {

@@ -89,6 +89,9 @@ struct Tessellation {
     int merged_edges = 0;        ///< short edges that were merged
 };
 
+/// The places (m) of the vertices of cell `cell`, counter-clockwise, in the cell's order.
+std::vector<Vec2> corners_of_cell(const Tessellation& cells, int cell);
+
 /// Nodes and triangles inside the cells. Nodes belong to one grain each and are contiguous by grain: first the cell's
 /// vertices in the cell's order, then the centroid, then the inner ring.
 struct GrainMesh {
