@@ -44,9 +44,9 @@ const Specimen& specimen_of(std::int64_t grains) {
     return large;
 }
 
-Packing pack(const SpecimenSpec& spec, const Outline& outline) {
+Packing pack(const SpecimenSpec& spec, const Outline& outline, Team& team) {
     RandomStream sizes(1, "grain sizes"), places(1, "packing positions");
-    return pack_discs(outline, sample_diameters(spec.grain_sizes, grain_count(spec), sizes), places);
+    return pack_discs(outline, sample_diameters(spec.grain_sizes, grain_count(spec), sizes), places, {.team = &team, .tell = {}});
 }
 
 CellGraph cells_of(const Specimen& specimen) {
@@ -71,7 +71,8 @@ void packing(benchmark::State& state) {
     const SpecimenSpec spec = rectangle_of(state.range(0));
     const Outline outline = make_outline(spec.outline);
     Packing made;
-    for (auto _ : state) made = pack(spec, outline);
+    Team team(static_cast<int>(state.range(1)));
+    for (auto _ : state) made = pack(spec, outline, team);
     state.counters["steps"] = made.relaxation_steps;
     state.counters["residual"] = made.residual;
 }
@@ -103,12 +104,13 @@ void meshing(benchmark::State& state) {
 
 void filling(benchmark::State& state) {
     const Specimen& specimen = specimen_of(state.range(0));
-    for (auto _ : state) benchmark::DoNotOptimize(fill_grains(specimen.cells, 26.36, 1));
+    Team team(static_cast<int>(state.range(1)));
+    for (auto _ : state) benchmark::DoNotOptimize(fill_grains(specimen.cells, 26.36, 1, {.team = &team, .tell = {}}));
 }
 
 void whole_specimen(benchmark::State& state) {
     const SpecimenSpec spec = rectangle_of(state.range(0));
-    for (auto _ : state) benchmark::DoNotOptimize(make_specimen(spec, 1));
+    for (auto _ : state) benchmark::DoNotOptimize(make_specimen(spec, 1, {.threads = static_cast<int>(state.range(1)), .progress = {}}));
 }
 
 void assembling(benchmark::State& state) {
@@ -125,7 +127,7 @@ void stability(benchmark::State& state) {
     Assembly assembly = granite(state.range(0));
     attach_platen_rows(assembly, specimen_of(state.range(0)));
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
-    Team team(1);
+    Team team(static_cast<int>(state.range(1)));
     for (auto _ : state) benchmark::DoNotOptimize(largest_omega2(assembly, team));
 }
 
@@ -135,17 +137,20 @@ void contact_finder(benchmark::State& state) {
 }
 
 #define FELDSPAR_SETUP(stage) BENCHMARK(stage)->Arg(kPaper)->Arg(kLarge)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime()
+// With one thread and, where it pays, with two.
+#define FELDSPAR_SETUP_THREADS(stage) \
+    BENCHMARK(stage)->Args({kPaper, 1})->Args({kLarge, 1})->Args({kLarge, 2})->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime()
 
-FELDSPAR_SETUP(packing);
+FELDSPAR_SETUP_THREADS(packing);
 FELDSPAR_SETUP(clipping);
 FELDSPAR_SETUP(merging);
 FELDSPAR_SETUP(tessellation);
 FELDSPAR_SETUP(meshing);
-FELDSPAR_SETUP(filling);
-FELDSPAR_SETUP(whole_specimen);
+FELDSPAR_SETUP_THREADS(filling)->Args({kPaper, 2});
+FELDSPAR_SETUP_THREADS(whole_specimen);
 FELDSPAR_SETUP(assembling);
 FELDSPAR_SETUP(masses);
-FELDSPAR_SETUP(stability);
+FELDSPAR_SETUP_THREADS(stability);
 FELDSPAR_SETUP(contact_finder);
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "feldspar/specimen/specimen.hpp"
+#include "feldspar/specimen/stage_control.hpp"
 
 namespace feldspar {
 
@@ -13,6 +14,6 @@ namespace feldspar {
 /// are the rows on the two sides of an edge. Each grain places its discs for itself, so that facing rows are no mirror images.
 /// Theory: specimen.md, section 6. Source: the paper, section 3.1 and figure 5e,f. Same input, same bits.
 /// @param particles_per_grain  mean over the grains, from 7 to 500; with some tens, the total comes within 0.1 % of it
-Filling fill_grains(const Tessellation& cells, double particles_per_grain, std::uint64_t seed);
+Filling fill_grains(const Tessellation& cells, double particles_per_grain, std::uint64_t seed, const StageControl& control = {});
 
 }  // namespace feldspar

@@ -26,10 +26,26 @@ void Fire::slow_down(std::span<Vec2> points) {
     mixing_ = first_mixing;
 }
 
-void Fire::advance(std::span<Vec2> points, std::span<const Vec2> forces) {
+void Fire::move(std::span<Vec2> points, std::span<const Vec2> forces, double turn, IndexRange range) {
+    const double farthest = limits_.farthest_move_m;
+    for (int i = range.begin; i < range.end; ++i) {
+        velocity_[i] = (1.0 - mixing_) * velocity_[i] + turn * forces[i];
+        Vec2 move = time_step_ * velocity_[i];
+        const double length2 = dot(move, move);
+        if (length2 > farthest * farthest) move *= farthest / std::sqrt(length2);
+        points[i] += move;
+    }
+}
+
+void Fire::advance(std::span<Vec2> points, std::span<const Vec2> forces, Team* team) {
     assert(points.size() == velocity_.size() && forces.size() == velocity_.size());
+    const int count = static_cast<int>(points.size());
+    // The sums stay with one thread, so that their order is that of the points; they are a small part of a step.
     double power = 0.0, speed2 = 0.0, force2 = 0.0;
-    for (std::size_t i = 0; i < forces.size(); ++i) power += dot(forces[i], velocity_[i]);
+    for (int i = 0; i < count; ++i) {
+        power += dot(forces[i], velocity_[i]);
+        force2 += dot(forces[i], forces[i]);
+    }
     if (power > 0.0) {
         if (++steps_downhill_ > patience) {
             time_step_ = std::min(1.1 * time_step_, longest_step);
@@ -38,20 +54,12 @@ void Fire::advance(std::span<Vec2> points, std::span<const Vec2> forces) {
     } else {
         slow_down(points);
     }
-    for (std::size_t i = 0; i < forces.size(); ++i) {
-        velocity_[i] += time_step_ * forces[i];
-        speed2 += dot(velocity_[i], velocity_[i]);
-        force2 += dot(forces[i], forces[i]);
-    }
+    in_shares(team, count, [&](IndexRange range, int) {
+        for (int i = range.begin; i < range.end; ++i) velocity_[i] += time_step_ * forces[i];
+    });
+    for (const Vec2 v : velocity_) speed2 += dot(v, v);
     const double turn = force2 > 0.0 ? mixing_ * std::sqrt(speed2 / force2) : 0.0;
-    const double farthest = limits_.farthest_move_m;
-    for (std::size_t i = 0; i < forces.size(); ++i) {
-        velocity_[i] = (1.0 - mixing_) * velocity_[i] + turn * forces[i];
-        Vec2 move = time_step_ * velocity_[i];
-        const double length2 = dot(move, move);
-        if (length2 > farthest * farthest) move *= farthest / std::sqrt(length2);
-        points[i] += move;
-    }
+    in_shares(team, count, [&](IndexRange range, int) { move(points, forces, turn, range); });
 }
 
 }  // namespace feldspar

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "feldspar/base/parallel.hpp"
 #include "feldspar/base/vec2.hpp"
 
 namespace feldspar {
@@ -19,7 +20,7 @@ struct FireLimits {
 /// themselves; as long as the motion goes downhill its velocity is turned towards the force and its time step grows, and when it
 /// goes uphill it starts again from rest with a shorter step (Bitzek et al., Phys. Rev. Lett. 97, 170201, 2006, with the paper's
 /// constants). The state is kept between calls, also where the caller has changed the forces' law in between.
-/// Sums run over the points in their order: same input, same bits.
+/// Sums run over the points in their order: same input, same bits, for any number of threads.
 class Fire {
 public:
     Fire(std::size_t points, const FireLimits& limits) : limits_(limits), velocity_(points) {}
@@ -27,10 +28,12 @@ public:
     /// Moves the points by one step under the forces that act at their present places. A force of zero keeps a point where it is
     /// as long as it has had none before.
     /// @param forces  m, as many as there are points
-    void advance(std::span<Vec2> points, std::span<const Vec2> forces);
+    /// @param team    to share the work with, if any
+    void advance(std::span<Vec2> points, std::span<const Vec2> forces, Team* team = nullptr);
 
 private:
     void slow_down(std::span<Vec2> points);
+    void move(std::span<Vec2> points, std::span<const Vec2> forces, double turn, IndexRange range);
 
     FireLimits limits_;
     std::vector<Vec2> velocity_;   ///< m per unit of time

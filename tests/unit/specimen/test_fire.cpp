@@ -73,6 +73,18 @@ TEST(Fire, NoPointMovesFartherThanAllowedInAStep) {
     }
 }
 
+TEST(Fire, SameBitsForAnyNumberOfThreads) {
+    Chain alone(3001), together(3001);
+    const FireLimits limits = {.farthest_move_m = 0.1};
+    Fire fire(alone.points.size(), limits), shared(together.points.size(), limits);
+    Team team(3);
+    for (int step = 0; step < 50; ++step) {
+        fire.advance(alone.points, alone.forces());
+        shared.advance(together.points, together.forces(), &team);
+    }
+    EXPECT_EQ(alone.points, together.points);
+}
+
 TEST(Fire, PointsWithoutForceStay) {
     std::vector<Vec2> points = {{0.0, 0.0}, {7.0, -3.0}};
     Fire fire(2, {.farthest_move_m = 1.0});
