@@ -80,7 +80,8 @@ void Progress::busy(const std::string& what) {
 
 void Progress::report_making(const std::string& what, const SpecimenProgress& progress) {
     if (stop_requested()) throw Interrupted();
-    const std::string line = fmt::format("making {} of {} grains: {}, {:.0f} %", what, progress.grains, progress.stage, 100.0 * progress.share);
+    const std::string line =
+        fmt::format("making {} of {} grains: {}, {:.0f} %", what, progress.grains, progress.stage, 100.0 * progress.share);
     const auto now = std::chrono::steady_clock::now();
     if (terminal_) {
         rewrite(line);

@@ -128,7 +128,8 @@ private:
             packings_.push_back(packing);
         }
         control_.progress = [&](const TestProgress& state) { progress_.report(number, count, label, state); };
-        if (specimen->quality.grains >= many_grains) progress_.busy(fmt::format("{}/{} {}: bonding {} grains", number, count, label, specimen->quality.grains));
+        const int grains = specimen->quality.grains;
+        if (grains >= many_grains) progress_.busy(fmt::format("{}/{} {}: bonding {} grains", number, count, label, grains));
         TestResult result = run_test(setup_of(run, specimen), control_);
         result.variant = run.variant->name;
         progress_.note(fmt::format("{}/{} {}: {}", number, count, label, test_line(result)));
