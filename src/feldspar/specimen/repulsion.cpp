@@ -12,8 +12,11 @@ constexpr int chunk = 256;
 
 /// The overlapping pairs of a chunk, a column each.
 struct Overlapping {
-    std::array<double, chunk + 1> x, y, reach, distance2;   // one place more: every pair is written, those that count are kept
+    // One place more than pairs: every pair is written, those that count are kept.
     std::array<DiscPair, chunk + 1> discs;
+    std::array<Vec2, chunk + 1> apart;         ///< from the second centre to the first, m
+    std::array<double, chunk + 1> reach;       ///< m; then the force / distance
+    std::array<double, chunk + 1> distance2;   ///< m^2
     int count = 0;
     bool coincident = false;   ///< some centres may lie in one place
 };
@@ -25,8 +28,7 @@ void collect(std::span<const DiscPair> pairs, std::span<const Vec2> centres, std
         const Vec2 apart = centres[pair.a] - centres[pair.b];
         const double reach = factor * (radii_m[pair.a] + radii_m[pair.b]);
         const double distance2 = dot(apart, apart);
-        found.x[n] = apart.x;
-        found.y[n] = apart.y;
+        found.apart[n] = apart;
         found.reach[n] = reach;
         found.distance2[n] = distance2;
         found.discs[n] = pair;
@@ -37,19 +39,20 @@ void collect(std::span<const DiscPair> pairs, std::span<const Vec2> centres, std
     found.coincident = coincident != 0;
 }
 
-// From the vector between the centres to the force on the first disc; roots and quotients side by side in vectors.
-void turn_into_forces(Overlapping& found) {
-    for (int k = 0; k < found.count; ++k) {
-        const double distance = std::sqrt(found.distance2[k]);
-        found.reach[k] -= distance;
-        found.x[k] *= found.reach[k] / distance;
-        found.y[k] *= found.reach[k] / distance;
+// From the reach to the force / distance; roots and quotients side by side in vectors.
+void find_forces(std::span<const double> radii_m, double factor, Overlapping& found) {
+    const int count = found.count;   // a count of its own, without which the loop is not turned into vectors
+    double* reach = found.reach.data();
+    const double* distance2 = found.distance2.data();
+    for (int k = 0; k < count; ++k) {
+        const double distance = std::sqrt(distance2[k]);
+        reach[k] = (reach[k] - distance) / distance;
     }
     if (!found.coincident) return;
-    for (int k = 0; k < found.count; ++k) {
+    for (int k = 0; k < count; ++k) {
         if (found.distance2[k] != 0.0) continue;
-        found.x[k] = found.reach[k];   // any direction will do as long as it is always the same
-        found.y[k] = 0.0;
+        found.apart[k] = {1.0, 0.0};   // any direction will do as long as it is always the same
+        found.reach[k] = factor * (radii_m[found.discs[k].a] + radii_m[found.discs[k].b]);
     }
 }
 
@@ -61,9 +64,9 @@ void push_apart(std::span<const DiscPair> pairs, std::span<const Vec2> centres, 
     while (!pairs.empty()) {
         const std::size_t size = std::min<std::size_t>(pairs.size(), chunk);
         collect(pairs.first(size), centres, radii_m, factor, found);
-        turn_into_forces(found);
+        find_forces(radii_m, factor, found);
         for (int k = 0; k < found.count; ++k) {
-            const Vec2 force = {found.x[k], found.y[k]};
+            const Vec2 force = found.reach[k] * found.apart[k];
             const auto [a, b] = found.discs[k];
             forces[a] += force;
             if (b >= first_own) {

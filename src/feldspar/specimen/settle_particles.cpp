@@ -30,11 +30,13 @@ class Settling {
 public:
     Settling(GrainRing& ring, std::span<const Vec2> corners)
         : ring_(ring),
-          corners_(corners),
           force_(ring.centres.size()),
           fire_(ring.centres.size(), {.shortest_step = 0.05, .steps_back = false, .farthest_move_m = 0.1 * ring.diameter_m}),
           skin_(skin_share * ring.diameter_m) {
-        for (std::size_t k = 0; k < corners.size(); ++k) edge_lengths_.push_back(norm(corners[(k + 1) % corners.size()] - corners[k]));
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+            walls_.push_back({a, b, norm(b - a)});
+        }
     }
 
     /// FIRE until the largest force falls under 1e-3 diameters, or after so many steps.
@@ -50,9 +52,14 @@ private:
     void push_from_walls(int i, double factor);
     void hold(int i);
 
+    /// An edge of the cell, which has the discs on its left.
+    struct Wall {
+        Vec2 a, b;
+        double length = 0.0;
+    };
+
     GrainRing& ring_;
-    std::span<const Vec2> corners_;
-    std::vector<double> edge_lengths_;
+    std::vector<Wall> walls_;
     std::vector<Vec2> force_;
     Fire fire_;
     double skin_;
@@ -90,10 +97,10 @@ bool Settling::list_is_stale(double factor) const {
 
 void Settling::push_from_walls(int i, double factor) {
     const double radius = std::max(factor * factor, wall_clearance) * ring_.radii_m[i];
-    for (std::size_t k = 0; k < corners_.size(); ++k) {
-        const Vec2 a = corners_[k], b = corners_[(k + 1) % corners_.size()], p = ring_.centres[i];
-        if (cross(b - a, p - a) > radius * edge_lengths_[k]) continue;
-        const Vec2 out = p - closest_on_segment(p, a, b);
+    const Vec2 p = ring_.centres[i];
+    for (const Wall& wall : walls_) {
+        if (cross(wall.b - wall.a, p - wall.a) > radius * wall.length) continue;
+        const Vec2 out = p - closest_on_segment(p, wall.a, wall.b);
         const double distance = norm(out);
         if (distance < radius && distance > 0.0) force_[i] += ((radius - distance) / distance) * out;
     }
