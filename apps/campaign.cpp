@@ -36,16 +36,14 @@ std::string title(const std::string& variant, const TestSpec& test) {
     return variant.empty() ? title(test) : variant + ": " + title(test);
 }
 
-std::shared_ptr<const Specimen> Specimens::get(const PlannedRun& run) {
+std::shared_ptr<const Specimen> Specimens::get(const PlannedRun& run, const SpecimenControl& control) {
     std::shared_ptr<const Specimen>& specimen = made_[key_of(run)];
     if (!specimen) {
         const bool disc = run.test->kind == TestKind::brazilian;
-        specimen = std::make_shared<const Specimen>(make_specimen(disc ? job_->brazilian_specimen : job_->specimen, run.seed));
+        specimen = std::make_shared<const Specimen>(make_specimen(disc ? job_->brazilian_specimen : job_->specimen, run.seed, control));
     }
     return specimen;
 }
-
-bool Specimens::made(const PlannedRun& run) const { return made_.contains(key_of(run)); }
 
 std::string Specimens::packing_stem(const PlannedRun& run) {
     return fmt::format("packing-{}s{}", run.test->kind == TestKind::brazilian ? "disc-" : "", run.seed);

@@ -35,11 +35,8 @@ class Specimens {
 public:
     explicit Specimens(const Job& job) : job_(&job) {}
 
-    /// The specimen of the run, made on the first call.
-    std::shared_ptr<const Specimen> get(const PlannedRun& run);
-
-    /// True if get() would not have to make it.
-    bool made(const PlannedRun& run) const;
+    /// The specimen of the run, made on the first call, as `control` says.
+    std::shared_ptr<const Specimen> get(const PlannedRun& run, const SpecimenControl& control = {});
 
     /// "packing-s3" or "packing-disc-s3": the stem of the file of the run's packing.
     static std::string packing_stem(const PlannedRun& run);

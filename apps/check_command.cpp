@@ -90,8 +90,9 @@ public:
 private:
     void add(const Group& group) {
         const PlannedRun& run = group.example;
+        const std::shared_ptr<const Specimen> specimen =
+            specimens_.get(run, progress_.making(Specimens::packing_stem(run), control_.threads));
         progress_.busy(fmt::format("building {}, seed {}", title(run.variant->name, *run.test), run.seed));
-        const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
         const TestPreview preview = preview_test(setup_of(run, specimen), control_);
         progress_.clear();
         show_specimen(*run.test, *specimen);

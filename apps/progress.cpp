@@ -7,6 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "feldspar/base/error.hpp"
+#include "interrupt.hpp"
+
 namespace feldspar {
 namespace {
 
@@ -73,6 +76,25 @@ void Progress::busy(const std::string& what) {
     else
         note(what);
     last_line_ = std::chrono::steady_clock::now();
+}
+
+void Progress::report_making(const std::string& what, const SpecimenProgress& progress) {
+    if (stop_requested()) throw Interrupted();
+    const std::string line =
+        fmt::format("making {} of {} grains: {}, {:.0f} %", what, progress.grains, progress.stage, 100.0 * progress.share);
+    const auto now = std::chrono::steady_clock::now();
+    if (terminal_) {
+        rewrite(line);
+        return;
+    }
+    if (what == last_label_ && now - last_line_ < plain_line_interval) return;
+    note(what == last_label_ ? line : fmt::format("making {}", what));   // most are made before the next line is due
+    last_label_ = what;
+    last_line_ = now;
+}
+
+SpecimenControl Progress::making(const std::string& what, int threads) {
+    return {threads, [this, what](const SpecimenProgress& progress) { report_making(what, progress); }};
 }
 
 void Progress::report(int number, int count, const std::string& label, const TestProgress& progress) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
 
@@ -21,6 +22,10 @@ public:
     /// What is being done now, for work that does not report by itself.
     void busy(const std::string& what);
 
+    /// The specimen `what` reports while it is made; to be passed on to make_specimen with the number of threads. An interruption by
+    /// the user ends the making. @throws Interrupted from the callback
+    SpecimenControl making(const std::string& what, int threads);
+
     /// Test `number` of `count` reports; its `label` is "biaxial at 4 MPa, seed 1".
     void report(int number, int count, const std::string& label, const TestProgress& progress);
 
@@ -29,6 +34,7 @@ public:
 
 private:
     void rewrite(const std::string& line);
+    void report_making(const std::string& what, const SpecimenProgress& progress);
 
     bool terminal_ = false;
     bool line_shown_ = false;

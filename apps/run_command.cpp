@@ -21,6 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// From here on the time between the making of the specimen and a test's first report is worth a line.
+constexpr int many_grains = 20000;
+
 // Bytes that the job will leave, roughly: fields at the snapshots in two formats, histories and the report.
 double expected_bytes(const Job& job, const std::vector<PlannedRun>& runs) {
     double bytes = 1e6;
@@ -61,8 +64,8 @@ public:
     void prepare() {
         for (const PlannedRun& run : runs_) {
             if (stop_requested()) throw Interrupted();
-            if (!specimens_.made(run)) progress_.busy(fmt::format("making {}", Specimens::packing_stem(run)));
-            const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
+            const std::shared_ptr<const Specimen> specimen =
+                specimens_.get(run, progress_.making(Specimens::packing_stem(run), control_.threads));
             const NumericsSpec& numerics = run.variant->numerics;
             const bool own_setting = numerics.kind != NumericsKind::adaptive || numerics.mass_factor;
             if (own_setting) (void)preview_test(setup_of(run, specimen), control_);
@@ -125,6 +128,8 @@ private:
             packings_.push_back(packing);
         }
         control_.progress = [&](const TestProgress& state) { progress_.report(number, count, label, state); };
+        const int grains = specimen->quality.grains;
+        if (grains >= many_grains) progress_.busy(fmt::format("{}/{} {}: bonding {} grains", number, count, label, grains));
         TestResult result = run_test(setup_of(run, specimen), control_);
         result.variant = run.variant->name;
         progress_.note(fmt::format("{}/{} {}: {}", number, count, label, test_line(result)));

@@ -25,7 +25,7 @@ TEST(Boundaries, PressureActsNormalToTheInitialFacesOverTheirCurrentLength) {   
     }
     Team team(1);
     evaluate_forces(assembly, team, Strength::unlimited);
-    const std::vector<Vec2> without = assembly.nodes.force;
+    const Array<Vec2> without = assembly.nodes.force;
     assembly.pressure_Pa = pressure;
     evaluate_forces(assembly, team, Strength::unlimited);
     Vec2 on_left, on_right;

@@ -182,7 +182,7 @@ TEST_P(PlatesOf, MembranesMoveSidewaysOnlyAndCarryThePressureOverTheWholeHeight)
             for (const int b : sides[side]) assembly.nodes.displacement[assembly.bodies[b].centre_node].x = (side == 0 ? -1.0 : 1.0) * displaced;
         assembly.pressure_Pa = 0.0;
         evaluate_forces(assembly, team, Strength::real);
-        const std::vector<Vec2> without = assembly.nodes.force;
+        const Array<Vec2> without = assembly.nodes.force;
         assembly.pressure_Pa = 5e6;
         evaluate_forces(assembly, team, Strength::real);
         for (int side = 0; side < 2; ++side) {

@@ -52,4 +52,13 @@ private:
     std::vector<std::jthread> workers_;
 };
 
+/// Calls `work(range, thread)` on every thread of the team for its share of [0, count); without a team on the caller alone, for all.
+/// `work` must not throw.
+template <class Work>
+void in_shares(Team* team, int count, const Work& work) {
+    if (team == nullptr || team->size() == 1) return work(IndexRange{0, count}, 0);
+    const auto part = [&](int thread) { work(team->share(count, thread), thread); };
+    team->run(std::ref(part));   // a reference, so that no call allocates
+}
+
 }  // namespace feldspar

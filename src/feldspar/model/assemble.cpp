@@ -71,12 +71,6 @@ void add_nodes(Assembly& assembly, const GrainMesh& mesh) {
     for (const Vec2 X : places) assembly.nodes.add(X, kFree);
 }
 
-std::vector<Vec2> corners_of_cell(const Tessellation& cells, int g) {
-    std::vector<Vec2> corners;
-    for (const int v : cells.cells[g].vertices) corners.push_back(cells.vertices[v]);
-    return corners;
-}
-
 // The grain's outline; `nodes_of(k)` is where a contact on edge k hangs.
 template <class NodesOf>
 void add_edges(Assembly& assembly, Body& body, const Tessellation& cells, NodesOf nodes_of) {

@@ -1,5 +1,6 @@
 // Outline -> grain sizes -> packing -> Laguerre cells -> grain mesh, and what a user should know of the result.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -57,7 +58,43 @@ double smaller_side(const Outline& outline) {
     return std::min(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
 }
 
-Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint64_t seed) {
+/// The stages' way to threads and to the user.
+class Making {
+public:
+    explicit Making(const SpecimenControl& control) : control_(control), team_(std::max(1, control.threads)) {}
+
+    /// How many grains there will be; to be said before the first stage.
+    void expect(std::size_t grains) { grains_ = static_cast<int>(grains); }
+
+    /// Begins a stage. One of small pieces, each a matter of microseconds, is shared out only if it is long: otherwise the threads
+    /// would wait for each other longer than they work.
+    StageControl stage(std::string_view name, bool small_pieces) {
+        tell(name, 0.0);
+        StageControl stage;
+        if (!small_pieces || grains_ >= fewest_to_share) stage.team = &team_;
+        if (control_.progress) {
+            stage.tell = [this, name](double share) {
+                if (std::chrono::steady_clock::now() - last_told_ > std::chrono::milliseconds(100)) tell(name, share);
+            };
+        }
+        return stage;
+    }
+
+private:
+    static constexpr int fewest_to_share = 5000;
+
+    void tell(std::string_view name, double share) {
+        if (control_.progress) control_.progress({name, share, grains_});
+        last_told_ = std::chrono::steady_clock::now();
+    }
+
+    const SpecimenControl& control_;
+    int grains_ = 0;
+    Team team_;
+    std::chrono::steady_clock::time_point last_told_;
+};
+
+Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint64_t seed, Making& making) {
     const int count = grain_count(spec);
     const double largest = largest_diameter(spec.grain_sizes);
     if (count < 1 || largest > smaller_side(outline)) {
@@ -66,9 +103,10 @@ Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint
                                      1e3 * smaller_side(outline)),
                          "grains several times smaller than the specimen");
     }
+    making.expect(static_cast<std::size_t>(count));
     RandomStream sizes(seed, "grain sizes");
     RandomStream places(seed, "packing positions");
-    return pack_discs(outline, sample_diameters(spec.grain_sizes, count, sizes), places);
+    return pack_discs(outline, sample_diameters(spec.grain_sizes, count, sizes), places, making.stage("packing", true));
 }
 
 /// Twice the area between the boundary edges and the origin, which is the area of the outline, or of its chords on a disc.
@@ -87,11 +125,9 @@ void measure_cells(const Specimen& specimen, SpecimenQuality& quality) {
     quality.smallest_edge_m = std::numeric_limits<double>::infinity();
     double area = 0.0;
     long vertices = 0;
-    std::vector<Vec2> corners;
     for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
         const Cell& cell = specimen.cells.cells[g];
-        corners.clear();
-        for (const int v : cell.vertices) corners.push_back(specimen.cells.vertices[v]);
+        const std::vector<Vec2> corners = corners_of_cell(specimen.cells, g);
         area += signed_area(corners);
         vertices += std::ssize(corners);
         for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -154,20 +190,25 @@ int grain_count(const SpecimenSpec& spec) {
     return static_cast<int>(count);
 }
 
-Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed) {
+Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const SpecimenControl& control) {
     check_numbers(spec);
     Specimen specimen;
     specimen.spec = spec;
     specimen.seed = seed;
     specimen.outline = make_outline(spec.outline);
-    specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed) : load_packing(spec.packing_file, specimen.outline);
+    Making making(control);
+    specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
+    making.expect(specimen.packing.centres.size());
 
     SpecimenQuality& quality = specimen.quality;
     quality.mean_diameter_m = mean_diameter(specimen.packing);
     const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
+    making.stage("cells", true);
     specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
-    specimen.mesh = mesh_grains(specimen.cells, spec.triangles_per_grain);
-    if (spec.particles_per_grain > 0.0) specimen.filling = fill_grains(specimen.cells, spec.particles_per_grain, seed);
+    specimen.mesh = mesh_grains(specimen.cells, spec.triangles_per_grain, making.stage("mesh", true));
+    if (spec.particles_per_grain > 0.0) {
+        specimen.filling = fill_grains(specimen.cells, spec.particles_per_grain, seed, making.stage("filling", false));
+    }
 
     quality.grains = static_cast<int>(specimen.packing.centres.size());
     quality.merged_edges = specimen.cells.merged_edges;

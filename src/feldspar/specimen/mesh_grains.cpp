@@ -164,14 +164,14 @@ OneGrain mesh_finely(const std::vector<Vec2>& corners, Vec2 centre, int wanted_t
 
 }  // namespace
 
-GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain) {
+GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const StageControl& control) {
     GrainMesh mesh;
     mesh.node_begin.push_back(0);
     mesh.triangle_begin.push_back(0);
     mesh.edge_begin.push_back(0);
     for (int g = 0; g < std::ssize(cells.cells); ++g) {
-        std::vector<Vec2> corners;
-        for (const int v : cells.cells[g].vertices) corners.push_back(cells.vertices[v]);
+        if (g % 1000 == 0) control.done(static_cast<double>(g) / static_cast<double>(cells.cells.size()));
+        const std::vector<Vec2> corners = corners_of_cell(cells, g);
         const Vec2 centre = centre_of(corners, g);
         const OneGrain grain = triangles_per_grain > 0 ? mesh_finely(corners, centre, triangles_per_grain) : mesh_with_ring(corners, centre);
 

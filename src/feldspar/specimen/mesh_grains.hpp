@@ -2,6 +2,7 @@
 #pragma once
 
 #include "feldspar/specimen/specimen.hpp"
+#include "feldspar/specimen/stage_control.hpp"
 
 namespace feldspar {
 
@@ -23,6 +24,6 @@ namespace feldspar {
 /// A cell at a re-entrant corner of the outline may not be star-shaped about its centroid: its centre node then stands at the
 /// centroid of its kernel (the points that see all of it).
 /// @throws InputError if a cell has no kernel: the grains are too large for the outline's re-entrant corners
-GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain);
+GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const StageControl& control = {});
 
 }  // namespace feldspar

@@ -61,7 +61,7 @@ void sort_in_rows(Packing& packing, const Box& box) {
 
 }  // namespace
 
-Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random) {
+Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control) {
     Packing packing;
     for (const double d : diameters_m) packing.radii_m.push_back(0.5 * d);
     std::stable_sort(packing.radii_m.begin(), packing.radii_m.end(), std::greater<>());
@@ -76,7 +76,7 @@ Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, 
         grid.insert(i, packing.centres[i]);
     }
     if (!packing.centres.empty()) sort_in_rows(packing, box);
-    relax_discs(packing, outline);
+    relax_discs(packing, outline, {}, control);
     return packing;
 }
 

@@ -5,6 +5,7 @@
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/specimen/specimen.hpp"
+#include "feldspar/specimen/stage_control.hpp"
 
 namespace feldspar {
 
@@ -13,7 +14,7 @@ namespace feldspar {
 /// are near each other in memory.
 /// @throws InputError      if a disc finds no room: the grains are too large for the outline
 /// @throws NumericalError  from the relaxation
-Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random);
+Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control = {});
 
 /// When the relaxation may stop.
 struct RelaxationCriterion {
@@ -26,8 +27,9 @@ struct RelaxationCriterion {
 /// or of a disc and the outline, no cohesion, no friction. In the plane a contact of grains of size d under an even stress
 /// carries a force proportional to d, so equal stiffness means overlaps in proportion to d. Minimised by FIRE (Bitzek et al.,
 /// Phys. Rev. Lett. 97, 170201, 2006): damped dynamics whose time step grows while the motion goes downhill.
-/// Fills overlap_mean, overlap_max, residual and relaxation_steps. Same input, same bits.
+/// Fills overlap_mean, overlap_max, residual and relaxation_steps. Same input, same bits, for any
+/// number of threads.
 /// @throws NumericalError  if the criterion is not met in the most steps, or a disc has left the outline
-void relax_discs(Packing& packing, const Outline& outline, const RelaxationCriterion& criterion = {});
+void relax_discs(Packing& packing, const Outline& outline, const RelaxationCriterion& criterion = {}, const StageControl& control = {});
 
 }  // namespace feldspar

@@ -1,5 +1,6 @@
 // Relaxation of a packing of overlapping discs; the method stands in pack_discs.hpp.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -8,253 +9,309 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
+#include "feldspar/specimen/fire.hpp"
 #include "feldspar/specimen/outline.hpp"
 #include "feldspar/specimen/pack_discs.hpp"
+#include "feldspar/specimen/repulsion.hpp"
 
 namespace feldspar {
 namespace {
 
-/// Pairs that may touch before the list is made again: pairs of discs, and pairs of a disc and a piece of the outline.
-struct NearList {
-    std::vector<int> begin;    ///< discs + 1 offsets into other
-    std::vector<int> other;    ///< the discs of lower number near each disc
-    std::vector<int> at_wall;  ///< discs near a piece of the outline ...
-    std::vector<int> wall;     ///< ... and that piece: edge k as k, re-entrant corner k as -1 - k; 0 on a circle
+/// By how much discs may come closer to each other before the list of near pairs, or that of far ones, is made again / mean diameter.
+/// A few loose discs fly about to the last, so the near list, which costs in every step, is short and often sifted from the far one,
+/// for which the discs must be searched.
+constexpr double near_skin_share = 0.2, far_skin_share = 1.3;
+/// Discs whose sums are taken together, in the order of the discs: fixed, so that sums do not depend on the number of threads.
+constexpr int block = 1024;
+
+/// What one thread has of the neighbours: the discs of its share, each with those of lower number near it.
+struct Share {
+    IndexRange discs;
+    std::vector<DiscPair> far;          ///< pairs from which the near ones are sifted, in the same order
+    std::vector<DiscPair> near;         ///< by the first disc, then by the second: forces are added in this order
+    std::vector<DistantPush> distant;   ///< forces on discs of the shares before, in the order of the pairs
 };
 
-/// Sums of one evaluation of the forces; the stiffness is 1, so a force is an overlap (m).
+/// Pairs of a disc and a piece of the outline that may touch before the lists are made again.
+struct NearWall {
+    int disc = 0;
+    int wall = 0;   ///< edge k as k, re-entrant corner k as -1 - k; 0 on a circle
+};
+
+/// Sums over the contacts; the stiffness is 1, so a force is an overlap (m).
 struct Sums {
     double overlap = 0.0;
     double largest_overlap = 0.0;
+    double unbalanced = 0.0;   ///< of the lengths of the forces on the discs
     long touching = 0;
+
+    void touch(double by) {
+        overlap += by;
+        largest_overlap = std::max(largest_overlap, by);
+        ++touching;
+    }
+    void operator+=(const Sums& o) {
+        overlap += o.overlap;
+        largest_overlap = std::max(largest_overlap, o.largest_overlap);
+        unbalanced += o.unbalanced;
+        touching += o.touching;
+    }
 };
 
 class Relaxation {
 public:
-    Relaxation(Packing& packing, const Outline& outline)
+    Relaxation(Packing& packing, const Outline& outline, const StageControl& control)
         : outline_(outline),
+          control_(control),
           centres_(packing.centres),
           radii_(packing.radii_m),
-          box_(bounding_box(outline)),
+          count_(static_cast<int>(radii_.size())),
           force_(radii_.size()),
-          velocity_(radii_.size()),
-          grid_(box_, radii_) {
-        smallest_radius_ = *std::min_element(radii_.begin(), radii_.end());
+          grid_(bounding_box(outline), radii_),
+          shares_(static_cast<std::size_t>(control.team ? control.team->size() : 1)) {
+        const auto [least, largest] = std::minmax_element(radii_.begin(), radii_.end());
+        smallest_radius_ = *least;
+        largest_radius_ = *largest;
         mean_diameter_ = 2.0 * std::accumulate(radii_.begin(), radii_.end(), 0.0) / static_cast<double>(radii_.size());
-        skin_ = 0.15 * mean_diameter_;
+        skin_ = near_skin_share * mean_diameter_;
+        far_skin_ = far_skin_share * mean_diameter_;
         convex_ = outline.is_disc || is_convex_polygon(outline.vertices);
     }
 
     void run(const RelaxationCriterion& criterion, Packing& packing);
 
 private:
-    void find_neighbours();
+    void search_far();
+    void search_far(Share& share) const;
+    void sift_near();
     void find_walls();
-    bool list_is_stale() const;
-    Sums forces();
-    void push_apart(int i, Vec2& force, Sums& sums);
-    void push_from_wall(int i, int wall, Sums& sums);
-    void push(int i, Vec2 direction, double overlap, Sums& sums) {
-        force_[i] += overlap * direction;
-        sums.overlap += overlap;
-        sums.largest_overlap = std::max(sums.largest_overlap, overlap);
-        ++sums.touching;
-    }
-    double mean_unbalanced_force() const {
-        double sum = 0.0;
-        for (const Vec2 f : force_) sum += norm(f);
-        return sum / static_cast<double>(force_.size());
-    }
-    void advance(double& time_step, double& mixing, int& steps_downhill);
+    bool moved_beyond(double distance, const std::vector<Vec2>& since) const;
+    void forces();
+    double wall_overlap(NearWall pair, Vec2& inward) const;
+    Sums measure() const;
+    Sums measure(IndexRange discs) const;
+    void tell(double residual, double wanted);
 
     const Outline& outline_;
+    const StageControl& control_;
     std::vector<Vec2>& centres_;
     const std::vector<double>& radii_;
-    Box box_;
-    std::vector<Vec2> force_;     ///< m (stiffness 1)
-    std::vector<Vec2> velocity_;  ///< m per unit of time (mass 1)
-    std::vector<Vec2> listed_at_;
+    int count_;
+    std::vector<Vec2> force_;   ///< m (stiffness 1)
+    std::vector<Vec2> sifted_at_, searched_at_;   ///< where the discs were when the lists were made; empty before
     DiscGrid grid_;
-    NearList near_;
-    double smallest_radius_ = 0.0;
+    std::vector<Share> shares_;   ///< one a thread
+    std::vector<NearWall> walls_;
+    double smallest_radius_ = 0.0, largest_radius_ = 0.0;
     double mean_diameter_ = 0.0;
-    double skin_ = 0.0;
+    double skin_ = 0.0, far_skin_ = 0.0;
+    double first_residual_ = 0.0, share_done_ = 0.0;
     bool convex_ = true;
 };
 
-void Relaxation::find_neighbours() {
-    near_.begin.assign(1, 0);
-    near_.other.clear();
-    grid_.clear();
-    for (int i = 0; i < std::ssize(radii_); ++i) {
-        grid_.for_each_near(centres_[i], radii_[i] + skin_, [&](int j) {
-            const double reach = radii_[i] + radii_[j] + skin_;
+void Relaxation::search_far(Share& share) const {
+    share.far.clear();
+    for (int i = share.discs.begin; i < share.discs.end; ++i) {
+        const std::ptrdiff_t before = std::ssize(share.far);
+        grid_.for_each_near(centres_[i], radii_[i] + far_skin_, [&](int j) {
+            const double reach = radii_[i] + radii_[j] + far_skin_;
             const Vec2 apart = centres_[i] - centres_[j];
-            if (dot(apart, apart) < reach * reach) near_.other.push_back(j);
+            if (j < i && dot(apart, apart) < reach * reach) share.far.push_back({i, j});
         });
-        std::sort(near_.other.begin() + near_.begin.back(), near_.other.end());
-        near_.begin.push_back(static_cast<int>(near_.other.size()));
-        grid_.insert(i, centres_[i]);
+        std::sort(share.far.begin() + before, share.far.end(), [](DiscPair l, DiscPair r) { return l.b < r.b; });
     }
+}
+
+void Relaxation::search_far() {
+    grid_.clear();
+    for (int i = 0; i < count_; ++i) grid_.insert(i, centres_[i]);
+    in_shares(control_.team, count_, [&](IndexRange discs, int thread) {
+        shares_[thread].discs = discs;
+        search_far(shares_[thread]);
+    });
+    searched_at_ = centres_;
+}
+
+void Relaxation::sift_near() {
+    if (moved_beyond(0.5 * (far_skin_ - skin_), searched_at_)) search_far();
+    in_shares(control_.team, count_, [&](IndexRange, int thread) {
+        Share& share = shares_[thread];
+        share.near.resize(share.far.size());
+        std::size_t count = 0;
+        for (const DiscPair pair : share.far) {
+            const double reach = radii_[pair.a] + radii_[pair.b] + skin_;
+            const Vec2 apart = centres_[pair.a] - centres_[pair.b];
+            share.near[count] = pair;
+            count += dot(apart, apart) < reach * reach ? 1 : 0;
+        }
+        share.near.resize(count);
+    });
     find_walls();
-    listed_at_ = centres_;
+    sifted_at_ = centres_;
 }
 
 void Relaxation::find_walls() {
-    near_.at_wall.clear();
-    near_.wall.clear();
-    const auto add = [&](int i, int wall) {
-        near_.at_wall.push_back(i);
-        near_.wall.push_back(wall);
-    };
+    walls_.clear();
     if (outline_.is_disc) {
-        for (int i = 0; i < std::ssize(radii_); ++i) {
-            if (norm(centres_[i] - outline_.centre) + radii_[i] + skin_ > outline_.radius_m) add(i, 0);
+        for (int i = 0; i < count_; ++i) {
+            if (norm(centres_[i] - outline_.centre) + radii_[i] + skin_ > outline_.radius_m) walls_.push_back({i, 0});
         }
         return;
     }
     const auto& corners = outline_.vertices;
     const int n = static_cast<int>(corners.size());
+    const double far = largest_radius_ + skin_;
     for (int k = 0; k < n; ++k) {
         const Vec2 a = corners[k], b = corners[(k + 1) % n], c = corners[(k + 2) % n];
         const bool reentrant = cross(b - a, c - b) < 0.0;
-        const Vec2 middle = 0.5 * (a + b);
-        const double half = 0.5 * std::max(std::abs(b.x - a.x), std::abs(b.y - a.y));
-        grid_.for_each_near(middle, half + skin_, [&](int i) {
-            if (distance_to_segment(centres_[i], a, b) < radii_[i] + skin_) add(i, k);
-            if (reentrant && norm(centres_[i] - b) < radii_[i] + skin_) add(i, -1 - (k + 1) % n);
-        });
+        const Vec2 lower = {std::min(a.x, b.x) - far, std::min(a.y, b.y) - far}, upper = {std::max(a.x, b.x) + far, std::max(a.y, b.y) + far};
+        const std::ptrdiff_t before = std::ssize(walls_);
+        for (int i = 0; i < count_; ++i) {
+            const Vec2 p = centres_[i];
+            if (p.x < lower.x || p.x > upper.x || p.y < lower.y || p.y > upper.y) continue;
+            if (distance_to_segment(p, a, b) < radii_[i] + skin_) walls_.push_back({i, k});
+        }
+        const std::ptrdiff_t end = std::ssize(walls_);
+        for (std::ptrdiff_t w = before; reentrant && w < end; ++w) {
+            const int i = walls_[w].disc;
+            if (norm(centres_[i] - b) < radii_[i] + skin_) walls_.push_back({i, -1 - (k + 1) % n});
+        }
     }
 }
 
-bool Relaxation::list_is_stale() const {
-    const double limit = 0.25 * skin_ * skin_;
-    for (std::size_t i = 0; i < centres_.size(); ++i) {
-        const Vec2 moved = centres_[i] - listed_at_[i];
-        if (dot(moved, moved) > limit) return true;
-    }
-    return false;
+bool Relaxation::moved_beyond(double distance, const std::vector<Vec2>& since) const {
+    if (since.empty()) return true;
+    std::atomic<bool> beyond = false;
+    in_shares(control_.team, count_, [&](IndexRange discs, int) {
+        int movers = 0;
+        for (int i = discs.begin; i < discs.end; ++i) {
+            const Vec2 moved = centres_[i] - since[i];
+            movers += dot(moved, moved) > distance * distance ? 1 : 0;
+        }
+        if (movers > 0) beyond = true;
+    });
+    return beyond;
 }
 
-void Relaxation::push_apart(int i, Vec2& force, Sums& sums) {
-    const Vec2 centre = centres_[i];
-    const double radius = radii_[i];
-    for (int e = near_.begin[i]; e < near_.begin[i + 1]; ++e) {
-        const int j = near_.other[e];
-        const Vec2 apart = centre - centres_[j];
-        const double reach = radius + radii_[j];
-        const double distance2 = dot(apart, apart);
-        if (distance2 >= reach * reach) continue;
-        const double distance = std::sqrt(distance2);
-        const double overlap = reach - distance;
-        // Two centres in one place part along x: rare, and any direction will do as long as it is always the same.
-        const Vec2 f = distance > 0.0 ? (overlap / distance) * apart : Vec2{overlap, 0.0};
-        force += f;
-        force_[j] -= f;
-        sums.overlap += overlap;
-        sums.largest_overlap = std::max(sums.largest_overlap, overlap);
-        ++sums.touching;
-    }
-}
-
-void Relaxation::push_from_wall(int i, int wall, Sums& sums) {
+/// How far the disc overlaps the piece of the outline (m), 0 if it does not, and the direction back.
+double Relaxation::wall_overlap(NearWall pair, Vec2& inward) const {
+    const Vec2 centre = centres_[pair.disc];
+    const double radius = radii_[pair.disc];
     if (outline_.is_disc) {
-        const Vec2 out = centres_[i] - outline_.centre;
+        const Vec2 out = centre - outline_.centre;
         const double distance = norm(out);
-        const double overlap = distance + radii_[i] - outline_.radius_m;
-        if (overlap > 0.0 && distance > 0.0) push(i, (-1.0 / distance) * out, overlap, sums);
-        return;
+        const double overlap = distance + radius - outline_.radius_m;
+        if (overlap <= 0.0 || distance == 0.0) return 0.0;
+        inward = (-1.0 / distance) * out;
+        return overlap;
     }
     const auto& corners = outline_.vertices;
     const std::size_t n = corners.size();
-    if (wall < 0) {  // a re-entrant corner, where neither edge is faced
-        const std::size_t k = static_cast<std::size_t>(-1 - wall);
+    if (pair.wall < 0) {  // a re-entrant corner, where neither edge is faced
+        const std::size_t k = static_cast<std::size_t>(-1 - pair.wall);
         const Vec2 before = corners[k] - corners[(k + n - 1) % n], after = corners[(k + 1) % n] - corners[k];
-        const Vec2 apart = centres_[i] - corners[k];
+        const Vec2 apart = centre - corners[k];
         const double distance = norm(apart);
-        if (dot(apart, before) < 0.0 || dot(apart, after) > 0.0 || distance >= radii_[i] || distance == 0.0) return;
-        push(i, (1.0 / distance) * apart, radii_[i] - distance, sums);
-        return;
+        if (dot(apart, before) < 0.0 || dot(apart, after) > 0.0 || distance >= radius || distance == 0.0) return 0.0;
+        inward = (1.0 / distance) * apart;
+        return radius - distance;
     }
-    const Vec2 a = corners[static_cast<std::size_t>(wall)];
-    const Vec2 ab = corners[(static_cast<std::size_t>(wall) + 1) % n] - a;
+    const Vec2 a = corners[static_cast<std::size_t>(pair.wall)];
+    const Vec2 ab = corners[(static_cast<std::size_t>(pair.wall) + 1) % n] - a;
     const double length = norm(ab);
     const Vec2 along = (1.0 / length) * ab;
-    const double position = dot(centres_[i] - a, along);
-    const double height = cross(along, centres_[i] - a);  // positive inside
-    if (position < 0.0 || position > length || height >= radii_[i]) return;
+    const double position = dot(centre - a, along);
+    const double height = cross(along, centre - a);  // positive inside
+    if (position < 0.0 || position > length || height >= radius) return 0.0;
     // A centre beyond the edge is pushed back in, unless a non-convex outline has another arm there, to which it belongs.
-    if (height <= 0.0 && !convex_ && contains(outline_, centres_[i])) return;
-    push(i, rot90(along), radii_[i] - height, sums);
+    if (height <= 0.0 && !convex_ && contains(outline_, centre)) return 0.0;
+    inward = rot90(along);
+    return radius - height;
 }
 
-Sums Relaxation::forces() {
-    if (listed_at_.empty() || list_is_stale()) find_neighbours();
-    std::fill(force_.begin(), force_.end(), Vec2{});
-    Sums sums;
-    for (int i = 0; i < std::ssize(radii_); ++i) {
-        Vec2 own;
-        push_apart(i, own, sums);
-        force_[i] += own;
+/// Forces of the pairs in the order of their discs, whoever computes them: each thread adds those between its own discs, and hands
+/// those on discs of earlier shares over to their owners, who add them after their own. Then the walls.
+void Relaxation::forces() {
+    if (moved_beyond(0.5 * skin_, sifted_at_)) sift_near();
+    in_shares(control_.team, count_, [&](IndexRange discs, int thread) {
+        Share& share = shares_[thread];
+        share.distant.clear();
+        std::fill(force_.begin() + discs.begin, force_.begin() + discs.end, Vec2{});
+        push_apart(share.near, centres_, radii_, 1.0, force_, discs.begin, share.distant);
+    });
+    in_shares(control_.team, count_, [&](IndexRange discs, int thread) {
+        for (std::size_t later = static_cast<std::size_t>(thread) + 1; later < shares_.size(); ++later) {
+            for (const DistantPush& push : shares_[later].distant) {
+                if (push.disc >= discs.begin && push.disc < discs.end) force_[push.disc] += push.force;
+            }
+        }
+    });
+    for (const NearWall pair : walls_) {
+        Vec2 inward;
+        const double overlap = wall_overlap(pair, inward);
+        if (overlap > 0.0) force_[pair.disc] += overlap * inward;
     }
-    for (std::size_t w = 0; w < near_.wall.size(); ++w) push_from_wall(near_.at_wall[w], near_.wall[w], sums);
+}
+
+/// Sums over a block of discs: their forces, and their overlaps with discs of lower number.
+Sums Relaxation::measure(IndexRange discs) const {
+    Sums sums;
+    const auto at = std::find_if(shares_.begin(), shares_.end(), [&](const Share& s) { return discs.begin < s.discs.end; });
+    for (auto share = at; share != shares_.end() && share->discs.begin < discs.end; ++share) {
+        auto pair = std::lower_bound(share->near.begin(), share->near.end(), discs.begin, [](DiscPair p, int i) { return p.a < i; });
+        for (; pair != share->near.end() && pair->a < discs.end; ++pair) {
+            const Vec2 apart = centres_[pair->a] - centres_[pair->b];
+            const double reach = radii_[pair->a] + radii_[pair->b], distance2 = dot(apart, apart);
+            if (distance2 < reach * reach) sums.touch(reach - std::sqrt(distance2));
+        }
+    }
+    for (int i = discs.begin; i < discs.end; ++i) sums.unbalanced += norm(force_[i]);
     return sums;
 }
 
-/// One step of FIRE with the forces at hand. Stiffness and mass are 1, so a disc held by six others has omega^2 of about 6
-/// and the largest of the assembly stays below 12: a time step of 0.4 keeps clear of the limit 2 / omega.
-void Relaxation::advance(double& time_step, double& mixing, int& steps_downhill) {
-    constexpr double longest_step = 0.4, first_mixing = 0.1;
-    double power = 0.0, speed2 = 0.0, force2 = 0.0;
-    for (std::size_t i = 0; i < force_.size(); ++i) power += dot(force_[i], velocity_[i]);
-    if (power > 0.0) {
-        if (++steps_downhill > 5) {
-            time_step = std::min(1.1 * time_step, longest_step);
-            mixing *= 0.99;
-        }
-    } else {
-        for (std::size_t i = 0; i < force_.size(); ++i) {
-            if (steps_downhill > 0) centres_[i] -= (0.5 * time_step) * velocity_[i];
-            velocity_[i] = {};
-        }
-        steps_downhill = 0;
-        time_step *= 0.5;
-        time_step = std::max(time_step, 0.01);
-        mixing = first_mixing;
+Sums Relaxation::measure() const {
+    const int blocks = (count_ + block - 1) / block;
+    std::vector<Sums> parts(static_cast<std::size_t>(blocks));
+    in_shares(control_.team, blocks, [&](IndexRange range, int) {
+        for (int k = range.begin; k < range.end; ++k) parts[k] = measure(IndexRange{k * block, std::min(count_, (k + 1) * block)});
+    });
+    Sums sums;
+    for (const Sums& part : parts) sums += part;
+    for (const NearWall pair : walls_) {
+        Vec2 inward;
+        const double overlap = wall_overlap(pair, inward);
+        if (overlap > 0.0) sums.touch(overlap);
     }
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] += time_step * force_[i];
-        speed2 += dot(velocity_[i], velocity_[i]);
-        force2 += dot(force_[i], force_[i]);
+    return sums;
+}
+
+/// The residual falls by and large as a power of the steps, with ups and downs: the share done is told on its logarithm, and never falls.
+void Relaxation::tell(double residual, double wanted) {
+    first_residual_ = std::max(first_residual_, residual);
+    if (residual > wanted && wanted > 0.0 && first_residual_ > wanted) {
+        share_done_ = std::max(share_done_, std::log(first_residual_ / residual) / std::log(first_residual_ / wanted));
     }
-    const double turn = force2 > 0.0 ? mixing * std::sqrt(speed2 / force2) : 0.0;
-    const double farthest = 0.1 * smallest_radius_;
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] = (1.0 - mixing) * velocity_[i] + turn * force_[i];
-        Vec2 move = time_step * velocity_[i];
-        const double length2 = dot(move, move);
-        if (length2 > farthest * farthest) move *= farthest / std::sqrt(length2);
-        centres_[i] += move;
-    }
+    control_.done(share_done_);
 }
 
 void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
-    double time_step = 0.1, mixing = 0.1;
-    int steps_downhill = 0;
+    Fire fire(radii_.size(), {.shortest_step = 0.01, .steps_back = true, .farthest_move_m = 0.1 * smallest_radius_});
     for (int step = 0; step <= criterion.most_steps; ++step) {
-        const Sums sums = forces();
-        if (step % 10 != 0) {  // the criterion costs a root for each disc, so it is judged at every tenth step
-            advance(time_step, mixing, steps_downhill);
+        forces();
+        if (step % 10 != 0) {  // the criterion costs another look at all pairs, so it is judged at every tenth step
+            fire.advance(centres_, force_, control_.team);
             continue;
         }
+        const Sums sums = measure();
         const double contacts = static_cast<double>(std::max(1L, sums.touching));
         const double contact_force = sums.overlap / contacts;
-        packing.residual = contact_force > 0.0 ? mean_unbalanced_force() / contact_force : 0.0;
+        packing.residual = contact_force > 0.0 ? sums.unbalanced / static_cast<double>(count_) / contact_force : 0.0;
         packing.overlap_mean = contact_force / mean_diameter_;
         packing.overlap_max = sums.largest_overlap / mean_diameter_;
         packing.relaxation_steps = step;
         if (packing.residual <= criterion.residual || packing.overlap_mean <= criterion.loose_overlap) return;
-        advance(time_step, mixing, steps_downhill);
+        tell(packing.residual, criterion.residual);
+        fire.advance(centres_, force_, control_.team);
     }
     throw NumericalError(fmt::format("the relaxation of the packing stopped after {} steps at a residual of {:.2e} (allowed {:.1e})",
                                      criterion.most_steps, packing.residual, criterion.residual));
@@ -262,9 +319,9 @@ void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
 
 }  // namespace
 
-void relax_discs(Packing& packing, const Outline& outline, const RelaxationCriterion& criterion) {
+void relax_discs(Packing& packing, const Outline& outline, const RelaxationCriterion& criterion, const StageControl& control) {
     if (packing.centres.empty()) return;
-    Relaxation(packing, outline).run(criterion, packing);
+    Relaxation(packing, outline, control).run(criterion, packing);
     for (std::size_t i = 0; i < packing.centres.size(); ++i) {
         if (!contains(outline, packing.centres[i])) {
             throw NumericalError(fmt::format("disc {} left the outline during the relaxation, at ({:.6g}, {:.6g}) m", i,

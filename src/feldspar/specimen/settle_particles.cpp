@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/specimen/fire.hpp"
+#include "feldspar/specimen/repulsion.hpp"
 
 namespace feldspar {
 namespace {
@@ -21,57 +23,84 @@ constexpr double wall_clearance = 1.5;
 /// Random places among which a disc takes the roomiest, and how often a disc that does not fit is put elsewhere.
 constexpr int tries_per_disc = 12, most_moves = 5;
 
+/// By how much discs may come closer to each other before the list of near pairs is made again / common diameter.
+constexpr double skin_share = 0.4;
+
 class Settling {
 public:
     Settling(GrainRing& ring, std::span<const Vec2> corners)
-        : ring_(ring), corners_(corners), force_(ring.centres.size()), velocity_(ring.centres.size()) {}
+        : ring_(ring),
+          force_(ring.centres.size()),
+          fire_(ring.centres.size(), {.shortest_step = 0.05, .steps_back = false, .farthest_move_m = 0.1 * ring.diameter_m}),
+          skin_(skin_share * ring.diameter_m) {
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+            walls_.push_back({a, b, norm(b - a)});
+        }
+    }
 
-    /// FIRE with unit masses and stiffness until the largest force falls under 1e-3 diameters, or after so many steps.
+    /// FIRE until the largest force falls under 1e-3 diameters, or after so many steps.
     void run(double factor, int steps);
+
+    /// Sums of each disc's overlaps with all others, in m.
+    std::vector<double> overlaps();
 
 private:
     void find_neighbours(double factor);
-    bool list_is_stale() const;
+    bool list_is_stale(double factor) const;
     double forces(double factor);
     void push_from_walls(int i, double factor);
     void hold(int i);
-    void advance();
+
+    /// An edge of the cell, which has the discs on its left.
+    struct Wall {
+        Vec2 a, b;
+        double length = 0.0;
+    };
 
     GrainRing& ring_;
-    std::span<const Vec2> corners_;
-    std::vector<Vec2> force_, velocity_, listed_at_;
-    std::vector<std::pair<int, int>> near_;
-    double skin_ = 0.0, time_step_ = 0.1, mixing_ = 0.1;
-    int steps_downhill_ = 0;
+    std::vector<Wall> walls_;
+    std::vector<Vec2> force_;
+    Fire fire_;
+    double skin_;
+    std::vector<DiscPair> near_;   ///< by the second disc, then by the first
+    std::vector<DistantPush> nothing_distant_;
+    std::vector<Vec2> listed_at_;  ///< where the discs were and how far they reached when the list was made; empty before
+    std::vector<double> listed_reach_;
 };
 
 void Settling::find_neighbours(double factor) {
-    skin_ = 0.4 * ring_.diameter_m;
     near_.clear();
     for (int i = 0; i < std::ssize(ring_.centres); ++i) {
         for (int j = i + 1; j < std::ssize(ring_.centres); ++j) {
             const Vec2 apart = ring_.centres[j] - ring_.centres[i];
             const double far = factor * (ring_.radii_m[i] + ring_.radii_m[j]) + skin_;
-            if (dot(apart, apart) < far * far) near_.emplace_back(i, j);
+            if (dot(apart, apart) < far * far) near_.push_back({j, i});
         }
     }
     listed_at_ = ring_.centres;
+    listed_reach_.clear();
+    for (const double r : ring_.radii_m) listed_reach_.push_back(factor * r);
 }
 
-bool Settling::list_is_stale() const {
-    for (std::size_t i = 0; i < ring_.centres.size(); ++i) {
+/// A pair that is not in the list overlaps at the earliest when its two discs have used up the skin, by moving or by growing.
+bool Settling::list_is_stale(double factor) const {
+    if (listed_at_.empty()) return true;
+    int movers = 0;
+    for (std::size_t i = 0; i < listed_at_.size(); ++i) {
         const Vec2 moved = ring_.centres[i] - listed_at_[i];
-        if (dot(moved, moved) > 0.25 * skin_ * skin_) return true;
+        const double room = 0.5 * skin_ - (factor * ring_.radii_m[i] - listed_reach_[i]);
+        movers += room < 0.0 || dot(moved, moved) > room * room ? 1 : 0;
     }
-    return false;
+    return movers > 0;
 }
 
 void Settling::push_from_walls(int i, double factor) {
     const double radius = std::max(factor * factor, wall_clearance) * ring_.radii_m[i];
-    for (std::size_t k = 0; k < corners_.size(); ++k) {
-        const Vec2 a = corners_[k], b = corners_[(k + 1) % corners_.size()], p = ring_.centres[i];
-        if (cross(b - a, p - a) > radius * norm(b - a)) continue;
-        const Vec2 out = ring_.centres[i] - closest_on_segment(ring_.centres[i], corners_[k], corners_[(k + 1) % corners_.size()]);
+    const Vec2 p = ring_.centres[i];
+    for (const Wall& wall : walls_) {
+        if (cross(wall.b - wall.a, p - wall.a) > radius * wall.length) continue;
+        const Vec2 out = p - closest_on_segment(p, wall.a, wall.b);
         const double distance = norm(out);
         if (distance < radius && distance > 0.0) force_[i] += ((radius - distance) / distance) * out;
     }
@@ -82,18 +111,9 @@ void Settling::hold(int i) { force_[i] = dot(force_[i], ring_.along[i]) * ring_.
 
 /// @returns the square of the largest force (m^2, stiffness 1)
 double Settling::forces(double factor) {
-    if (listed_at_.empty() || list_is_stale()) find_neighbours(factor);
+    if (list_is_stale(factor)) find_neighbours(factor);
     std::fill(force_.begin(), force_.end(), Vec2{});
-    for (const auto& [i, j] : near_) {
-        const Vec2 apart = ring_.centres[j] - ring_.centres[i];
-        const double distance2 = dot(apart, apart);
-        const double reach = factor * (ring_.radii_m[i] + ring_.radii_m[j]);
-        if (distance2 >= reach * reach) continue;
-        const double distance = std::sqrt(distance2);
-        const Vec2 push = distance > 0.0 ? ((reach - distance) / distance) * apart : Vec2{reach, 0.0};
-        force_[i] -= push;
-        force_[j] += push;
-    }
+    push_apart(near_, ring_.centres, ring_.radii_m, factor, force_, 0, nothing_distant_);
     double largest2 = 0.0;
     for (int i = 0; i < std::ssize(ring_.centres); ++i) {
         if (ring_.places[i] == ParticlePlace::interior) {
@@ -106,43 +126,23 @@ double Settling::forces(double factor) {
     return largest2;
 }
 
-void Settling::advance() {
-    double power = 0.0, speed2 = 0.0, force2 = 0.0;
-    for (std::size_t i = 0; i < force_.size(); ++i) power += dot(force_[i], velocity_[i]);
-    if (power > 0.0) {
-        if (++steps_downhill_ > 5) {
-            time_step_ = std::min(1.1 * time_step_, 0.4);
-            mixing_ *= 0.99;
-        }
-    } else {
-        std::fill(velocity_.begin(), velocity_.end(), Vec2{});
-        steps_downhill_ = 0;
-        time_step_ = std::max(0.5 * time_step_, 0.05);
-        mixing_ = 0.1;
-    }
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] += time_step_ * force_[i];
-        speed2 += dot(velocity_[i], velocity_[i]);
-        force2 += dot(force_[i], force_[i]);
-    }
-    const double turn = force2 > 0.0 ? mixing_ * std::sqrt(speed2 / force2) : 0.0;
-    const double farthest = 0.1 * ring_.diameter_m;
-    for (std::size_t i = 0; i < force_.size(); ++i) {
-        velocity_[i] = (1.0 - mixing_) * velocity_[i] + turn * force_[i];
-        Vec2 move = time_step_ * velocity_[i];
-        const double length = norm(move);
-        if (length > farthest) move *= farthest / length;
-        ring_.centres[i] += move;
-    }
-}
-
 void Settling::run(double factor, int steps) {
-    listed_at_.clear();
     const double enough = 1e-3 * ring_.diameter_m;
     for (int step = 0; step < steps; ++step) {
         if (forces(factor) < enough * enough) return;
-        advance();
+        fire_.advance(ring_.centres, force_);
     }
+}
+
+std::vector<double> Settling::overlaps() {
+    if (list_is_stale(1.0)) find_neighbours(1.0);
+    std::vector<double> sums(ring_.centres.size());
+    for (const auto [j, i] : near_) {
+        const double overlap = std::max(0.0, ring_.radii_m[i] + ring_.radii_m[j] - norm(ring_.centres[j] - ring_.centres[i]));
+        sums[i] += overlap;
+        sums[j] += overlap;
+    }
+    return sums;
 }
 
 /// A random place in the cell that keeps clear of the walls and of all discs as well as any of some tries.
@@ -215,19 +215,6 @@ void resize(GrainRing& ring, int i, double radius) {
     ring.radii_m[i] = radius;
 }
 
-/// Sums of each disc's overlaps with all others, in m.
-std::vector<double> overlaps(const GrainRing& ring) {
-    std::vector<double> sums(ring.centres.size());
-    for (int i = 0; i < std::ssize(ring.centres); ++i) {
-        for (int j = i + 1; j < std::ssize(ring.centres); ++j) {
-            const double overlap = std::max(0.0, ring.radii_m[i] + ring.radii_m[j] - norm(ring.centres[j] - ring.centres[i]));
-            sums[i] += overlap;
-            sums[j] += overlap;
-        }
-    }
-    return sums;
-}
-
 /// Gives each free disc the size at which it is just held by its neighbours, and lets all settle.
 void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
     const double d = ring.diameter_m;
@@ -237,7 +224,7 @@ void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
     Settling settling(ring, corners);
     for (int step = 0; step < growth_steps; ++step) {
         settling.run(1.0, 20);
-        const std::vector<double> overlap = overlaps(ring);
+        const std::vector<double> overlap = settling.overlaps();
         for (int i = 0; i < std::ssize(ring.centres); ++i) {
             if (ring.places[i] == ParticlePlace::vertex) continue;
             const double missing = wanted_overlap - overlap[i] / (4.0 * d);
@@ -250,18 +237,25 @@ void grow_discs(GrainRing& ring, std::span<const Vec2> corners) {
 
 }  // namespace
 
-void fill_ring(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random) {
+void add_inner_discs(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random) {
     const Box box = bounding_box(corners);
     for (int i = 0; i < count; ++i) add_inner_disc(ring, roomiest_place(ring, corners, box, random));
+}
+
+bool settle_discs(GrainRing& ring, std::span<const Vec2> corners, RandomStream& random) {
+    const Box box = bounding_box(corners);
+    bool used = false;
     Settling(ring, corners).run(spreading, 60);
     for (int moves = most_moves;; --moves) {
         grow_discs(ring, corners);
         clear_walls(ring, corners);
         const int worst = worst_disc(ring, corners);
-        if (worst < 0 || ring.places[worst] == ParticlePlace::vertex) return;
+        if (worst < 0 || ring.places[worst] == ParticlePlace::vertex) return used;
         const bool inner = ring.places[worst] == ParticlePlace::interior;
         erase_disc(ring, worst);
-        if (inner && moves > 0) add_inner_disc(ring, roomiest_place(ring, corners, box, random));
+        if (!inner || moves <= 0) continue;
+        add_inner_disc(ring, roomiest_place(ring, corners, box, random));
+        used = true;
     }
 }
 

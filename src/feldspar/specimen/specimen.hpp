@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "feldspar/base/vec2.hpp"
@@ -89,6 +91,9 @@ struct Tessellation {
     int merged_edges = 0;        ///< short edges that were merged
 };
 
+/// The places (m) of the vertices of cell `cell`, counter-clockwise, in the cell's order.
+std::vector<Vec2> corners_of_cell(const Tessellation& cells, int cell);
+
 /// Nodes and triangles inside the cells. Nodes belong to one grain each and are contiguous by grain: first the cell's
 /// vertices in the cell's order, then the centroid, then the inner ring.
 struct GrainMesh {
@@ -171,10 +176,23 @@ struct Specimen {
     SpecimenQuality quality;
 };
 
-/// Packs, tessellates and meshes. Deterministic: the same spec and seed give the same bits.
+/// What the making of a specimen tells about itself, at most ten times a second but at the beginning of every stage.
+struct SpecimenProgress {
+    std::string_view stage;   ///< "packing", "cells", "mesh", "filling"
+    double share = 0.0;       ///< of the stage that is done, 0 to 1: an estimate
+    int grains = 0;
+};
+
+/// What the caller decides about the making itself; none of it changes a specimen.
+struct SpecimenControl {
+    int threads = 1;                                        ///< at least 1
+    std::function<void(const SpecimenProgress&)> progress;  ///< may be empty; may throw, which ends the making
+};
+
+/// Packs, tessellates and meshes. Deterministic: the same spec and seed give the same bits, for any number of threads.
 /// @throws InputError     for impossible specs (grains larger than the specimen, a self-crossing outline, ...)
 /// @throws NumericalError when the relaxation cannot reach its criterion
-Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed);
+Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const SpecimenControl& control = {});
 
 /// Number of grains that the porosity asks for: round((1 - porosity) A / (pi dmean^2 / 4)).
 int grain_count(const SpecimenSpec& spec);

@@ -57,6 +57,13 @@ Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline,
     return result;
 }
 
+std::vector<Vec2> corners_of_cell(const Tessellation& cells, int cell) {
+    std::vector<Vec2> corners;
+    corners.reserve(cells.cells[cell].vertices.size());
+    for (const int v : cells.cells[cell].vertices) corners.push_back(cells.vertices[v]);
+    return corners;
+}
+
 void check_conforming(const Tessellation& cells) {
     struct Side { int low, high, cell, neighbour; bool forward; };
     std::vector<Side> sides;

@@ -279,6 +279,23 @@ TEST(Filling, SameSeedSameBits) {
     EXPECT_NE(a.centres, c.centres);
 }
 
+/// Enough grains that some put a particle elsewhere, which the grains after them must hear of.
+TEST(Filling, SameBitsForAnyNumberOfThreads) {
+    const Specimen s = make_specimen(rectangle(0.04, 0.06), 1);
+    const Filling alone = fill_grains(s.cells, 26.0, 7);
+    for (const int threads : {2, 3}) {
+        Team team(threads);
+        std::vector<double> shares;
+        const Filling together = fill_grains(s.cells, 26.0, 7, {.team = &team, .tell = [&](double share) { shares.push_back(share); }});
+        EXPECT_EQ(together.centres, alone.centres);
+        EXPECT_EQ(together.radii_m, alone.radii_m);
+        EXPECT_EQ(together.particle_begin, alone.particle_begin);
+        EXPECT_EQ(together.inside.size(), alone.inside.size());
+        EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+        EXPECT_EQ(shares.back(), 1.0);
+    }
+}
+
 /// A grain of twice the area has about twice as many: the ring's discs are whole, so single grains scatter by two or three.
 TEST(Filling, CountGoesWithTheArea) {
     const Specimen s = make_specimen(filled(rectangle(0.04, 0.06)), 1);

@@ -117,5 +117,32 @@ TEST(MakeSpecimen, ImpossibleSpecsAreRefused) {
     refused(rectangle(0.002, 0.002));
 }
 
+TEST(MakeSpecimen, SameBitsForAnyNumberOfThreads) {
+    SpecimenSpec spec = rectangle(0.15, 0.3);   // enough grains that the packing is shared out
+    const Specimen alone = make_specimen(spec, 1), together = make_specimen(spec, 1, {.threads = 3, .progress = {}});
+    EXPECT_TRUE(same_bits(alone.packing.centres, together.packing.centres));
+    EXPECT_EQ(alone.packing.residual, together.packing.residual);
+    EXPECT_TRUE(same_bits(alone.cells.vertices, together.cells.vertices));
+    EXPECT_TRUE(same_bits(alone.mesh.nodes, together.mesh.nodes));
+}
+
+TEST(MakeSpecimen, TellsItsStagesInTurn) {
+    SpecimenSpec spec = rectangle(0.03, 0.03);
+    spec.particles_per_grain = 26.36;
+    std::vector<std::string> stages;
+    make_specimen(spec, 1, {.threads = 1, .progress = [&](const SpecimenProgress& p) {
+                                EXPECT_GE(p.share, 0.0);
+                                EXPECT_LE(p.share, 1.0);
+                                EXPECT_EQ(p.grains, grain_count(spec));
+                                if (stages.empty() || stages.back() != p.stage) stages.emplace_back(p.stage);
+                            }});
+    EXPECT_EQ(stages, (std::vector<std::string>{"packing", "cells", "mesh", "filling"}));
+}
+
+TEST(MakeSpecimen, CanBeEndedFromOutside) {
+    const auto stop = [](const SpecimenProgress&) { throw Interrupted(); };
+    EXPECT_THROW(make_specimen(rectangle(0.03, 0.03), 1, {.threads = 2, .progress = stop}), Interrupted);
+}
+
 }  // namespace
 }  // namespace feldspar

@@ -70,6 +70,44 @@ TEST(Packing, OverlapIsSpreadEvenly) {
     EXPECT_NEAR(area[0] / area[1], 1.0, 0.02);
 }
 
+/// The packing's discs thrown about by a third of their radius and relaxed again.
+Packing shaken(const Specimen& s, const StageControl& control) {
+    Packing packing = s.packing;
+    RandomStream random(1, "shaking");
+    for (std::size_t i = 0; i < packing.centres.size(); ++i) {
+        const double r = packing.radii_m[i] / 3.0, x = random.uniform(-r, r);
+        packing.centres[i] += {x, random.uniform(-r, r)};
+    }
+    relax_discs(packing, s.outline, {}, control);
+    return packing;
+}
+
+TEST(Packing, SameBitsForAnyNumberOfThreads) {
+    for (const SpecimenSpec& spec : {rectangle(), disc(), ell()}) {
+        const Specimen s = make_specimen(spec, 1);
+        const Packing alone = shaken(s, {});
+        for (const int threads : {2, 5}) {
+            Team team(threads);
+            const Packing together = shaken(s, {.team = &team, .tell = {}});
+            EXPECT_EQ(together.centres, alone.centres);
+            EXPECT_EQ(together.overlap_mean, alone.overlap_mean);
+            EXPECT_EQ(together.overlap_max, alone.overlap_max);
+            EXPECT_EQ(together.residual, alone.residual);
+        }
+    }
+}
+
+TEST(Packing, TellsAShareThatNeverFalls) {
+    const Specimen s = make_specimen(rectangle(), 1);
+    std::vector<double> shares;
+    shaken(s, {.team = nullptr, .tell = [&](double share) { shares.push_back(share); }});
+    ASSERT_GT(shares.size(), 5u);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_GE(shares.front(), 0.0);
+    EXPECT_GT(shares.back(), 0.8);
+    EXPECT_LE(shares.back(), 1.0);
+}
+
 TEST(Packing, TwoDiscsInABoxComeToRestSideBySide) {
     const Outline outline = make_outline(rectangle(0.004, 0.002).outline);
     Packing packing;
