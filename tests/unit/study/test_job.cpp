@@ -42,6 +42,7 @@ TEST(Job, ReadsTheGuidesCompleteJob) {
     EXPECT_EQ(job.tests[0].kind, TestKind::uniaxial_compression);
     EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
     EXPECT_EQ(job.threads, 0);
+    EXPECT_EQ(job.at_once, 0);
     EXPECT_EQ(job.laboratory.at("UCS"), 122.1e6);
 }
 
@@ -229,6 +230,7 @@ void expect_same(const Job& a, const Job& b) {
     }
     EXPECT_EQ(a.seeds, b.seeds);
     EXPECT_EQ(a.threads, b.threads);
+    EXPECT_EQ(a.at_once, b.at_once);
     EXPECT_EQ(a.laboratory, b.laboratory);
 }
 
@@ -259,7 +261,7 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
         edited("kind = \"uniaxial-compression\"",
                "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = "
                "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\""));
-    expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3"));
+    expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));
     expect_round_trip(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
