@@ -12,23 +12,11 @@
 #include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/specimen.hpp"
+#include "../table7.hpp"
 
 namespace feldspar::fixtures {
 
 inline GrainMaterial granite() { return {25.8e9, 0.23, 2650.0}; }
-
-/// Table 7 of the paper.
-inline ContactMaterial table7() {
-    ContactMaterial c;
-    c.Kn_Pa_m = 18e13;
-    c.eta = 0.28;
-    c.sigma_nt_Pa = 8.5e6;
-    c.tau_Pa = 29.75e6;
-    c.mu = 0.40;
-    c.Gfn_J_m2 = 20.0;
-    c.Gfs_J_m2 = 800.0;
-    return c;
-}
 
 inline SpecimenSpec rectangle(double width_m, double height_m) {
     SpecimenSpec spec;

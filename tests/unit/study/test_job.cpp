@@ -8,10 +8,22 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/job.hpp"
 #include "feldspar/study/job_template.hpp"
+#include "../../table7.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {
 namespace {
+
+void expect_table7(const ContactMaterial& contact) {
+    const ContactMaterial table7 = fixtures::table7();
+    EXPECT_EQ(contact.Kn_Pa_m, table7.Kn_Pa_m);
+    EXPECT_EQ(contact.eta, table7.eta);
+    EXPECT_EQ(contact.sigma_nt_Pa, table7.sigma_nt_Pa);
+    EXPECT_EQ(contact.tau_Pa, table7.tau_Pa);
+    EXPECT_EQ(contact.mu, table7.mu);
+    EXPECT_EQ(contact.Gfn_J_m2, table7.Gfn_J_m2);
+    EXPECT_EQ(contact.Gfs_J_m2, table7.Gfs_J_m2);
+}
 
 TEST(Job, ReadsTheGuidesCompleteJob) {
     const Job job = parse_job(sample_job, "somewhere/augig.toml");
@@ -29,13 +41,7 @@ TEST(Job, ReadsTheGuidesCompleteJob) {
     EXPECT_EQ(job.variants.front().grain.nu, 0.23);
     EXPECT_EQ(job.variants.front().grain.density_kg_m3, 2650.0);
     EXPECT_EQ(job.variants.front().contact.law, ContactLaw::bilinear);
-    EXPECT_EQ(job.variants.front().contact.Kn_Pa_m, 18e13);
-    EXPECT_EQ(job.variants.front().contact.eta, 0.28);
-    EXPECT_EQ(job.variants.front().contact.sigma_nt_Pa, 8.5e6);
-    EXPECT_EQ(job.variants.front().contact.tau_Pa, 29.75e6);
-    EXPECT_EQ(job.variants.front().contact.mu, 0.4);
-    EXPECT_EQ(job.variants.front().contact.Gfn_J_m2, 20.0);
-    EXPECT_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
+    expect_table7(job.variants.front().contact);
     EXPECT_EQ(job.variants.front().numerics.kind, NumericsKind::adaptive);
     EXPECT_EQ(job.variants.front().numerics.accuracy, 0.005);
     ASSERT_EQ(job.tests.size(), 1u);
@@ -313,13 +319,7 @@ TEST(Examples, TheAugigGraniteIsTable7) {
     const std::filesystem::path folder = std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples/augig";
     for (const char* file : {"job.toml", "short.toml"}) {
         const Job job = read_job(folder / file);
-        EXPECT_EQ(job.variants.front().contact.sigma_nt_Pa, 8.5e6);
-        EXPECT_EQ(job.variants.front().contact.tau_Pa, 29.75e6);
-        EXPECT_EQ(job.variants.front().contact.mu, 0.40);
-        EXPECT_EQ(job.variants.front().contact.Gfn_J_m2, 20.0);
-        EXPECT_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
-        EXPECT_EQ(job.variants.front().contact.Kn_Pa_m, 18e13);
-        EXPECT_EQ(job.variants.front().contact.eta, 0.28);
+        expect_table7(job.variants.front().contact);
         EXPECT_EQ(job.laboratory.at("UCS"), 122.1e6);
     }
     EXPECT_EQ(read_job(folder / "job.toml").seeds.size(), 5u);
