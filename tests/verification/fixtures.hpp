@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/specimen.hpp"
+#include "feldspar/step/step.hpp"
 #include "../table7.hpp"
 
 namespace feldspar::fixtures {
@@ -126,6 +128,26 @@ inline RunControl threads(int count) {
     RunControl control;
     control.threads = count;
     return control;
+}
+
+/// Steps a vibrating body until `amplitude()` has changed its sign five times. @return the mean time between two of these changes,
+/// half a period, with each placed between its two steps; nothing if it does not vibrate
+template <class Amplitude>
+std::optional<double> half_period(Assembly& assembly, Team& team, const StepSettings& settings, Amplitude amplitude) {
+    PlatenWork work;
+    double before = 0.0, first = 0.0, last = 0.0;
+    int crossings = 0;
+    for (int k = 0; crossings < 5 && k < 100000; ++k) {
+        advance(assembly, team, settings, k, 1, work);
+        const double now = amplitude();
+        if (k > 0 && (before < 0.0) != (now < 0.0)) {
+            last = (k + now / (before - now)) * settings.dt;
+            if (crossings++ == 0) first = last;
+        }
+        before = now;
+    }
+    if (crossings < 5) return std::nullopt;
+    return (last - first) / 4.0;
 }
 
 }  // namespace feldspar::fixtures
