@@ -164,7 +164,7 @@ private:
             result.variant = run.variant->name;
             if (!result.history.empty()) {   // else interrupted before the first row
                 write_history_csv(*directory_, result, provenance_);
-                write_vtu(*directory_, result);
+                write_vtu(*directory_, result, *control.more_threads);
             }
             return result;
         });

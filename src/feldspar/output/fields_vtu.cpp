@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "feldspar/base/parallel.hpp"
 #include "feldspar/output/crack_geometry.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
@@ -130,7 +131,7 @@ Times times(const std::vector<Snapshot>& snapshots) {
 
 }  // namespace
 
-void write_vtu(const RunDirectory& directory, const TestResult& result) {
+void write_vtu(const RunDirectory& directory, const TestResult& result, int threads) {
     if (!result.specimen) return;
     const std::string stem = test_stem(result);
     const std::string folder = stem + "-vtu/";
@@ -143,17 +144,20 @@ void write_vtu(const RunDirectory& directory, const TestResult& result) {
         "strain at the break). timestep = {}. -->\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
         stem, sign_convention, time.meaning);
-    for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
+    const auto grains_file = [&](std::size_t n) { return fmt::format("{}grains-{:03}.vtu", folder, n); };
+    const auto cracks_file = [&](std::size_t n) { return fmt::format("{}cracks-{:03}.vtu", folder, n); };
+    side_by_side(static_cast<int>(result.snapshots.size()), threads, [&](int number) {
+        const auto n = static_cast<std::size_t>(number);
         const Snapshot& snapshot = result.snapshots[n];
         // numbers only: the label is free text, which an XML comment could not always hold
         const std::string comment = fmt::format("{}, snapshot {}, step {}, axial strain {}; {}", stem, n, snapshot.step,
                                                 snapshot.axial_strain, sign_convention);
-        const std::string grains = fmt::format("{}grains-{:03}.vtu", folder, n);
-        const std::string cracks = fmt::format("{}cracks-{:03}.vtu", folder, n);
-        directory.write_text(grains, grains_vtu(undeformed, snapshot, comment));
-        directory.write_text(cracks, cracks_vtu(result, faces, snapshot, comment));
-        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time.values[n], grains);
-        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"1\" file=\"{}\"/>\n", time.values[n], cracks);
+        directory.write_text(grains_file(n), grains_vtu(undeformed, snapshot, comment));
+        directory.write_text(cracks_file(n), cracks_vtu(result, faces, snapshot, comment));
+    });
+    for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time.values[n], grains_file(n));
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"1\" file=\"{}\"/>\n", time.values[n], cracks_file(n));
     }
     directory.write_text(stem + ".pvd", collection + "</Collection>\n</VTKFile>\n");
 }
