@@ -12,7 +12,7 @@ namespace feldspar {
 namespace {
 
 // From here on a test gets all threads: they work together as well as apart, and many tests of this size at once would fill the
-// memory (some 100 MB each).
+// memory (some 140 MB each).
 constexpr int large_body_count = 20000;
 
 // With fewer bodies than this a thread waits at the barriers of a step for longer than it works.
