@@ -36,8 +36,9 @@ Assembly granite(GrainKind grains, bool disc) {
     Assembly assembly = assemble(make_specimen(spec, 1), model, {25.8e9, 0.23, 2650.0}, contact);
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     for (const Body& body : assembly.bodies) {
-        const int end = body.kind == BodyKind::rigid ? body.node_begin + 1 : body.node_end;   // rigid bodies do not turn
-        for (int n = body.node_begin; n < end; ++n) assembly.nodes.displacement[n] = 1e-4 * assembly.nodes.reference[n];
+        const bool rigid = body.kind == BodyKind::rigid;   // rigid bodies do not turn
+        for (const int n : body.nodes())
+            if (!rigid || n == body.centre_node) assembly.nodes.displacement[n] = 1e-4 * assembly.nodes.reference[n];
     }
     return assembly;
 }

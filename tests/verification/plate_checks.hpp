@@ -40,9 +40,9 @@ inline void expect_plates_on_a_disc(const ModelSpec& model) {
             const ContactPoint& point = e.assembly.points[contact->first_point];
             const double diameter = 2.0 * e.assembly.bodies[contact->a.body].radius_m;
             EXPECT_DOUBLE_EQ(point.area_m2, diameter * e.assembly.thickness_m);
-            EXPECT_EQ(point.bond.damage, 1.0);
+            EXPECT_EQ(e.assembly.bonds.at(point.state).damage, 1.0);
             EXPECT_EQ(++touched[contact->a.body], 1);   // a body touches once
-            smallest = std::min(smallest, point.bond.un_m);
+            smallest = std::min(smallest, e.assembly.bonds.at(point.state).un_m);
         }
         EXPECT_NEAR(smallest, 0.0, 1e-15);
         EXPECT_GE(touched.size(), 3U);

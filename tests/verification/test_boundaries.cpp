@@ -92,7 +92,7 @@ double share_of_first_damage(double tau_Pa, double sigma_nt_Pa) {
     double share = 0.0;
     for (const ContactPoint& point : e.assembly.points) {
         const BondLaw& law = e.assembly.laws[0];
-        share = std::max({share, point.bond.un_m / law.normal.x0, std::abs(point.bond.us_m) / law.shear.x0});
+        share = std::max({share, e.assembly.bonds.at(point.state).un_m / law.normal.x0, std::abs(e.assembly.bonds.at(point.state).us_m) / law.shear.x0});
     }
     return share;
 }

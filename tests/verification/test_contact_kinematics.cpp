@@ -38,12 +38,15 @@ TEST(ContactKinematics, ForcesOfLoadedContactsTurnWithTheBody) {
         }
         contact_forces(assembly, all, StepSettings{}, k);
     }
-    for (std::size_t slot = 0; slot < before.size(); ++slot)
-        for (int i = 0; i < 3; ++i) {
-            const Vec2 expected = turned(before[slot][i], 0.3);
-            // Gaps of 1e-9 m are known to 1e-17 m a step, so forces to about 1e-7.
-            EXPECT_LT(norm(assembly.slots[slot][i] - expected), 1e-6 * (norm(before[slot][0]) + norm(before[slot][1]) + norm(before[slot][2])));
-        }
+    for (std::size_t slot = 0; slot < 2 * assembly.contacts.size(); ++slot) {
+        const Mat2 M = before[slot].moment, now = assembly.slots[slot].moment;
+        // Gaps of 1e-9 m are known to 1e-17 m a step, so forces to about 1e-7.
+        EXPECT_LT(norm(assembly.slots[slot].force - turned(before[slot].force, 0.3)), 1e-6 * norm(before[slot].force));
+        // R M R^T, tried on two directions.
+        const double size = std::abs(M.xx) + std::abs(M.xy) + std::abs(M.yx) + std::abs(M.yy);
+        for (const Vec2 direction : {Vec2{1.0, 0.0}, Vec2{0.0, 1.0}})
+            EXPECT_LT(norm(now * turned(direction, 0.3) - turned(M * direction, 0.3)), 1e-6 * size);
+    }
 }
 
 TEST(ContactKinematics, PointsOpenAlongTheLineOfCentresAndShearAcrossIt) {   // (C1), (C5)
@@ -55,12 +58,12 @@ TEST(ContactKinematics, PointsOpenAlongTheLineOfCentresAndShearAcrossIt) {   // 
         for (const bool shear : {false, true}) {
             const Body& b = assembly.bodies[contact.b.body];
             std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{});
-            for (int i = b.node_begin; i < b.node_end; ++i) assembly.nodes.velocity[i] = kBy * (shear ? rot90(n) : n);
-            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) assembly.points[p].bond = {};
+            for (const int i : b.nodes()) assembly.nodes.velocity[i] = kBy * (shear ? rot90(n) : n);
+            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) assembly.set_bond(p, {});
             contact_forces(assembly, {c, c + 1}, StepSettings{}, 0);
             for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
-                EXPECT_NEAR(assembly.points[p].bond.un_m, shear ? 0.0 : kBy, 1e-12 * kBy);   // shape functions sum to 1 to rounding
-                EXPECT_NEAR(assembly.points[p].bond.us_m, shear ? kBy : 0.0, 1e-12 * kBy);
+                EXPECT_NEAR(assembly.bond(p).un_m, shear ? 0.0 : kBy, 1e-12 * kBy);   // shape functions sum to 1 to rounding
+                EXPECT_NEAR(assembly.bond(p).us_m, shear ? kBy : 0.0, 1e-12 * kBy);
             }
         }
     }

@@ -6,6 +6,7 @@
 #include "feldspar/base/rng.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/attachment.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/platens.hpp"
 #include "feldspar/step/step.hpp"
@@ -51,7 +52,7 @@ TEST(Kinematics, RigidRotationInAThousandStepsOpensNoContact) {
         contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, settings, k);
     }
     double largest = 0.0;
-    for (const ContactPoint& point : assembly.points) largest = std::max({largest, std::abs(point.bond.un_m), std::abs(point.bond.us_m)});
+    for (int p = 0; p < std::ssize(assembly.points); ++p) largest = std::max({largest, std::abs(assembly.bond(p).un_m), std::abs(assembly.bond(p).us_m)});
     EXPECT_LT(largest, 1e-15);
     EXPECT_GT(largest, 0.0);   // the points did move: an exact zero would mean that nothing was computed
 }
@@ -69,7 +70,7 @@ TEST(Kinematics, HomogeneousStrainLeavesInteriorNodesAtRestAndHasItsClosedFormEn
     for (std::size_t g = 0; g < assembly.bodies.size(); ++g) {
         const Body& grain = assembly.bodies[g];
         const int vertices = grain.edge_end - grain.edge_begin;
-        for (int n = grain.node_begin + vertices; n < grain.node_end; ++n) largest = std::max(largest, norm(assembly.nodes.force[n]));
+        for (int i = vertices; i < grain.node_count; ++i) largest = std::max(largest, norm(assembly.nodes.force[grain.node(i)]));
     }
     for (const Triangle& t : assembly.triangles) volume += t.volume_m3;
     EXPECT_LT(largest / (25.8e9 * 2e-6 * assembly.thickness_m * 1e-3), 1e-8);   // over the forces that cancel
@@ -92,8 +93,12 @@ TEST(Kinematics, ContactForcesConserveLinearAndAngularMomentum) {
         const Contact& contact = assembly.contacts[c];
         Vec2 sum;
         double moment = 0.0, size = 0.0;
+        const auto on_corners = [&](const ContactSide& side, const SlotForces& slot) {
+            return forces_on_corners(corners(assembly.nodes, side.node), assembly.centre(side.body), slot);
+        };
+        const auto on_a = on_corners(contact.a, assembly.slots[2 * c]), on_b = on_corners(contact.b, assembly.slots[2 * c + 1]);
         for (int i = 0; i < 3; ++i) {
-            const Vec2 fa = assembly.slots[2 * c][i], fb = assembly.slots[2 * c + 1][i];
+            const Vec2 fa = on_a[i], fb = on_b[i];
             sum += fa + fb;
             moment += cross(assembly.nodes.position(contact.a.node[i]), fa) + cross(assembly.nodes.position(contact.b.node[i]), fb);
             size += norm(fa) + norm(fb);
@@ -108,7 +113,7 @@ TEST(Kinematics, FallBackShapesAreUsedOnlyFarFromTheStartAndTheirMomentLossIsMea
     EXPECT_EQ(choose_shape_functions(assembly, 0.0).fallback_sides, 0);
     EXPECT_EQ(fallback_moment_loss(assembly), 0.0);
     const Contact& contact = assembly.contacts[0];
-    for (int n = assembly.bodies[contact.b.body].node_begin; n < assembly.bodies[contact.b.body].node_end; ++n)
+    for (const int n : assembly.bodies[contact.b.body].nodes())
         assembly.nodes.displacement[n] = {1.5e-3, 1.0e-3};   // half a grain away
     EXPECT_GT(choose_shape_functions(assembly, 0.0).fallback_sides, 0);
     ASSERT_TRUE(assembly.contacts[0].initial_shape);

@@ -21,7 +21,7 @@ Assembly bar() {
 }
 
 void lift(Assembly& assembly, double by) {
-    for (int n = assembly.bodies[1].node_begin; n < assembly.bodies[1].node_end; ++n) assembly.nodes.displacement[n] = {0.0, by};
+    for (const int n : assembly.bodies[1].nodes()) assembly.nodes.displacement[n] = {0.0, by};
 }
 
 TEST(NewContacts, IntactContactsAreNeverDropped) {
@@ -34,7 +34,7 @@ TEST(NewContacts, IntactContactsAreNeverDropped) {
 TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
     Assembly assembly = bar();
     ContactFinder finder(assembly, kSkin);
-    for (ContactPoint& point : assembly.points) point.bond.damage = 1.0;
+    std::fill(assembly.bonds.damage.begin(), assembly.bonds.damage.end(), 1.0);
     lift(assembly, 1.5 * kSkin);
     ContactFinder::Changes changes = finder.update(assembly, 1.0);
     EXPECT_EQ(changes.dropped, 1);
@@ -49,7 +49,7 @@ TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
     EXPECT_EQ(finder.update(assembly, 1.0).made, 0);   // only once
     ASSERT_EQ(assembly.contacts.size(), 2U);
     const ContactPoint& point = assembly.points.back();
-    EXPECT_NEAR(point.bond.un_m, -1e-8, 1e-12);
+    EXPECT_NEAR(assembly.bonds.at(point.state).un_m, -1e-8, 1e-12);
     EXPECT_NEAR(point.area_m2, kSide * 0.08, 1e-12);
     // The step stays stable: 0.25 (sum |N|)^2 kn = kn for a point on the edges, where |N| sums to 2; and what that costs is told.
     double added = 0.0;
@@ -59,8 +59,8 @@ TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
     std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{});
     Team team(1);
     evaluate_forces(assembly, team, Strength::real);
-    EXPECT_NEAR(point.bond.Fn_N / (18e13 * kSide * 0.08 * 1e-8), 1.0, 1e-3);
-    EXPECT_EQ(point.bond.Fs_N, 0.0);
+    EXPECT_NEAR(assembly.bonds.at(point.state).Fn_N / (18e13 * kSide * 0.08 * 1e-8), 1.0, 1e-3);
+    EXPECT_EQ(assembly.bonds.at(point.state).Fs_N, 0.0);
 }
 
 TEST(NewContacts, PaperSizeSpecimenStartsWithoutAnyToMake) {

@@ -38,10 +38,10 @@ PlateForce push(const PlateContact& plates, double towards_m, double along_m) {
     assembly.nodes.velocity[centre] = {};
     const SlotForces on_grain = assembly.slots[2 * c];
     const double arm = 0.5 * kSide;   // of the force along the plate about the grain's centre, once the grain has moved towards it
-    EXPECT_NEAR(on_grain[1].x * arm, -on_grain[0].x * arm + on_grain[0].y * 0.0, 1e-6 * std::abs(on_grain[0].y) * arm + 1e-12);
+    EXPECT_NEAR(turning_moment(on_grain), -on_grain.force.x * arm, 1e-6 * std::abs(on_grain.force.y) * arm + 1e-12);
     Team team(1);
     evaluate_forces(assembly, team, Strength::real);
-    return {-on_grain[0].y, -on_grain[0].x, platen_reactions(assembly).loading};
+    return {-on_grain.force.y, -on_grain.force.x, platen_reactions(assembly).loading};
 }
 
 TEST(Plates, PressByTheirStiffnessAndDragByItUpToTheFriction) {
@@ -84,7 +84,7 @@ TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
             const ContactPoint& point = e.assembly.points[contact->first_point];
             const ContactOrigin& origin = e.assembly.origins[contact - e.assembly.contacts.data()];
             EXPECT_DOUBLE_EQ(point.area_m2, norm(origin.to - origin.from) * e.assembly.thickness_m);
-            EXPECT_NEAR(point.bond.un_m, 0.0, 1e-15);   // the end is straight: all touch at once
+            EXPECT_NEAR(e.assembly.bonds.at(point.state).un_m, 0.0, 1e-15);   // the end is straight: all touch at once
             area += point.area_m2;
             ++sites;
         }
@@ -107,7 +107,7 @@ TEST_P(PlatesOf, FeelTheSumOfTheirContactsForces) {
     for (int side = 0; side < 2; ++side) {
         double sum = 0.0;
         for (const Contact* contact : contacts_of(e.assembly, e.assembly.platens[side].plate))
-            sum += e.assembly.points[contact->first_point].bond.Fn_N * e.assembly.bodies[contact->b.body].normal.y;
+            sum += e.assembly.bond(contact->first_point).Fn_N * e.assembly.bodies[contact->b.body].normal.y;
         EXPECT_GT(std::abs(sum), 0.0);
         EXPECT_NEAR((side == 0 ? reactions.loading : reactions.rest) / sum, 1.0, 1e-12);
     }

@@ -34,15 +34,15 @@ Torn tear(ContactKind kind, bool shear, double travel_m) {
         assembly.nodes.velocity[centre] = move;
         assembly.nodes.displacement[centre] += move;
         contact_forces(assembly, {0, 1}, StepSettings{}, k);
-        const Vec2 force = assembly.slots[1][0];
+        const Vec2 force = assembly.slots[1].force;
         torn.work_J -= 0.5 * dot(before + force, move);
         torn.peak_N = std::max(torn.peak_N, norm(force));
         before = force;
     }
     torn.damage = 1.0;
-    for (const ContactPoint& point : assembly.points) {
-        torn.damage = std::min(torn.damage, point.bond.damage);
-        torn.fracture_J += point.bond.fracture_J;
+    for (int p = 0; p < std::ssize(assembly.points); ++p) {
+        torn.damage = std::min(torn.damage, assembly.bond(p).damage);
+        torn.fracture_J += assembly.bond(p).fracture_J;
     }
     return torn;
 }
@@ -125,7 +125,7 @@ TEST(TwoRigidGrains, ABrokenOpenContactIsDroppedAndReturnsAsFrictionOnTheShorter
                                  fixtures::table1(GrainKind::rigid));
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     ContactFinder finder(assembly, kSkin);
-    for (ContactPoint& point : assembly.points) point.bond.damage = 1.0;
+    std::fill(assembly.bonds.damage.begin(), assembly.bonds.damage.end(), 1.0);
     const int upper = assembly.bodies[1].centre_node;
     assembly.nodes.displacement[upper] = {0.0, 1.5 * kSkin};
     EXPECT_EQ(finder.update(assembly, 1.0).dropped, 1);
@@ -142,8 +142,8 @@ TEST(TwoRigidGrains, ABrokenOpenContactIsDroppedAndReturnsAsFrictionOnTheShorter
     EXPECT_EQ(finder.update(assembly, 1.0).made, 0);   // only once
     ASSERT_EQ(assembly.contacts.size(), 2U);
     const ContactPoint& point = assembly.points.back();
-    EXPECT_NEAR(point.bond.un_m, -1e-8, 1e-15);
-    EXPECT_EQ(point.bond.damage, 1.0);
+    EXPECT_NEAR(assembly.bonds.at(point.state).un_m, -1e-8, 1e-15);
+    EXPECT_EQ(assembly.bonds.at(point.state).damage, 1.0);
     EXPECT_NEAR(point.area_m2, 0.8 * kArea, 1e-15);
     double kinetic = 0.0;
     for (int n = 0; n < assembly.nodes.count(); ++n) {
@@ -155,14 +155,14 @@ TEST(TwoRigidGrains, ABrokenOpenContactIsDroppedAndReturnsAsFrictionOnTheShorter
     std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{});
     Team team(1);
     evaluate_forces(assembly, team, Strength::real);
-    EXPECT_EQ(point.bond.fracture_J, 0.0);
-    EXPECT_NEAR(point.bond.Fn_N / (1.08e13 * 0.8 * kArea * 1e-8), 1.0, 1e-6);
-    EXPECT_NEAR(assembly.nodes.force[upper].x / point.bond.Fn_N, 1.0, 1e-6);
+    EXPECT_EQ(assembly.bonds.at(point.state).fracture_J, 0.0);
+    EXPECT_NEAR(assembly.bonds.at(point.state).Fn_N / (1.08e13 * 0.8 * kArea * 1e-8), 1.0, 1e-6);
+    EXPECT_NEAR(assembly.nodes.force[upper].x / assembly.bonds.at(point.state).Fn_N, 1.0, 1e-6);
     // Sliding by 1e-6 m across: friction, limited by mu Fn.
     assembly.nodes.velocity[upper] = {0.0, 1e-6};
     contact_forces(assembly, {1, 2}, StepSettings{}, 0);
-    EXPECT_NEAR(std::abs(point.bond.Fs_N) / (0.5 * point.bond.Fn_N), 1.0, 1e-12);
-    EXPECT_LT(assembly.slots[3][0].y, 0.0);   // against the motion
+    EXPECT_NEAR(std::abs(assembly.bonds.at(point.state).Fs_N) / (0.5 * assembly.bonds.at(point.state).Fn_N), 1.0, 1e-12);
+    EXPECT_LT(assembly.slots[3].force.y, 0.0);   // against the motion
 }
 
 TEST(TwoFilledGrains, DiscsThatReturnTouchOnTheSmallerDiameter) {
@@ -173,7 +173,7 @@ TEST(TwoFilledGrains, DiscsThatReturnTouchOnTheSmallerDiameter) {
     int across = 0;
     for (const Contact& contact : assembly.contacts) {
         if (contact.material == inside_grains) continue;
-        assembly.points[contact.first_point].bond.damage = 1.0;
+        assembly.bonds.damage[assembly.points[contact.first_point].state] = 1.0;
         ++across;
     }
     const auto lift = [&](double by) {
@@ -193,10 +193,10 @@ TEST(TwoFilledGrains, DiscsThatReturnTouchOnTheSmallerDiameter) {
         EXPECT_EQ(contact.material, between_grains);
         const ContactPoint& point = assembly.points[contact.first_point];
         EXPECT_DOUBLE_EQ(point.area_m2, 2.0 * std::min(a.radius_m, b.radius_m) * 0.08);
-        EXPECT_EQ(point.bond.damage, 1.0);
+        EXPECT_EQ(assembly.bonds.at(point.state).damage, 1.0);
         const double d = norm(assembly.centre(contact.b.body) - assembly.centre(contact.a.body));
-        EXPECT_NEAR(point.bond.un_m, d - a.radius_m - b.radius_m, 1e-15);
-        EXPECT_LT(point.bond.un_m, 0.0);
+        EXPECT_NEAR(assembly.bonds.at(point.state).un_m, d - a.radius_m - b.radius_m, 1e-15);
+        EXPECT_LT(assembly.bonds.at(point.state).un_m, 0.0);
     }
 }
 

@@ -53,8 +53,8 @@ Gaps gaps_after_turning(Assembly assembly, int steps) {
     }
     Gaps largest;
     for (const ContactPoint& point : assembly.points) {
-        largest.un = std::max(largest.un, std::abs(point.bond.un_m));
-        largest.us = std::max(largest.us, std::abs(point.bond.us_m));
+        largest.un = std::max(largest.un, std::abs(assembly.bonds.at(point.state).un_m));
+        largest.us = std::max(largest.us, std::abs(assembly.bonds.at(point.state).us_m));
     }
     return largest;
 }
@@ -87,19 +87,16 @@ TEST_P(RigidModels, ContactForcesConserveLinearAndAngularMomentum) {
     for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
         const Contact& contact = assembly.contacts[c];
         const SlotForces &a = assembly.slots[2 * c], &b = assembly.slots[2 * c + 1];
-        const double size = norm(a[0]);
+        const double size = norm(a.force);
         ASSERT_GT(size, 0.0);
-        EXPECT_LT(norm(a[0] + b[0]), 1e-12 * size);   // rounding of the sums over three points
+        EXPECT_LT(norm(a.force + b.force), 1e-12 * size);   // rounding of the sums over three points
         double moment = 0.0;
         for (const auto& [side, slot] : {std::pair{contact.a, a}, std::pair{contact.b, b}}) {
-            const Body& body = assembly.bodies[side.body];
-            moment += cross(assembly.centre(side.body), slot[0]) + slot[1].x * body.radius_m;
-            EXPECT_EQ(slot[1].y, 0.0);
-            EXPECT_EQ(slot[2], Vec2{});
+            moment += cross(assembly.centre(side.body), slot.force) + turning_moment(slot);
         }
         // Lever arms of up to the body's height; three points may pull against each other and leave a small sum.
-        EXPECT_LT(std::abs(moment), 1e-10 * (size + std::abs(a[1].x) + std::abs(b[1].x)) * 0.04);
-        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) sheared = std::max(sheared, std::abs(assembly.points[p].bond.Fs_N));
+        EXPECT_LT(std::abs(moment), 1e-10 * (size * 0.04 + std::abs(turning_moment(a)) + std::abs(turning_moment(b))));
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) sheared = std::max(sheared, std::abs(assembly.bond(p).Fs_N));
     }
     EXPECT_GT(sheared, 0.0);
 }
@@ -135,9 +132,9 @@ TEST_P(RigidModels, ForcesOfLoadedContactsTurnWithTheBodies) {
             contact_forces(assembly, all_contacts(assembly), elastic, k);
         }
         double error = 0.0, size = 0.0;
-        for (std::size_t slot = 0; slot < before.size(); ++slot) {
-            error = std::max(error, norm(assembly.slots[slot][0] - turned(before[slot][0], 0.3)));
-            size = std::max(size, norm(before[slot][0]));
+        for (std::size_t slot = 0; slot < 2 * assembly.contacts.size(); ++slot) {
+            error = std::max(error, norm(assembly.slots[slot].force - turned(before[slot].force, 0.3)));
+            size = std::max(size, norm(before[slot].force));
         }
         return error / size;
     };
@@ -203,7 +200,7 @@ TEST(InnerParticles, PullingAGrainApartNeverBreaksIt) {
     finder.update(assembly, 1.0);
     int inside = 0, across = 0;
     for (const Contact& contact : assembly.contacts) {
-        const BondState& bond = assembly.points[contact.first_point].bond;
+        const BondState bond = assembly.bond(contact.first_point);
         if (contact.material == inside_grains) {
             ++inside;
             EXPECT_FALSE(contact.dropped);
@@ -274,21 +271,15 @@ double bending_moment(const ModelSpec& model) {
     Assembly assembly = assemble(*fixtures::two_grain_bar(kSide), model, fixtures::granite(), material);
     const Vec2 middle = {0.5 * kSide, kSide};
     const Body& upper = assembly.bodies[1];
-    for (int n = upper.node_begin; n < upper.node_end; ++n) {
+    for (const int n : upper.nodes()) {
         Vec2& u = assembly.nodes.displacement[n];
         u = kAngle * rot90(assembly.nodes.reference[n] - middle);
         if (upper.kind == BodyKind::rigid && n > upper.centre_node) u = {kAngle * upper.radius_m, 0.0};
     }
     assembly.nodes.velocity = assembly.nodes.displacement;
     contact_forces(assembly, {0, 1}, StepSettings{}, 0);
-    double moment = 0.0;
-    const Contact& contact = assembly.contacts[0];
     const SlotForces& on_upper = assembly.slots[1];
-    if (upper.kind == BodyKind::rigid) {
-        moment = cross(assembly.centre(1) - middle, on_upper[0]) + on_upper[1].x * upper.radius_m;
-    } else {
-        for (int i = 0; i < 3; ++i) moment += cross(assembly.nodes.position(contact.b.node[i]) - middle, on_upper[i]);
-    }
+    const double moment = cross(assembly.centre(1) - middle, on_upper.force) + turning_moment(on_upper);
     return -moment / (material.Kn_Pa_m * assembly.thickness_m * kSide * kSide * kSide / 12.0 * kAngle);
 }
 

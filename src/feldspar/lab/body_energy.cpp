@@ -14,11 +14,11 @@ StoredEnergy stored_energy(const Assembly& assembly, double since) {
     for (const Contact& contact : assembly.contacts) {
         const BondLaw& law = assembly.laws[contact.material];
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
-            const ContactPoint& point = assembly.points[p];
+            const BondState bond = assembly.bond(p);
             double& stored = contact.material == inside_grains ? sum.grains_J : sum.contacts_J;
-            if (!contact.dropped) stored += elastic_energy(law, point.area_m2, point.bond);
-            sum.fracture_J += point.bond.fracture_J;
-            sum.friction_J += point.bond.friction_J;
+            if (!contact.dropped) stored += elastic_energy(law, assembly.points[p].area_m2, bond);
+            sum.fracture_J += bond.fracture_J;
+            sum.friction_J += bond.friction_J;
         }
     }
     for (const BodyWork& work : assembly.body_work) {
@@ -82,7 +82,7 @@ double unbalanced_force(const Assembly& assembly) {
 
 double mean_contact_force(const Assembly& assembly) {
     double sum = 0.0;
-    for (const ContactPoint& point : assembly.points) sum += std::hypot(point.bond.Fn_N, point.bond.Fs_N);
+    for (std::size_t i = 0; i < assembly.bonds.Fn_N.size(); ++i) sum += norm({assembly.bonds.Fn_N[i], assembly.bonds.Fs_N[i]});
     return sum / static_cast<double>(assembly.points.size());
 }
 
@@ -92,16 +92,10 @@ double fallback_moment_loss(const Assembly& assembly) {
         const Contact& contact = assembly.contacts[c];
         if (!contact.initial_shape || contact.dropped || contact.plate) continue;
         const Vec2 centre = assembly.centre(contact.a.body);
-        double moment = 0.0, about_centres = 0.0;
-        Vec2 force{};
-        for (int i = 0; i < 3; ++i) {
-            const Vec2 fa = assembly.slots[2 * c][i], fb = assembly.slots[2 * c + 1][i];
-            moment += cross(assembly.nodes.position(contact.a.node[i]) - centre, fa) + cross(assembly.nodes.position(contact.b.node[i]) - centre, fb);
-            force += fb;
-        }
-        about_centres = norm(force) * norm(assembly.centre(contact.b.body) - centre);
-        lost += std::abs(moment);
-        carried += about_centres;
+        const Vec2 line = assembly.centre(contact.b.body) - centre;
+        const SlotForces &a = assembly.slots[2 * c], &b = assembly.slots[2 * c + 1];
+        lost += std::abs(turning_moment(a) + turning_moment(b) + cross(line, b.force));
+        carried += norm(b.force) * norm(line);
     }
     return carried > 0.0 ? lost / carried : 0.0;
 }

@@ -30,16 +30,13 @@ double shear_with_friction(const BondLaw& law, const BondState& base, double dun
 }  // namespace
 
 BodyState capture(const Assembly& assembly, double platen_travel_m) {
-    BodyState state{platen_travel_m, assembly.nodes.displacement, {}};
-    state.bonds.reserve(assembly.points.size());
-    for (const ContactPoint& point : assembly.points) state.bonds.push_back(point.bond);
-    return state;
+    return {platen_travel_m, assembly.nodes.displacement, assembly.bonds};
 }
 
 void restore(Assembly& assembly, const BodyState& state) {
     assembly.nodes.displacement = state.displacement_m;
     std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{});
-    for (std::size_t p = 0; p < state.bonds.size(); ++p) assembly.points[p].bond = state.bonds[p];
+    assembly.bonds = state.bonds;
 }
 
 BodyState superpose(const BodyState& base, const BodyState& state, double factor) {
@@ -48,14 +45,9 @@ BodyState superpose(const BodyState& base, const BodyState& state, double factor
     sum.platen_travel_m = mix(base.platen_travel_m, state.platen_travel_m);
     for (std::size_t n = 0; n < sum.displacement_m.size(); ++n)
         sum.displacement_m[n] += factor * (state.displacement_m[n] - base.displacement_m[n]);
-    for (std::size_t p = 0; p < sum.bonds.size(); ++p) {
-        BondState& bond = sum.bonds[p];
-        const BondState& to = state.bonds[p];
-        bond.un_m = mix(bond.un_m, to.un_m);
-        bond.us_m = mix(bond.us_m, to.us_m);
-        bond.Fn_N = mix(bond.Fn_N, to.Fn_N);
-        bond.Fs_N = mix(bond.Fs_N, to.Fs_N);
-    }
+    for (std::vector<double> Bonds::*quantity : {&Bonds::un_m, &Bonds::us_m, &Bonds::Fn_N, &Bonds::Fs_N})
+        for (std::size_t i = 0; i < (sum.bonds.*quantity).size(); ++i)
+            (sum.bonds.*quantity)[i] = mix((base.bonds.*quantity)[i], (state.bonds.*quantity)[i]);
     return sum;
 }
 
@@ -64,9 +56,10 @@ double first_damage(const Assembly& assembly, const BodyState& base, const BodyS
     for (const Contact& contact : assembly.contacts) {
         const BondLaw& law = assembly.laws[contact.material];
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
-            const BondState& b = base.bonds[p];
+            const auto i = static_cast<std::size_t>(assembly.points[p].state);
+            const BondState b = base.bonds.at(i);
             if (b.damage >= 1.0) continue;
-            const double dun = state.bonds[p].un_m - b.un_m, dus = state.bonds[p].us_m - b.us_m;
+            const double dun = state.bonds.un_m[i] - b.un_m, dus = state.bonds.us_m[i] - b.us_m;
             first = std::min(first, reaches(b.un_m, dun, law.normal.x0));
             if (law.shear.brittle || law.shear_beyond_friction) {
                 first = std::min(first, shear_with_friction(law, b, dun, dus));

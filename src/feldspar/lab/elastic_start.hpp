@@ -15,7 +15,7 @@ namespace feldspar {
 struct BodyState {
     double platen_travel_m = 0.0;               ///< along the loading platen's mode
     std::vector<Vec2> displacement_m;
-    std::vector<BondState> bonds;
+    Bonds bonds;
 };
 
 BodyState capture(const Assembly& assembly, double platen_travel_m);

@@ -21,7 +21,7 @@ double mass(const Assembly& assembly) {
     for (const Body& body : assembly.bodies) {
         if (body.kind == BodyKind::rigid) sum += assembly.nodes.mass[body.centre_node];
         if (body.kind != BodyKind::flexible) continue;
-        for (int n = body.node_begin; n < body.node_end; ++n) sum += assembly.nodes.mass[n];
+        for (const int n : body.nodes()) sum += assembly.nodes.mass[n];
     }
     return sum;
 }

@@ -52,8 +52,11 @@ Vec2 moved_rigidly(const Assembly& assembly, const Body& body, Vec2 X, const std
 
 std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& specimen, const std::vector<Vec2>& u) {
     const GrainMesh& mesh = specimen.mesh;
-    if (assembly.bodies.front().kind == BodyKind::flexible) return {u.begin(), u.begin() + std::ssize(mesh.nodes)};
     std::vector<Vec2> displacements(mesh.nodes.size());
+    if (assembly.bodies.front().kind == BodyKind::flexible) {
+        for (std::size_t n = 0; n < displacements.size(); ++n) displacements[n] = u[assembly.node_of_mesh[n]];
+        return displacements;
+    }
     const int grains = static_cast<int>(mesh.vertex_count.size());
     const std::vector<int> first = first_bodies(assembly, grains);
     for (int g = 0; g < grains; ++g) {
@@ -81,7 +84,7 @@ std::vector<Mat2> grain_stresses(const Assembly& assembly, const Specimen& speci
         if (contact.dropped || contact.material == inside_grains) continue;
         const ContactFrame frame = contact_frame(assembly, contact);
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
-            const BondState& bond = assembly.points[p].bond;
+            const BondState bond = assembly.bond(p);
             const Vec2 x = frame.reference_point + assembly.points[p].along_m * frame.edge_tangent;
             const Vec2 on_b = bond.Fn_N * frame.n + bond.Fs_N * rot90(frame.n);
             add(contact.a, x, -on_b);

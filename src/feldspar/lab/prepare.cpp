@@ -40,8 +40,8 @@ Vec2 share_of_field(const Assembly& assembly, const Body& body, int node, Vec2 f
 // Where the field leaves x alone: at the node that a row of nodes holds, else in the middle of the width.
 double fixed_x(const Assembly& assembly, const Box& box) {
     for (const Body& body : assembly.bodies)
-        for (int n = body.node_begin; body.kind == BodyKind::flexible && n < body.node_end; ++n)
-            if (assembly.nodes.inverse_mass[n].x == 0.0) return assembly.nodes.reference[n].x;
+        for (const int n : body.nodes())
+            if (body.kind == BodyKind::flexible && assembly.nodes.inverse_mass[n].x == 0.0) return assembly.nodes.reference[n].x;
     return 0.5 * (box.lower.x + box.upper.x);
 }
 
@@ -55,7 +55,7 @@ void add_affine(Experiment& e, double travel_m) {
     const double strain = assembly.platens[0].mode.y * travel_m / e.height_m;
     const std::vector<Vec2> velocity = nodes.velocity;
     for (const Body& body : assembly.bodies)
-        for (int n = body.node_begin; n < body.node_end; ++n) {
+        for (const int n : body.nodes()) {
             const Vec2 x = nodes.reference[n] - origin;
             nodes.velocity[n] = share_of_field(assembly, body, n, {-e.elastic_guess.nu * strain * x.x, strain * x.y});
         }
@@ -200,7 +200,7 @@ bool isotropic_is_elastic(const Experiment& e, const BodyState& unloaded) {
 
 void forget_relaxation_work(Experiment& e) {
     for (BodyWork& work : e.assembly.body_work) work = {};
-    for (ContactPoint& point : e.assembly.points) point.bond.fracture_J = point.bond.friction_J = 0.0;
+    for (auto* energy : {&e.assembly.bonds.fracture_J, &e.assembly.bonds.friction_J}) std::fill(energy->begin(), energy->end(), 0.0);
     e.platen_work = {};
     e.rate_control_J = 0.0;
 }

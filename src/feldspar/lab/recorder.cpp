@@ -121,7 +121,7 @@ void Recorder::collect_cracks() {
         crack.to = p0 + share.to * (p1 - p0);
         crack.place = p0 + share.middle * (p1 - p0);
         crack.area_m2 = point.area_m2;
-        crack.energy_J = point.bond.fracture_J;
+        crack.energy_J = e_.assembly.bond(f.point).fracture_J;
         ++(crack.mode == CrackMode::tensile ? tensile_ : shear_);
         result_.cracks.push_back(crack);
         crack_points_.push_back(f.point);
@@ -134,8 +134,8 @@ Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& ro
     f.damage.reserve(e_.assembly.points.size());
     f.opening.reserve(e_.assembly.points.size());
     for (const ContactPoint& point : e_.assembly.points) {
-        f.damage.push_back(static_cast<float>(point.bond.damage));
-        f.opening.push_back(point.bond.un_m);
+        f.damage.push_back(static_cast<float>(e_.assembly.bonds.damage[point.state]));
+        f.opening.push_back(e_.assembly.bonds.un_m[point.state]);
     }
     return f;
 }

@@ -16,7 +16,9 @@ void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& x, E
     StepSettings settings;
     settings.strength = Strength::unlimited;
     const double scale = kAmplitude / x.lpNorm<Eigen::Infinity>();
-    for (ContactPoint& point : assembly.points) point.bond = {};
+    const std::size_t bonds = assembly.points.size();
+    assembly.bonds = {};
+    assembly.bonds.resize(bonds);
     for (int n = 0; n < nodes.count(); ++n) {
         nodes.displacement[n] = {};
         nodes.velocity[n] = {scale * x[2 * n], scale * x[2 * n + 1]};

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "feldspar/base/error.hpp"
@@ -17,23 +17,58 @@ namespace {
 constexpr Vec2 kFree{1.0, 1.0};
 constexpr Vec2 kTurn{1.0, 0.0};   // of a turn only x moves
 
-Triangle make_triangle(const std::vector<Vec2>& X, const std::array<int, 3>& t, double thickness_m) {
-    const Vec2 e1 = X[t[1]] - X[t[0]], e2 = X[t[2]] - X[t[0]];
+Triangle make_triangle(const std::vector<Vec2>& X, const SideNodes& node, double thickness_m) {
+    const Vec2 e1 = X[node[1]] - X[node[0]], e2 = X[node[2]] - X[node[0]];
     const double twice_area = cross(e1, e2);
     Triangle triangle;
-    triangle.node = {t[0], t[1], t[2]};
+    triangle.node = node;
     triangle.gradient = {Vec2{e2.y / twice_area, -e2.x / twice_area}, Vec2{-e1.y / twice_area, e1.x / twice_area}};
     triangle.volume_m3 = 0.5 * twice_area * thickness_m;
     return triangle;
 }
 
-// The nodes of the triangle behind edge k of grain g, turned so that the edge comes first.
+// The nodes of the triangle behind edge k of grain g, turned so that the edge comes first; in the mesh's own numbers.
 SideNodes nodes_behind_edge(const GrainMesh& mesh, int g, int k) {
     const int nv = mesh.vertex_count[g];
     const std::int32_t from = mesh.node_begin[g] + k, to = mesh.node_begin[g] + (k + 1) % nv;
     for (const int node : mesh.triangles[mesh.edge_triangle[mesh.edge_begin[g] + k]])
         if (node != from && node != to) return {from, to, node};
     throw NumericalError("a grain edge without a triangle of its own");
+}
+
+// The mesh node that is local node i of a lane: vertices, centre, ring.
+int mesh_node(const GrainMesh& mesh, const GrainPack& pack, int lane, int i) {
+    const int g = pack.grain[lane];
+    const auto vertex = [&](int k) { return (k + pack.start[lane]) % pack.vertices; };
+    if (i < pack.vertices) return mesh.node_begin[g] + vertex(i);
+    if (i == pack.vertices) return mesh.centre_node[g];
+    return mesh.triangles[mesh.edge_triangle[mesh.edge_begin[g] + vertex(i - pack.vertices - 1)]][2];
+}
+
+// Numbers the nodes pack by pack, and behind them those of grains that are in no pack, and adds them. Tells the bodies.
+void add_nodes(Assembly& assembly, const GrainMesh& mesh) {
+    assembly.packs.grains = pack_grains(mesh);
+    assembly.node_of_mesh.assign(mesh.nodes.size(), -1);
+    int next = 0;
+    for (const GrainPack& pack : assembly.packs.grains) {
+        for (int lane = 0; lane < pack.lanes; ++lane) {
+            Body& body = assembly.bodies[pack.grain[lane]];
+            body.first_node = pack.first_node + lane;
+            body.node_stride = pack.lanes;
+            for (int i = 0; i < pack.nodes(); ++i) assembly.node_of_mesh[mesh_node(mesh, pack, lane, i)] = body.node(i);
+        }
+        next = pack.first_node + pack.nodes() * pack.lanes;
+    }
+    for (int g = 0; g < std::ssize(assembly.bodies); ++g) {
+        Body& body = assembly.bodies[g];
+        body.node_count = mesh.node_begin[g + 1] - mesh.node_begin[g];
+        if (assembly.node_of_mesh[mesh.node_begin[g]] >= 0) continue;
+        body.first_node = next;
+        for (int n = mesh.node_begin[g]; n < mesh.node_begin[g + 1]; ++n) assembly.node_of_mesh[n] = next++;
+    }
+    std::vector<Vec2> places(mesh.nodes.size());
+    for (std::size_t n = 0; n < places.size(); ++n) places[assembly.node_of_mesh[n]] = mesh.nodes[n];
+    for (const Vec2 X : places) assembly.nodes.add(X, kFree);
 }
 
 std::vector<Vec2> corners_of_cell(const Tessellation& cells, int g) {
@@ -54,20 +89,19 @@ void add_edges(Assembly& assembly, Body& body, const Tessellation& cells, NodesO
 
 void add_flexible_grains(Assembly& assembly, const Specimen& specimen) {
     const GrainMesh& mesh = specimen.mesh;
-    for (const Vec2 X : mesh.nodes) assembly.nodes.add(X, kFree);
-    for (const auto& t : mesh.triangles) assembly.triangles.push_back(make_triangle(mesh.nodes, t, assembly.thickness_m));
-    for (int g = 0; g < std::ssize(mesh.vertex_count); ++g) {
-        Body body;
+    assembly.bodies.resize(mesh.vertex_count.size());
+    add_nodes(assembly, mesh);
+    const auto in_assembly = [&](const auto& t) { return SideNodes{assembly.node_of_mesh[t[0]], assembly.node_of_mesh[t[1]], assembly.node_of_mesh[t[2]]}; };
+    for (const auto& t : mesh.triangles) assembly.triangles.push_back(make_triangle(assembly.nodes.reference, in_assembly(t), assembly.thickness_m));
+    for (int g = 0; g < std::ssize(assembly.bodies); ++g) {
+        Body& body = assembly.bodies[g];
         body.kind = BodyKind::flexible;
         body.grain = g;
-        body.node_begin = mesh.node_begin[g];
-        body.node_end = mesh.node_begin[g + 1];
         body.triangle_begin = mesh.triangle_begin[g];
         body.triangle_end = mesh.triangle_begin[g + 1];
-        body.centre_node = mesh.centre_node[g];
+        body.centre_node = assembly.node_of_mesh[mesh.centre_node[g]];
         body.radius_m = specimen.packing.radii_m[g];
-        add_edges(assembly, body, specimen.cells, [&](int k) { return nodes_behind_edge(mesh, g, k); });
-        assembly.bodies.push_back(body);
+        add_edges(assembly, body, specimen.cells, [&](int k) { return in_assembly(nodes_behind_edge(mesh, g, k)); });
     }
 }
 
@@ -75,8 +109,9 @@ Body rigid_body(Assembly& assembly, int grain, Vec2 centre, double radius_m) {
     Body body;
     body.kind = BodyKind::rigid;
     body.grain = grain;
-    body.node_begin = body.centre_node = assembly.nodes.add(centre, kFree);
-    body.node_end = assembly.nodes.add(centre, kTurn) + 1;
+    body.first_node = body.centre_node = assembly.nodes.add(centre, kFree);
+    assembly.nodes.add(centre, kTurn);
+    body.node_count = 2;
     body.radius_m = radius_m;
     return body;
 }
@@ -93,7 +128,7 @@ void add_rigid_grains(Assembly& assembly, const Specimen& specimen) {
             polar += cross(a, b) * (dot(a, a) + dot(a, b) + dot(b, b)) / 12.0;
         }
         body.gyration_m2 = polar / signed_area(corners);
-        add_edges(assembly, body, specimen.cells, [&](int) { return SideNodes{body.node_begin, body.node_begin + 1, -1}; });
+        add_edges(assembly, body, specimen.cells, [&](int) { return SideNodes{body.node(0), body.node(1), -1}; });
         assembly.bodies.push_back(body);
     }
 }
@@ -140,19 +175,12 @@ void set_closing_distance(const Assembly& assembly, Contact& contact) {
     contact.closing_distance_m = std::max(radii, norm(assembly.centre(contact.b.body) - assembly.centre(contact.a.body)));
 }
 
-void add_point(Assembly& assembly, double along_m, double area_m2) {
-    ContactPoint point;
-    point.along_m = along_m;
-    point.area_m2 = area_m2;
-    assembly.points.push_back(point);
-}
-
 void add_bonded_contact(Assembly& assembly, ContactKind kind, int ga, int ka, int gb, int kb) {
     const GrainEdge& edge_a = assembly.edges[assembly.bodies[ga].edge_begin + ka];
     const GrainEdge& edge_b = assembly.edges[assembly.bodies[gb].edge_begin + kb];
     Contact contact;
-    contact.a = side_of(assembly, ga, edge_a.node);
-    contact.b = side_of(assembly, gb, edge_b.node);
+    contact.a = side_of(assembly, ga, edge_a.node, assembly.bodies[ga].edge_begin + ka);
+    contact.b = side_of(assembly, gb, edge_b.node, assembly.bodies[gb].edge_begin + kb);
     const Vec2 p0 = edge_a.from, p1 = edge_a.to;
     const double area = norm(p1 - p0) * assembly.thickness_m;
     place_on_line(assembly, contact, p0, p1);
@@ -162,15 +190,26 @@ void add_bonded_contact(Assembly& assembly, ContactKind kind, int ga, int ka, in
         contact.points = 3;
         const ContactFrame frame = contact_frame(assembly, contact);
         const double from = dot(p0 - frame.reference_point, frame.edge_tangent), to = from + norm(p1 - p0);
-        add_point(assembly, from, area / 6.0);
-        add_point(assembly, 0.5 * (from + to), 2.0 * area / 3.0);
-        add_point(assembly, to, area / 6.0);
+        assembly.add_point(from, area / 6.0);
+        assembly.add_point(0.5 * (from + to), 2.0 * area / 3.0);
+        assembly.add_point(to, area / 6.0);
     } else {
         contact.points = 1;   // PCM
         contact.offset_m = plane_between_circles(assembly, contact);
-        add_point(assembly, 0.0, area);
+        assembly.add_point(0.0, area);
     }
     add_contact(assembly, contact, {ka, kb, p0, p1});
+}
+
+// Bonds of contacts with several points stand pack by pack: the first points of all its contacts, then the second ones.
+void lay_out_bonds(Assembly& assembly) {
+    const int contacts = static_cast<int>(assembly.contacts.size());
+    std::int32_t state = 0;
+    for (int c = 0; c < contacts; c += kMostLanes) {
+        const int lanes = std::min(kMostLanes, contacts - c), points = assembly.contacts[c].points;
+        for (int j = 0; j < points; ++j)
+            for (int lane = 0; lane < lanes; ++lane) assembly.points[assembly.contacts[c + lane].first_point + j].state = state++;
+    }
 }
 
 void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, ContactKind kind) {
@@ -180,25 +219,34 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
         const int nv = static_cast<int>(cell.vertices.size());
         for (int k = 0; k < nv; ++k) owner[{cell.vertices[k], cell.vertices[(k + 1) % nv]}] = {g, k};
     }
+    struct Facing {
+        double height;   // twice that of the edge's middle
+        int ga, ka, gb, kb;
+    };
+    std::vector<Facing> facing;
     for (int g = 0; g < std::ssize(cells.cells); ++g) {
         const Cell& cell = cells.cells[g];
         const int nv = static_cast<int>(cell.vertices.size());
         for (int k = 0; k < nv; ++k) {
             if (cell.neighbours[k] <= g) continue;
-            const auto other = owner.find({cell.vertices[(k + 1) % nv], cell.vertices[k]});
+            const int from = cell.vertices[k], to = cell.vertices[(k + 1) % nv];
+            const auto other = owner.find({to, from});
             if (other == owner.end()) throw NumericalError("the tessellation is not conforming");
-            add_bonded_contact(assembly, kind, g, k, other->second.first, other->second.second);
+            facing.push_back({cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
         }
     }
+    // From bottom to top, as the packs of grains are: the contiguous share of a thread is a band of the specimen.
+    std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return l.height < r.height; });
+    for (const Facing& f : facing) add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb);
+    lay_out_bonds(assembly);
 }
 
 // A disc hangs by its centre and its turn.
 SideNodes nodes_of_disc(const Assembly& assembly, int body) {
-    const std::int32_t node = assembly.bodies[body].node_begin;
-    return {node, node + 1, -1};
+    return {assembly.bodies[body].node(0), assembly.bodies[body].node(1), -1};
 }
 
-ContactSide side_of(const Assembly& assembly, int body) { return side_of(assembly, body, nodes_of_disc(assembly, body)); }
+ContactSide side_of(const Assembly& assembly, int body) { return side_of(assembly, body, nodes_of_disc(assembly, body), -1); }
 
 double smaller_diameter(const Assembly& assembly, int a, int b) {
     return 2.0 * std::min(assembly.bodies[a].radius_m, assembly.bodies[b].radius_m);
@@ -212,7 +260,7 @@ void add_inside_contact(Assembly& assembly, const InsideContact& pair) {
     contact.material = inside_grains;
     contact.first_point = static_cast<std::int32_t>(assembly.points.size());
     contact.points = 1;
-    add_point(assembly, 0.0, smaller_diameter(assembly, pair.a, pair.b) * assembly.thickness_m);
+    assembly.add_point(0.0, smaller_diameter(assembly, pair.a, pair.b) * assembly.thickness_m);
     add_contact(assembly, contact, {});
 }
 
@@ -228,7 +276,7 @@ void add_across_contact(Assembly& assembly, const AcrossContact& across, Contact
     set_closing_distance(assembly, contact);
     contact.first_point = static_cast<std::int32_t>(assembly.points.size());
     contact.points = 1;
-    add_point(assembly, 0.0, norm(across.to - across.from) * assembly.thickness_m);
+    assembly.add_point(0.0, norm(across.to - across.from) * assembly.thickness_m);
     if (normal == ContactNormal::centres) assembly.points.back().free_gap_m = free_gap_between_circles(assembly, contact);
     add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
 }
@@ -260,19 +308,19 @@ void remember_shapes(Assembly& assembly, const Contact& contact) {
 // Where a point of the undeformed edge of this body is now.
 Vec2 now(const Assembly& assembly, const Body& body, const SideNodes& node, int end, Vec2 X) {
     if (body.kind == BodyKind::flexible) return assembly.nodes.position(node[end]);
-    const double rotation = assembly.nodes.displacement[body.centre_node + 1].x / body.radius_m;
-    return assembly.nodes.position(body.centre_node) + turned(X - assembly.nodes.reference[body.centre_node], rotation);
+    return assembly.nodes.position(body.centre_node) + turned(X - assembly.nodes.reference[body.centre_node], assembly.rotation(body));
 }
 
 // The edge of a grain that is closest to x, and its length; a disc hangs by its centre and is as wide as its diameter.
 struct ClosestEdge {
     SideNodes node{};
+    std::int32_t edge = -1;
     double length_m = 0.0;
 };
 
 ClosestEdge closest_edge(const Assembly& assembly, int index, Vec2 x) {
     const Body& body = assembly.bodies[index];
-    if (body.edge_begin == body.edge_end) return {nodes_of_disc(assembly, index), 2.0 * body.radius_m};
+    if (body.edge_begin == body.edge_end) return {nodes_of_disc(assembly, index), -1, 2.0 * body.radius_m};
     ClosestEdge best;
     double best_distance = std::numeric_limits<double>::infinity();
     for (int e = body.edge_begin; e < body.edge_end; ++e) {
@@ -282,7 +330,7 @@ ClosestEdge closest_edge(const Assembly& assembly, int index, Vec2 x) {
         const double distance = norm(x - (p0 + along * line));
         if (distance < best_distance) {
             best_distance = distance;
-            best = {edge.node, norm(line)};
+            best = {edge.node, e, norm(line)};
         }
     }
     return best;
@@ -296,6 +344,33 @@ int Nodes::add(Vec2 place, Vec2 free) {
     inverse_mass.push_back(free);
     mass.push_back(1.0);
     return count() - 1;
+}
+
+void Bonds::resize(std::size_t count) {
+    for (auto* quantity : {&un_m, &us_m, &Fn_N, &Fs_N, &max_un_m, &max_us_m, &damage, &fracture_J, &friction_J}) quantity->resize(count);
+}
+
+void Bonds::set(std::size_t i, const BondState& s) {
+    un_m[i] = s.un_m;
+    us_m[i] = s.us_m;
+    Fn_N[i] = s.Fn_N;
+    Fs_N[i] = s.Fs_N;
+    max_un_m[i] = s.max_un_m;
+    max_us_m[i] = s.max_us_m;
+    damage[i] = s.damage;
+    fracture_J[i] = s.fracture_J;
+    friction_J[i] = s.friction_J;
+}
+
+int Assembly::add_point(double along_m, double area_m2, const BondState& bond) {
+    ContactPoint point;
+    point.along_m = along_m;
+    point.area_m2 = area_m2;
+    point.state = static_cast<std::int32_t>(points.size());
+    points.push_back(point);
+    bonds.resize(points.size());
+    set_bond(point.state, bond);
+    return point.state;
 }
 
 Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact) {
@@ -321,14 +396,14 @@ Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainM
             add_contacts_of_particles(assembly, specimen.filling, model.normal);
             break;
     }
-    assembly.body_work.resize(assembly.bodies.size());
-    index_slots(assembly);
+    index_bodies(assembly);
+    index_contacts(assembly);
     return assembly;
 }
 
-ContactSide side_of(const Assembly& assembly, int body, const SideNodes& node) {
+ContactSide side_of(const Assembly& assembly, int body, const SideNodes& node, int edge) {
     const Body& b = assembly.bodies[body];
-    return {node, body, b.centre_node, b.radius_m > 0.0 ? 1.0 / b.radius_m : 0.0};
+    return {node, body, edge, b.centre_node, b.radius_m > 0.0 ? 1.0 / b.radius_m : 0.0};
 }
 
 void add_contact(Assembly& assembly, const Contact& contact, const ContactOrigin& origin) {
@@ -338,7 +413,12 @@ void add_contact(Assembly& assembly, const Contact& contact, const ContactOrigin
     if (assembly.contacts.back().flexible) remember_shapes(assembly, contact);
 }
 
-void index_slots(Assembly& assembly) {
+void index_bodies(Assembly& assembly) {
+    assembly.body_work.resize(assembly.bodies.size());
+    index_grain_packs(assembly);
+}
+
+void index_contacts(Assembly& assembly) {
     std::vector<std::int32_t> count(assembly.bodies.size() + 1, 0);
     const auto for_each_slot = [&](auto visit) {
         for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
@@ -354,7 +434,7 @@ void index_slots(Assembly& assembly) {
     }
     assembly.slots_of_bodies.resize(static_cast<std::size_t>(count.back()));
     for_each_slot([&](int body, std::int32_t slot) { assembly.slots_of_bodies[assembly.bodies[body].slot_end++] = slot; });
-    assembly.slots.resize(2 * assembly.contacts.size());
+    index_contact_packs(assembly);
 }
 
 void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_overlap_m, double closing_distance_m) {
@@ -367,23 +447,26 @@ void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_ove
     contact.new_contact = true;
     const Vec2 x = xa + ((0.5 * d + contact.offset_m) / d) * line;
     const ClosestEdge edge_a = closest_edge(assembly, body_a, x), edge_b = closest_edge(assembly, body_b, x);
-    contact.a = side_of(assembly, body_a, edge_a.node);
-    contact.b = side_of(assembly, body_b, edge_b.node);
-    contact.first_point = static_cast<std::int32_t>(assembly.points.size());
+    contact.a = side_of(assembly, body_a, edge_a.node, edge_a.edge);
+    contact.b = side_of(assembly, body_b, edge_b.node, edge_b.edge);
     contact.points = 1;
-    ContactPoint point;
-    point.area_m2 = std::min(edge_a.length_m, edge_b.length_m) * assembly.thickness_m;
-    point.bond.un_m = -(ra + rb - d - rest_overlap_m);
-    point.bond.damage = 1.0;
-    if (point.bond.un_m < 0.0) point.bond.Fn_N = -assembly.laws[contact.material].Kn_Pa_m * point.area_m2 * point.bond.un_m;
-    assembly.points.push_back(point);
+    const double area = std::min(edge_a.length_m, edge_b.length_m) * assembly.thickness_m;
+    BondState bond;
+    bond.un_m = -(ra + rb - d - rest_overlap_m);
+    bond.damage = 1.0;
+    if (bond.un_m < 0.0) bond.Fn_N = -assembly.laws[contact.material].Kn_Pa_m * area * bond.un_m;
+    contact.first_point = assembly.add_point(0.0, area, bond);
     add_contact(assembly, contact, {});
 }
 
 double Assembly::memory_bytes() const {
     const auto bytes = [](const auto& v) { return static_cast<double>(v.capacity() * sizeof(v[0])); };
-    return bytes(nodes.reference) * 6.0 + bytes(nodes.mass) + bytes(triangles) + bytes(bodies) + bytes(edges) + bytes(contacts) + bytes(origins) +
-           bytes(points) + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) + bytes(pressure_edges) + bytes(body_work);
+    double sum = bytes(nodes.reference) * 6.0 + bytes(nodes.mass) + bytes(triangles) + bytes(bodies) + bytes(edges) + bytes(node_of_mesh) + bytes(contacts) +
+                 bytes(origins) + bytes(points) + bytes(bonds.un_m) * 9.0 + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) +
+                 bytes(pressure_edges) + bytes(body_work);
+    sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.field_of_edge) + bytes(packs.fields) + bytes(packs.inverse_cross) +
+           bytes(packs.slot_of_edge) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.field_a) * 2.0 + bytes(packs.along) * 2.0;
+    return sum;
 }
 
 }  // namespace feldspar

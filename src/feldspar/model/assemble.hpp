@@ -17,15 +17,19 @@ namespace feldspar {
 /// @throws InputError  inner particles are asked for, but the specimen is not filled
 Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact);
 
-/// The side of a contact that hangs on these nodes of a body.
-ContactSide side_of(const Assembly& assembly, int body, const SideNodes& node);
+/// The side of a contact that hangs on these nodes of a body. @param edge  into Assembly::edges, -1 of a disc or a plate
+ContactSide side_of(const Assembly& assembly, int body, const SideNodes& node, int edge);
 
 /// Adds a contact with its origin and, between flexible bodies, its remembered shape functions; its points must stand at the
 /// end of Assembly::points.
 void add_contact(Assembly& assembly, const Contact& contact, const ContactOrigin& origin);
 
-/// Rebuilds the lists by which bodies gather their contacts' slots; needed after contacts were added.
-void index_slots(Assembly& assembly);
+/// Rebuilds what follows from the bodies: their work, and the packs of grains. Needed after bodies were added.
+void index_bodies(Assembly& assembly);
+
+/// Rebuilds what follows from the contacts: the lists by which bodies gather their slots, and the packs of contacts. Needed after
+/// contacts were added or dropped.
+void index_contacts(Assembly& assembly);
 
 /// Adds a frictional one-point contact on the closest edge of each of two bodies; the point starts at the
 /// gap -(RA + RB - d) - `rest_overlap_m`, broken, with the force of that gap. The area is that of the shorter edge; of discs, of the smaller diameter.

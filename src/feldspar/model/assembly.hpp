@@ -1,8 +1,9 @@
 // What is simulated and who owns it. Every array has one owner, the Assembly; stages take what they need of it.
 //
-// Layout: nodes and triangles belong to one body each and are contiguous by body, so that the body stage works in a
-// few kilobytes at a time and never touches another body. A contact reads both of its bodies and writes only its own two
-// slots; a body gathers its slots in a fixed order. So there are no atomics, and the same bits for any number of threads.
+// Layout: nodes and triangles belong to one body each, so that the body stage works in a few kilobytes at a time and never
+// touches another body. A contact reads both of its bodies and writes only its own two slots; a body gathers its slots in a
+// fixed order. So there are no atomics, and the same bits for any number of threads. Grains of equal topology, and contacts
+// with equally many points, stand side by side in packs (model/packs.hpp), so that vector instructions can take a pack at a time.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include "feldspar/base/vec2.hpp"
 #include "feldspar/laws/bond.hpp"
 #include "feldspar/laws/plane_elasticity.hpp"
+#include "feldspar/model/packs.hpp"
 #include "feldspar/model/spec.hpp"
 
 namespace feldspar {
@@ -48,11 +50,36 @@ struct Triangle {
 
 enum class BodyKind : std::uint8_t { flexible, rigid, plate };
 
+/// Node numbers of a body: those of a flexible grain stand a lane apart from each other.
+class NodeNumbers {
+public:
+    class Iterator {
+    public:
+        Iterator(std::int32_t node, std::int32_t stride) : node_(node), stride_(stride) {}
+        std::int32_t operator*() const { return node_; }
+        Iterator& operator++() {
+            node_ += stride_;
+            return *this;
+        }
+        friend bool operator==(const Iterator& l, const Iterator& r) { return l.node_ == r.node_; }
+
+    private:
+        std::int32_t node_, stride_;
+    };
+    NodeNumbers(std::int32_t first, std::int32_t count, std::int32_t stride) : first_(first), count_(count), stride_(stride) {}
+    Iterator begin() const { return {first_, stride_}; }
+    Iterator end() const { return {first_ + count_ * stride_, stride_}; }
+
+private:
+    std::int32_t first_, count_, stride_;
+};
+
 /// What moves by itself: a flexible grain, a rigid grain, an inner particle (a rigid disc), a plate.
 struct Body {
     BodyKind kind = BodyKind::flexible;
     std::int32_t grain = -1;                         ///< the Laguerre cell that it is, or lies in; -1: a plate
-    std::int32_t node_begin = 0, node_end = 0;
+    std::int32_t first_node = 0, node_count = 0;
+    std::int32_t node_stride = 1;                    ///< between its nodes: the lanes of its pack
     std::int32_t triangle_begin = 0, triangle_end = 0;
     std::int32_t edge_begin = 0, edge_end = 0;       ///< into Assembly::edges; none of a disc or a plate
     std::int32_t slot_begin = 0, slot_end = 0;       ///< into Assembly::slots_of_bodies
@@ -62,6 +89,9 @@ struct Body {
     Vec2 normal;                                     ///< of a plate: from the specimen into it
     double volume_m3 = 0.0;                          ///< of a rigid body, for its real mass; of a disc its share of the grain
     double gyration_m2 = 0.0;                        ///< of a rigid body: moment of inertia over mass
+
+    std::int32_t node(int local) const { return first_node + local * node_stride; }
+    NodeNumbers nodes() const { return {first_node, node_count, node_stride}; }
 };
 
 /// Where a contact hangs on a body: a flexible one by the triangle behind the edge (its first two nodes are the edge), a
@@ -78,6 +108,7 @@ struct GrainEdge {
 struct ContactSide {
     SideNodes node{};
     std::int32_t body = -1;
+    std::int32_t edge = -1;         ///< into Assembly::edges; -1 of a disc or a plate
     std::int32_t centre_node = 0;   ///< of the body
     double inverse_radius = 0.0;    ///< 1/m, of the body's contact circle
 };
@@ -107,12 +138,12 @@ struct ContactOrigin {
     Vec2 from, to;                           ///< m, undeformed: the part of the grain edge that the contact stands for
 };
 
-/// A quadrature point of a contact: its constants and its bond.
+/// A quadrature point of a contact: its constants and when it broke. Its bond is Assembly::bond().
 struct ContactPoint {
     double along_m = 0.0;          ///< W_J: from the reference point along the edge's tangent
     double area_m2 = 0.0;          ///< A_J
     double free_gap_m = 0.0;       ///< between the circles of two bonded discs that do not touch; 0 for facing edges
-    BondState bond;
+    std::int32_t state = -1;       ///< where its bond stands in Assembly::bonds
     long long broken_step = -1;    ///< step at which damage became 1; -1: not broken, or broken from the start
     bool broke_in_tension = false;
     bool lost_compression = false; ///< compression left at an open gap vanished when it broke
@@ -124,8 +155,35 @@ struct InitialShape {
     std::array<double, 3> covered_a{}, covered_b{};  ///< |N_i| sum|N_j| that the masses of the nodes already allow for
 };
 
-/// Generalised forces on the nodes of a contact's side: on three corners; on centre and turn; on a plate's node.
-using SlotForces = std::array<Vec2, 3>;
+/// The bonds of all contact points, quantity by quantity (BondState).
+struct Bonds {
+    std::vector<double> un_m, us_m, Fn_N, Fs_N, max_un_m, max_us_m, damage, fracture_J, friction_J;
+
+    void resize(std::size_t count);
+    BondState at(std::size_t i) const {
+        return {un_m[i], us_m[i], Fn_N[i], Fs_N[i], max_un_m[i], max_us_m[i], damage[i], fracture_J[i], friction_J[i]};
+    }
+    void set(std::size_t i, const BondState& s);
+};
+
+/// What a contact does to one of its bodies: the force, and its first moment about the body's centre, sum of F (x) (x - centre).
+/// A linear velocity field v + L (x - centre) gets the power F v + M : L, so this is all that a body needs to know, be it the
+/// triangle behind an edge, a rigid body (turning moment Myx - Mxy) or a plate.
+struct alignas(64) SlotForces {
+    Vec2 force;    ///< N
+    Mat2 moment;   ///< N m
+
+    void add(Vec2 F, Vec2 arm) {
+        force += F;
+        moment.xx += F.x * arm.x;
+        moment.xy += F.x * arm.y;
+        moment.yx += F.y * arm.x;
+        moment.yy += F.y * arm.y;
+    }
+};
+
+/// About the body's centre, N m.
+inline double turning_moment(const SlotForces& slot) { return slot.moment.yx - slot.moment.xy; }
 
 /// What loads the specimen: rows of its own nodes (flexible grains between platens), or the node of a plate in contact with it.
 struct Platen {
@@ -159,20 +217,28 @@ struct Assembly {
     std::vector<Triangle> triangles;
     std::vector<Body> bodies;                  ///< the grains, or their inner particles; then the plates
     std::vector<GrainEdge> edges;
+    std::vector<std::int32_t> node_of_mesh;    ///< flexible grains: node of each node of the grain mesh
     std::vector<Contact> contacts;
     std::vector<ContactOrigin> origins;        ///< a contact
     std::vector<ContactPoint> points;
+    Bonds bonds;                               ///< of the points, in the order of the packs
     std::vector<InitialShape> initial_shapes;  ///< a contact point; empty where no body is flexible
-    std::vector<SlotForces> slots;             ///< 2 x contact + side
+    std::vector<SlotForces> slots;             ///< 2 x contact + side; behind them those of the packs
     std::vector<std::int32_t> slots_of_bodies; ///< slot numbers, contiguous by body
     std::vector<PressureEdge> pressure_edges;  ///< contiguous by body
     std::vector<BodyWork> body_work;
     std::array<Platen, 2> platens;             ///< 0 loading (top), 1 at rest (bottom)
     double pressure_Pa = 0.0;                  ///< on the pressure edges, compression positive
+    Packs packs;
 
     Vec2 centre(int body) const { return nodes.position(bodies[body].centre_node); }
     /// Rotation of a rigid body, rad.
-    double rotation(int body) const { return nodes.displacement[bodies[body].centre_node + 1].x / bodies[body].radius_m; }
+    double rotation(const Body& body) const { return nodes.displacement[body.centre_node + 1].x / body.radius_m; }
+    double rotation(int body) const { return rotation(bodies[body]); }
+    BondState bond(int point) const { return bonds.at(static_cast<std::size_t>(points[point].state)); }
+    void set_bond(int point, const BondState& bond) { bonds.set(static_cast<std::size_t>(points[point].state), bond); }
+    /// Adds a contact point. @return its number
+    int add_point(double along_m, double area_m2, const BondState& bond = {});
     double memory_bytes() const;
 };
 

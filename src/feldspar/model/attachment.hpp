@@ -1,8 +1,8 @@
 // How a contact hangs on a body: the one thing in which flexible grains, rigid bodies and plates differ to a contact.
 //
 // An attachment says, for a point x of the contact, how the side's nodes move that point (`Weights`), with which velocity, and
-// where a force at the point goes. The force goes back by the very weights that the velocity comes from, so what the contact
-// does to the nodes is the work that it does at the point (paper, equations (9)-(10) and (18)-(19)).
+// at which arm from the body's centre a force at the point acts. The body takes force and moment back by the very weights that the velocity
+// comes from, so what the contact does to the nodes is the work that it does at the point (paper, equations (9)-(10) and (18)-(19)).
 #pragma once
 
 #include <array>
@@ -23,22 +23,34 @@ inline std::array<Vec2, 3> corners(const Nodes& nodes, const SideNodes& t) {
     return {nodes.position(t[0]), nodes.position(t[1]), nodes.position(t[2])};
 }
 
+/// What the corners p of a triangle feel of a force F and its moment M about a centre c that moves with the triangle's linear field:
+/// f_i = N_i(c) F + M grad N_i.
+inline std::array<Vec2, 3> forces_on_corners(const std::array<Vec2, 3>& p, Vec2 centre, const SlotForces& slot) {
+    const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0], r = centre - p[0], F = slot.force;
+    const double inverse = 1.0 / cross(e1, e2);
+    const Vec2 Mx = {slot.moment.xx + r.x * F.x, slot.moment.yx + r.x * F.y};   // about p[0], column by column
+    const Vec2 My = {slot.moment.xy + r.y * F.x, slot.moment.yy + r.y * F.y};
+    const Vec2 f1 = inverse * (e2.y * Mx - e2.x * My), f2 = inverse * (e1.x * My - e1.y * Mx);
+    return {F - f1 - f2, f1, f2};
+}
+
 /// A flexible grain: by the triangle behind the edge.
 class TriangleAttachment {
 public:
     using Weights = std::array<double, 3>;
 
     TriangleAttachment(const Assembly& assembly, const ContactSide& side)
-        : corner_(corners(assembly.nodes, side.node)),
+        : centre_(assembly.nodes.position(side.centre_node)),
+          corner_(corners(assembly.nodes, side.node)),
           velocity_{assembly.nodes.velocity[side.node[0]], assembly.nodes.velocity[side.node[1]], assembly.nodes.velocity[side.node[2]]} {}
 
     Weights at(Vec2 x) const { return shape_functions(corner_, x); }
     Vec2 velocity(const Weights& N) const { return N[0] * velocity_[0] + N[1] * velocity_[1] + N[2] * velocity_[2]; }
-    static void add(SlotForces& slot, const Weights& N, Vec2 force) {
-        for (int i = 0; i < 3; ++i) slot[i] += N[i] * force;
-    }
+    /// Weights of the undeformed state belong to another point of the triangle than x: the arm is that point's.
+    Vec2 arm(const Weights& N, Vec2) const { return N[0] * (corner_[0] - centre_) + N[1] * (corner_[1] - centre_) + N[2] * (corner_[2] - centre_); }
 
 private:
+    Vec2 centre_;
     std::array<Vec2, 3> corner_;
     std::array<Vec2, 3> velocity_;
 };
@@ -56,10 +68,7 @@ public:
 
     Weights at(Vec2 x) const { return inverse_radius_ * rot90(x - centre_); }
     Vec2 velocity(Weights arc) const { return velocity_ + arc_velocity_ * arc; }
-    static void add(SlotForces& slot, Weights arc, Vec2 force) {
-        slot[0] += force;
-        slot[1].x += dot(arc, force);
-    }
+    Vec2 arm(Weights, Vec2 x) const { return x - centre_; }
 
 private:
     Vec2 centre_, velocity_;
@@ -76,7 +85,7 @@ public:
 
     Weights at(Vec2) const { return {}; }
     Vec2 velocity(Weights) const { return velocity_; }
-    static void add(SlotForces& slot, Weights, Vec2 force) { slot[0] += force; }
+    Vec2 arm(Weights, Vec2) const { return {}; }
 
 private:
     Vec2 velocity_;

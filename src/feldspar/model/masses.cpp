@@ -66,7 +66,8 @@ std::vector<Vec2> finite_element_row_sums(const Assembly& assembly) {
     std::vector<double> K;
     for (const Body& body : assembly.bodies) {
         if (body.kind != BodyKind::flexible) continue;
-        const int n = body.node_end - body.node_begin, dofs = 2 * n;
+        const int n = body.node_count, dofs = 2 * n;
+        const auto local = [&](int node) { return (node - body.first_node) / body.node_stride; };
         K.assign(static_cast<std::size_t>(dofs) * dofs, 0.0);
         for (int t = body.triangle_begin; t < body.triangle_end; ++t) {
             const Triangle& triangle = assembly.triangles[t];
@@ -74,8 +75,8 @@ std::vector<Vec2> finite_element_row_sums(const Assembly& assembly) {
             const std::array<Vec2, 3> g = {-(g1 + g2), g1, g2};
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j) {
-                    double* row = &K[static_cast<std::size_t>(2 * (triangle.node[i] - body.node_begin)) * dofs];
-                    const int column = 2 * (triangle.node[j] - body.node_begin);
+                    double* row = &K[static_cast<std::size_t>(2 * local(triangle.node[i])) * dofs];
+                    const int column = 2 * local(triangle.node[j]);
                     const double V = triangle.volume_m3;
                     row[column] += V * (D11 * g[i].x * g[j].x + D33 * g[i].y * g[j].y);
                     row[column + 1] += V * (D12 * g[i].x * g[j].y + D33 * g[i].y * g[j].x);
@@ -85,8 +86,8 @@ std::vector<Vec2> finite_element_row_sums(const Assembly& assembly) {
         }
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < dofs; ++j) {
-                sums[body.node_begin + i].x += std::abs(K[static_cast<std::size_t>(2 * i) * dofs + j]);
-                sums[body.node_begin + i].y += std::abs(K[static_cast<std::size_t>(2 * i + 1) * dofs + j]);
+                sums[body.node(i)].x += std::abs(K[static_cast<std::size_t>(2 * i) * dofs + j]);
+                sums[body.node(i)].y += std::abs(K[static_cast<std::size_t>(2 * i + 1) * dofs + j]);
             }
     }
     return sums;

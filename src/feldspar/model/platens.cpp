@@ -19,6 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Where the outline can be pressed: a grain's edge on it, or an inner particle's share of that edge. Counter-clockwise.
 struct OutlineSite {
     int body = 0;
+    int grain_edge = -1;   // into Assembly::edges
     SideNodes node{};
     Vec2 from, to;
     int label = 0;   // into Outline::edge_labels
@@ -31,17 +32,18 @@ std::vector<OutlineSite> outline_sites(const Assembly& assembly, const Specimen&
     std::vector<OutlineSite> sites;
     const std::vector<Cell>& cells = specimen.cells.cells;
     for (const OutlineShare& share : specimen.filling.outline) {
-        const std::int32_t node = assembly.bodies[share.particle].node_begin;
+        const Body& body = assembly.bodies[share.particle];
         if (assembly.edges.empty())   // the bodies are the particles
-            sites.push_back({share.particle, {node, node + 1, -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
+            sites.push_back({share.particle, -1, {body.node(0), body.node(1), -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
     }
     std::stable_sort(sites.begin(), sites.end(), [](const OutlineSite& l, const OutlineSite& r) { return l.body < r.body; });
     if (assembly.edges.empty()) return sites;
     for (int g = 0; g < std::ssize(cells); ++g)
         for (int k = 0; k < std::ssize(cells[g].vertices); ++k) {
             if (cells[g].neighbours[k] >= 0) continue;
-            const GrainEdge& edge = assembly.edges[assembly.bodies[g].edge_begin + k];
-            sites.push_back({g, edge.node, edge.from, edge.to, cells[g].outline_edges[k]});
+            const int grain_edge = assembly.bodies[g].edge_begin + k;
+            const GrainEdge& edge = assembly.edges[grain_edge];
+            sites.push_back({g, grain_edge, edge.node, edge.from, edge.to, cells[g].outline_edges[k]});
         }
     return sites;
 }
@@ -59,10 +61,9 @@ int add_plate(Assembly& assembly, Vec2 place, Vec2 normal, Vec2 free) {
     Body plate;
     plate.kind = BodyKind::plate;
     plate.normal = normal;
-    plate.node_begin = plate.centre_node = assembly.nodes.add(place, free);
-    plate.node_end = plate.node_begin + 1;
+    plate.first_node = plate.centre_node = assembly.nodes.add(place, free);
+    plate.node_count = 1;
     assembly.bodies.push_back(plate);
-    assembly.body_work.emplace_back();
     return static_cast<int>(assembly.bodies.size()) - 1;
 }
 
@@ -70,19 +71,16 @@ int add_plate(Assembly& assembly, Vec2 place, Vec2 normal, Vec2 free) {
 void add_plate_contact(Assembly& assembly, const OutlineSite& site, int plate, Vec2 touch, double area_m2, double gap_m, ContactRole material) {
     const Vec2 normal = assembly.bodies[plate].normal, arm = touch - assembly.centre(site.body);
     Contact contact;
-    contact.a = side_of(assembly, site.body, site.node);
-    contact.b = side_of(assembly, plate, {assembly.bodies[plate].centre_node, -1, -1});
+    contact.a = side_of(assembly, site.body, site.node, site.grain_edge);
+    contact.b = side_of(assembly, plate, {assembly.bodies[plate].centre_node, -1, -1}, -1);
     contact.plate = true;
     contact.material = material;
     contact.offset_m = dot(arm, normal);
-    contact.first_point = static_cast<std::int32_t>(assembly.points.size());
     contact.points = 1;
-    ContactPoint point;
-    point.along_m = dot(arm, rot90(normal));
-    point.area_m2 = area_m2;
-    point.bond.un_m = gap_m;
-    if (assembly.laws[material].sigma_nt_Pa == 0.0) point.bond.damage = 1.0;   // not glued
-    assembly.points.push_back(point);
+    BondState bond;
+    bond.un_m = gap_m;
+    if (assembly.laws[material].sigma_nt_Pa == 0.0) bond.damage = 1.0;   // not glued
+    contact.first_point = assembly.add_point(dot(arm, rot90(normal)), area_m2, bond);
     add_contact(assembly, contact, {-1, -1, site.from, site.to});
 }
 
@@ -215,7 +213,8 @@ void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const
         if (touches.empty()) throw InputError({}, "no grain of the disc faces the plates");
         attach_plate(assembly, side, touches, [&](const OutlineSite& site) { return 2.0 * assembly.bodies[site.body].radius_m * assembly.thickness_m; });
     }
-    index_slots(assembly);
+    index_bodies(assembly);
+    index_contacts(assembly);
 }
 
 void attach_end_plates(Assembly& assembly, const Specimen& specimen, const PlateContact& contact) {
@@ -229,7 +228,8 @@ void attach_end_plates(Assembly& assembly, const Specimen& specimen, const Plate
     require_ends({!touches[0].empty(), !touches[1].empty()});
     for (int side = 0; side < 2; ++side)
         attach_plate(assembly, side, touches[side], [&](const OutlineSite& site) { return site.length() * assembly.thickness_m; });
-    index_slots(assembly);
+    index_bodies(assembly);
+    index_contacts(assembly);
 }
 
 void attach_membranes(Assembly& assembly, const Specimen& specimen, const PlateContact& contact, int plates) {
@@ -265,7 +265,8 @@ void attach_membranes(Assembly& assembly, const Specimen& specimen, const PlateC
             add_plate_contact(assembly, site, plate, {site.from.x, y}, site.length() * assembly.thickness_m, 0.0, at_membranes);
         }
     }
-    index_slots(assembly);
+    index_bodies(assembly);
+    index_contacts(assembly);
 }
 
 double loaded_width_m(const Assembly& assembly, const Specimen& specimen) {

@@ -1,31 +1,34 @@
 #include <cmath>
 
+#include "feldspar/model/attachment.hpp"
 #include "feldspar/step/step.hpp"
 
 namespace feldspar {
 namespace {
 
 void gather_contacts(Assembly& assembly, const Body& body) {
-    for (int n = body.node_begin; n < body.node_end; ++n) assembly.nodes.force[n] = {};
+    for (const int n : body.nodes()) assembly.nodes.force[n] = {};
+    const Vec2 centre = assembly.nodes.position(body.centre_node);
     for (int i = body.slot_begin; i < body.slot_end; ++i) {
         const int slot = assembly.slots_of_bodies[i];
         const Contact& contact = assembly.contacts[slot / 2];
         const SideNodes& node = slot % 2 == 0 ? contact.a.node : contact.b.node;
-        for (int k = 0; k < 3; ++k) assembly.nodes.force[node[k]] += assembly.slots[slot][k];
+        const std::array<Vec2, 3> f = forces_on_corners(corners(assembly.nodes, node), centre, assembly.slots[slot]);
+        for (int k = 0; k < 3; ++k) assembly.nodes.force[node[k]] += f[k];
     }
 }
 
 // All slots of a rigid body act on its centre and its turn; a plate has no turn, and nothing in its second slot.
 void gather_at_centre(Assembly& assembly, const Body& body) {
     Vec2 force;
-    double moment = 0.0;   // over the radius
+    double moment = 0.0;
     for (int i = body.slot_begin; i < body.slot_end; ++i) {
         const SlotForces& slot = assembly.slots[assembly.slots_of_bodies[i]];
-        force += slot[0];
-        moment += slot[1].x;
+        force += slot.force;
+        moment += turning_moment(slot);
     }
     assembly.nodes.force[body.centre_node] = force;
-    if (body.kind == BodyKind::rigid) assembly.nodes.force[body.centre_node + 1] = {moment, 0.0};
+    if (body.kind == BodyKind::rigid) assembly.nodes.force[body.centre_node + 1] = {moment / body.radius_m, 0.0};
 }
 
 void add_triangles(Assembly& assembly, const Body& body) {
@@ -82,7 +85,7 @@ void integrate(Assembly& assembly, const Body& body, const StepSettings& setting
     Nodes& nodes = assembly.nodes;
     const double dt = settings.dt;
     double dissipated = 0.0;
-    for (int n = body.node_begin; n < body.node_end; ++n) {
+    for (const int n : body.nodes()) {
         Vec2& V = nodes.velocity[n];
         const Vec2 F = nodes.force[n], inverse_mass = nodes.inverse_mass[n], B = nodes.loading_mode[n];
         if constexpr (damping == Damping::local) {

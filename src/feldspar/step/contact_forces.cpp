@@ -39,17 +39,19 @@ void forces_of_contact(Assembly& assembly, const Contact& contact, SlotForces& s
         const auto Nb = weights(b, x, contact.initial_shape, initial ? &initial->b : nullptr);
         const Vec2 relative = b.velocity(Nb) - a.velocity(Na);
 
+        BondState bond = assembly.bond(p);
         const BondEvent event = apply_law(law, point.area_m2, settings.dt * dot(relative, frame.n), settings.dt * dot(relative, s),
-                                          settings.strength, point.bond);
+                                          settings.strength, bond);
         if (event != BondEvent::none) {
             point.broken_step = step;
             point.broke_in_tension = event == BondEvent::broke_in_tension;
             point.lost_compression = event == BondEvent::broke_in_shear_losing_compression;
-            if (point.free_gap_m > 0.0) free_gap(law, point.area_m2, point.free_gap_m, point.bond);
+            if (point.free_gap_m > 0.0) free_gap(law, point.area_m2, point.free_gap_m, bond);
         }
-        const Vec2 on_b = point.bond.Fn_N * frame.n + point.bond.Fs_N * s;   // compression pushes B along n
-        AttachmentA::add(slot_a, Na, -on_b);
-        AttachmentB::add(slot_b, Nb, on_b);
+        assembly.set_bond(p, bond);
+        const Vec2 on_b = bond.Fn_N * frame.n + bond.Fs_N * s;   // compression pushes B along n
+        slot_a.add(-on_b, a.arm(Na, x));
+        slot_b.add(on_b, b.arm(Nb, x));
     }
 }
 

@@ -30,7 +30,7 @@ std::vector<Pair> pairs_in_contact(const Assembly& assembly) {
 // Every bond of the contact is broken and open by more than the skin.
 bool wide_open(const Assembly& assembly, const Contact& contact, double skin_m) {
     for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
-        if (assembly.points[p].bond.damage < 1.0) return false;
+        if (assembly.bond(p).damage < 1.0) return false;
     return norm(assembly.centre(contact.b.body) - assembly.centre(contact.a.body)) > contact.closing_distance_m + skin_m;
 }
 
@@ -91,13 +91,13 @@ ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_fac
         const double d = norm(assembly.centre(pair.b) - assembly.centre(pair.a));
         if (d >= radii - pair.rest_overlap_m) return false;
         add_new_contact(assembly, pair.a, pair.b, pair.rest_overlap_m, radii);
-        const ContactPoint& point = assembly.points[assembly.contacts.back().first_point];
-        changes.elastic_J += elastic_energy(assembly.laws[between_grains], point.area_m2, point.bond);
+        const int p = assembly.contacts.back().first_point;
+        changes.elastic_J += elastic_energy(assembly.laws[between_grains], assembly.points[p].area_m2, assembly.bond(p));
         if (mass_factor > 0.0) changes.kinetic_J += add_contact_mass(assembly, assembly.contacts.back(), mass_factor);
         ++changes.made;
         return true;
     });
-    if (changes.made + changes.dropped > 0) index_slots(assembly);
+    if (changes.made + changes.dropped > 0) index_contacts(assembly);
     return changes;
 }
 
