@@ -4,7 +4,21 @@
 
 #include <algorithm>
 
+#include "feldspar/base/error.hpp"
+#include "feldspar/base/parallel.hpp"
+#include "interrupt.hpp"
+
 namespace feldspar {
+namespace {
+
+// From here on a test gets all threads: they work together as well as apart, and many tests of this size at once would fill the
+// memory (some 140 MB each).
+constexpr int large_body_count = 20000;
+
+// With fewer bodies than this a thread waits at the barriers of a step for longer than it works.
+constexpr int least_bodies_per_thread = 50;
+
+}  // namespace
 
 std::vector<PlannedRun> planned_runs(const Job& job) {
     std::vector<std::uint64_t> seeds = job.seeds;
@@ -36,17 +50,55 @@ std::string title(const std::string& variant, const TestSpec& test) {
     return variant.empty() ? title(test) : variant + ": " + title(test);
 }
 
-std::shared_ptr<const Specimen> Specimens::get(const PlannedRun& run, const SpecimenControl& control) {
-    std::shared_ptr<const Specimen>& specimen = made_[key_of(run)];
-    if (!specimen) {
-        const bool disc = run.test->kind == TestKind::brazilian;
-        specimen = std::make_shared<const Specimen>(make_specimen(disc ? job_->brazilian_specimen : job_->specimen, run.seed, control));
+std::vector<Specimens::Key> Specimens::missing_keys(std::span<const PlannedRun> runs) const {
+    std::vector<Key> keys;
+    for (const PlannedRun& run : runs) {
+        const Key key = key_of(run);
+        if (!made_.contains(key) && std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
     }
-    return specimen;
+    return keys;
 }
 
-std::string Specimens::packing_stem(const PlannedRun& run) {
-    return fmt::format("packing-{}s{}", run.test->kind == TestKind::brazilian ? "disc-" : "", run.seed);
+void Specimens::make(std::span<const PlannedRun> runs, int threads, const Tell& tell) {
+    const std::vector<Key> keys = missing_keys(runs);
+    if (keys.empty()) return;
+    std::vector<std::shared_ptr<const Specimen>> made(keys.size());
+    const int count = static_cast<int>(keys.size());
+    side_by_side(count, threads, [&](int i) {
+        const auto [disc, seed] = keys[static_cast<std::size_t>(i)];
+        SpecimenControl control;
+        control.threads = std::max(1, threads / count);
+        control.progress = [&, stem = packing_stem(disc, seed)](const SpecimenProgress& progress) {
+            if (stop_requested()) throw Interrupted();
+            if (count == 1 && tell) tell(stem, progress);   // of several at once, none by itself
+        };
+        made[static_cast<std::size_t>(i)] =
+            std::make_shared<const Specimen>(make_specimen(disc ? job_->brazilian_specimen : job_->specimen, seed, control));
+    });
+    for (std::size_t i = 0; i < keys.size(); ++i) made_[keys[i]] = std::move(made[i]);
+}
+
+std::shared_ptr<const Specimen> Specimens::get(const PlannedRun& run, int threads, const Tell& tell) {
+    make({&run, 1}, threads, tell);
+    return made_.at(key_of(run));
+}
+
+std::string Specimens::packing_stem(bool disc, std::uint64_t seed) { return fmt::format("packing-{}s{}", disc ? "disc-" : "", seed); }
+
+std::string Specimens::packing_stem(const PlannedRun& run) { return packing_stem(run.test->kind == TestKind::brazilian, run.seed); }
+
+int body_count(const PlannedRun& run, const Specimen& specimen) {
+    const bool inner = run.variant->model.kind == GrainKind::inner_particles;
+    return static_cast<int>(inner ? specimen.filling.centres.size() : specimen.cells.cells.size());
+}
+
+int Sharing::most_at_once(int bodies) const {
+    if (at_once_ > 0) return std::min(at_once_, threads_);
+    return bodies < large_body_count ? threads_ : 1;
+}
+
+int Sharing::useful_threads(int bodies) const {
+    return at_once_ > 0 ? threads_ : std::clamp(bodies / least_bodies_per_thread, 1, threads_);
 }
 
 TestSetup setup_of(const PlannedRun& run, std::shared_ptr<const Specimen> specimen) {

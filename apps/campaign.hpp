@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,23 +31,55 @@ std::string title(const TestSpec& test);
 /// The same with the variant's name before it, if it has one: "Rigid, brittle: biaxial at 4 MPa".
 std::string title(const std::string& variant, const TestSpec& test);
 
-/// The packings of a job, each made once.
+/// The packings of a job, each made once and shared by the tests on it.
 class Specimens {
 public:
     explicit Specimens(const Job& job) : job_(&job) {}
 
-    /// The specimen of the run, made on the first call, as `control` says.
-    std::shared_ptr<const Specimen> get(const PlannedRun& run, const SpecimenControl& control = {});
+    /// Called on the caller's thread with the stem of a packing's file while that packing is made.
+    using Tell = std::function<void(const std::string&, const SpecimenProgress&)>;
+
+    /// Makes the specimens of all these runs that are not there yet, side by side; a single one tells how far it is.
+    /// @throws what the first of them in order throws; Interrupted when the user stops it
+    void make(std::span<const PlannedRun> runs, int threads, const Tell& tell = {});
+
+    /// How many make() would have to make.
+    int missing(std::span<const PlannedRun> runs) const { return static_cast<int>(missing_keys(runs).size()); }
+
+    /// The specimen of the run, made on the first call.
+    std::shared_ptr<const Specimen> get(const PlannedRun& run, int threads = 1, const Tell& tell = {});
 
     /// "packing-s3" or "packing-disc-s3": the stem of the file of the run's packing.
     static std::string packing_stem(const PlannedRun& run);
+    static std::string packing_stem(bool disc, std::uint64_t seed);
 
 private:
     using Key = std::pair<bool, std::uint64_t>;  // (disc of the Brazilian test?, seed)
     static Key key_of(const PlannedRun& run) { return {run.test->kind == TestKind::brazilian, run.seed}; }
+    std::vector<Key> missing_keys(std::span<const PlannedRun> runs) const;
 
     const Job* job_;
     std::map<Key, std::shared_ptr<const Specimen>> made_;
+};
+
+/// Bodies that move by themselves in such a test: grains or their inner particles.
+int body_count(const PlannedRun& run, const Specimen& specimen);
+
+/// How many tests may run side by side, and on how many threads each.
+class Sharing {
+public:
+    /// @param threads  of the whole program
+    Sharing(const Job& job, int threads) : threads_(threads), at_once_(job.at_once) {}
+
+    /// Most tests at once, this one included, that go with a test of so many bodies.
+    int most_at_once(int bodies) const;
+
+    /// More threads than this make such a test no faster.
+    int useful_threads(int bodies) const;
+
+private:
+    int threads_;
+    int at_once_;  // what the user wants; 0 = as suits the size
 };
 
 /// What run_test() and preview_test() ask for.

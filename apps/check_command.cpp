@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -7,6 +8,7 @@
 
 #include "campaign.hpp"
 #include "commands.hpp"
+#include "feldspar/base/thread_shares.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 
@@ -73,8 +75,7 @@ std::string variant_text(const Variant& variant) {
 // tests the steps and the time.
 class Check {
 public:
-    Check(const Job& job, int threads) : job_(job), specimens_(job) {
-        control_.threads = threads;
+    Check(const Job& job, int threads) : job_(job), specimens_(job), threads_(threads), sharing_(job, threads) {
         control_.stop = &stop_requested();
     }
 
@@ -91,8 +92,12 @@ private:
     void add(const Group& group) {
         const PlannedRun& run = group.example;
         const std::shared_ptr<const Specimen> specimen =
-            specimens_.get(run, progress_.making(Specimens::packing_stem(run), control_.threads));
+            specimens_.get(run, threads_, [this](const std::string& what, const SpecimenProgress& p) { progress_.making(what, p); });
         progress_.busy(fmt::format("building {}, seed {}", title(run.variant->name, *run.test), run.seed));
+        // timed with the threads that it will have beside the others; what these would take of its speed is not seen
+        const int bodies = body_count(run, *specimen);
+        const int at_once = std::min(sharing_.most_at_once(bodies), static_cast<int>(planned_runs(job_).size()));
+        control_.threads = share_for_next(threads_, at_once, sharing_.useful_threads(bodies));
         const TestPreview preview = preview_test(setup_of(run, specimen), control_);
         progress_.clear();
         show_specimen(*run.test, *specimen);
@@ -107,7 +112,7 @@ private:
             text_ += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps,
                                  duration_text(preview.expected_seconds));
         }
-        total_s_ += preview.expected_seconds * group.runs;
+        total_s_ += preview.expected_seconds * group.runs / at_once;
     }
 
     void show_specimen(const TestSpec& test, const Specimen& specimen) {
@@ -119,6 +124,8 @@ private:
 
     const Job& job_;
     Specimens specimens_;
+    int threads_;
+    Sharing sharing_;
     Progress progress_;
     RunControl control_;
     const Variant* variant_ = nullptr;  // the last one shown

@@ -19,6 +19,7 @@ struct JobOptions {
     std::vector<std::string> variants;   ///< names or file stems of the variants to run; empty = all
     std::vector<std::string> tests;      ///< kinds of the tests to run; empty = all
     std::optional<int> threads;
+    std::optional<int> at_once;          ///< tests side by side
 };
 
 struct RunOptions : JobOptions {
@@ -41,7 +42,8 @@ ExitCode presets_command();
 /// Reads the job and applies the command line to it.
 Job job_with_options(const JobOptions& options);
 
-/// The number of threads to use: as the job says, or one for each core. Warns on stderr when there are fewer cores.
+/// The number of threads to use: as the job says, or one for each core that the program may use. Warns on stderr when there are
+/// fewer cores.
 int thread_count(const Job& job);
 
 }  // namespace feldspar

@@ -19,6 +19,7 @@ constexpr const char* examples = R"(Examples:
   feldspar run granite.toml                              results in results/granite-1
   feldspar run granite.toml --out trial --seed 7         another packing, another place
   feldspar run granite.toml --threads 2                  the results do not depend on the threads
+  feldspar run granite.toml --at-once 1                  one test after the other, each on all threads
   feldspar run granite.toml --test brazilian             only a part of the job
 
 Exit codes: 0 done, 2 mistake in the input (no file is left), 3 numerical failure, 4 results could not be written,
@@ -62,8 +63,13 @@ std::string version_text() {
 
 void add_job_options(CLI::App& command, JobOptions& options) {
     command.add_option("job", options.job, "the job file")->required()->type_name("JOB.toml");
-    command.add_option("--threads", options.threads, "number of threads (default: as the job says, else one for each core)")
+    command.add_option("--threads", options.threads, "number of threads of the whole program (default: as the job says, else one for each core)")
         ->type_name("N")
+        ->check(CLI::Range(1, 256));
+    command.add_option("--at-once", options.at_once,
+                       "at most so many tests side by side (default: as the job says, else one for each thread, but large specimens one "
+                       "after the other)")
+        ->type_name("K")
         ->check(CLI::Range(1, 256));
     command.add_option("--seed", options.seeds, "run all tests on this packing instead of the job's seeds; may be repeated")
         ->type_name("S")

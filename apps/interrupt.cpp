@@ -9,7 +9,7 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-extern "C" void request_stop(int) { stop.store(true); }
+extern "C" void on_signal(int) { stop.store(true); }
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void install_signal_handlers() {
         sigaction(signal_number, nullptr, &before);
         if (before.sa_handler == SIG_IGN && signal_number == SIGHUP) continue;
         struct sigaction action {};
-        action.sa_handler = request_stop;
+        action.sa_handler = on_signal;
         sigemptyset(&action.sa_mask);
         action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second time: the system's way
         sigaction(signal_number, &action, nullptr);
@@ -27,6 +27,8 @@ void install_signal_handlers() {
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGPIPE, SIG_IGN);
 }
+
+void request_stop() { stop.store(true); }
 
 const std::atomic<bool>& stop_requested() { return stop; }
 

@@ -4,20 +4,28 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "feldspar/base/error.hpp"
-#include "interrupt.hpp"
 
 namespace feldspar {
 namespace {
 
 constexpr std::chrono::seconds plain_line_interval{10};
+constexpr std::chrono::milliseconds rewrite_interval{100};
 
-std::size_t terminal_columns() {
+struct Screen {
+    std::size_t columns = 80, rows = 24;
+};
+
+Screen screen() {
     struct winsize size {};
-    return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
+    Screen known;
+    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0) return known;
+    if (size.ws_col > 20) known.columns = size.ws_col;
+    if (size.ws_row > 3) known.rows = size.ws_row;
+    return known;
 }
 
 std::string rate_and_rest(const TestProgress& p) {
@@ -28,7 +36,7 @@ std::string rate_and_rest(const TestProgress& p) {
     return text;
 }
 
-// The rewritten line is cut at the terminal's width, so what changes comes first and the test's name last.
+// A rewritten line is cut at the terminal's width, so what changes comes first and the test's name last.
 std::string short_line(int number, int count, const std::string& label, const TestProgress& p) {
     return fmt::format("{}/{} {}: {:.1f} MPa, {} cracks{}  [{}]", number, count, p.stage, p.axial_stress_Pa / 1e6, p.cracks,
                        rate_and_rest(p), label);
@@ -53,62 +61,72 @@ std::string duration_text(double seconds) {
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Progress::clear() {
-    if (!line_shown_) return;
-    std::fputs("\r\x1b[K", stderr);
-    line_shown_ = false;
+    if (lines_shown_ == 0) return;
+    std::string back = "\r";
+    for (std::size_t line = 1; line < lines_shown_; ++line) back += "\x1b[A";
+    fmt::print(stderr, "{}\x1b[J", back);
+    lines_shown_ = 0;
 }
 
-void Progress::rewrite(const std::string& line) {
-    fmt::print(stderr, "\r\x1b[K{}", line.substr(0, terminal_columns() - 1));
+void Progress::rewrite(const std::vector<std::string>& lines) {
+    clear();
+    const auto [columns, rows] = screen();
+    const std::size_t shown = lines.size() < rows ? lines.size() : rows - 2;  // lines that scroll away could not be taken back
+    std::string text;
+    for (std::size_t i = 0; i < shown; ++i) text += (i > 0 ? "\n" : "") + lines[i].substr(0, columns - 1);
+    if (shown < lines.size()) text += fmt::format("\nand {} more", lines.size() - shown);
+    fmt::print(stderr, "{}", text);
     std::fflush(stderr);
-    line_shown_ = true;
+    lines_shown_ = shown + (shown < lines.size() ? 1 : 0);
 }
 
 void Progress::note(const std::string& line) {
     clear();
     fmt::print(stderr, "{}\n", line);
     std::fflush(stderr);
+    last_rewrite_ = {};
 }
 
 void Progress::busy(const std::string& what) {
     if (terminal_)
-        rewrite(what);
+        rewrite({what});
     else
         note(what);
-    last_line_ = std::chrono::steady_clock::now();
 }
 
-void Progress::report_making(const std::string& what, const SpecimenProgress& progress) {
-    if (stop_requested()) throw Interrupted();
-    const std::string line =
-        fmt::format("making {} of {} grains: {}, {:.0f} %", what, progress.grains, progress.stage, 100.0 * progress.share);
-    const auto now = std::chrono::steady_clock::now();
+void Progress::making(const std::string& what, const SpecimenProgress& progress) {
+    const std::string line = fmt::format("making {} of {} grains: {}, {:.0f} %", what, progress.grains, progress.stage, 100.0 * progress.share);
     if (terminal_) {
-        rewrite(line);
+        rewrite({line});
         return;
     }
-    if (what == last_label_ && now - last_line_ < plain_line_interval) return;
-    note(what == last_label_ ? line : fmt::format("making {}", what));   // most are made before the next line is due
-    last_label_ = what;
-    last_line_ = now;
-}
-
-SpecimenControl Progress::making(const std::string& what, int threads) {
-    return {threads, [this, what](const SpecimenProgress& progress) { report_making(what, progress); }};
+    const auto now = Clock::now();
+    if (what == making_ && now - last_making_ < plain_line_interval) return;
+    if (what == making_) note(line);   // most are made before the first line is due
+    making_ = what;
+    last_making_ = now;
 }
 
 void Progress::report(int number, int count, const std::string& label, const TestProgress& progress) {
+    Running& test = running_[number];
+    const auto now = Clock::now();
+    const bool news = test.stage != progress.stage;
+    test.stage = progress.stage;
     if (terminal_) {
-        rewrite(short_line(number, count, label, progress));
+        test.line = short_line(number, count, label, progress);
+        if (now - last_rewrite_ < rewrite_interval) return;
+        std::vector<std::string> lines;
+        for (const auto& [other, running] : running_) lines.push_back(running.line);
+        rewrite(lines);
+        last_rewrite_ = now;
         return;
     }
-    const auto now = std::chrono::steady_clock::now();
-    const bool news = label != last_label_ || progress.stage != last_stage_;
-    if (!news && now - last_line_ < plain_line_interval) return;
+    // a log grows by a line every ten seconds, however many tests run
+    if (!news && now - test.last_plain_line < plain_line_interval * static_cast<int>(running_.size())) return;
+    test.last_plain_line = now;
     note(long_line(number, count, label, progress));
-    last_label_ = label;
-    last_stage_ = progress.stage;
-    last_line_ = now;
 }
+
+void Progress::ended(int number) { running_.erase(number); }
 
 }  // namespace feldspar

@@ -1,8 +1,10 @@
-// Progress on stderr: one line that is rewritten on a terminal, a plain line every ten seconds elsewhere.
+// Progress on stderr: on a terminal one line for each running test, rewritten; elsewhere a plain line every ten seconds.
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/specimen/specimen.hpp"
@@ -22,25 +24,36 @@ public:
     /// What is being done now, for work that does not report by itself.
     void busy(const std::string& what);
 
-    /// The specimen `what` reports while it is made; to be passed on to make_specimen with the number of threads. An interruption by
-    /// the user ends the making. @throws Interrupted from the callback
-    SpecimenControl making(const std::string& what, int threads);
+    /// A specimen tells how far it is.
+    void making(const std::string& what, const SpecimenProgress& progress);
 
     /// Test `number` of `count` reports; its `label` is "biaxial at 4 MPa, seed 1".
     void report(int number, int count, const std::string& label, const TestProgress& progress);
 
-    /// Takes the rewritten line away.
+    /// Test `number` no longer runs: its line goes away.
+    void ended(int number);
+
+    /// Takes the rewritten lines away.
     void clear();
 
 private:
-    void rewrite(const std::string& line);
-    void report_making(const std::string& what, const SpecimenProgress& progress);
+    using Clock = std::chrono::steady_clock;
+
+    // A test that runs.
+    struct Running {
+        std::string line;
+        std::string stage;
+        Clock::time_point last_plain_line;
+    };
+
+    void rewrite(const std::vector<std::string>& lines);
 
     bool terminal_ = false;
-    bool line_shown_ = false;
-    std::string last_label_;
-    std::string last_stage_;
-    std::chrono::steady_clock::time_point last_line_;
+    std::size_t lines_shown_ = 0;
+    std::map<int, Running> running_;  // by the test's number
+    Clock::time_point last_rewrite_;
+    std::string making_;              // the specimen told of last
+    Clock::time_point last_making_;
 };
 
 }  // namespace feldspar

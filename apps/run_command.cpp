@@ -3,17 +3,24 @@
 #include <sys/statvfs.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <deque>
+#include <exception>
 #include <filesystem>
+#include <map>
 #include <optional>
-#include <thread>
 
 #include "campaign.hpp"
 #include "commands.hpp"
+#include "feldspar/base/parallel.hpp"
+#include "feldspar/base/thread_shares.hpp"
+#include "feldspar/base/usable_cores.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/study/toml_reader.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "running_tests.hpp"
 #include "tables.hpp"
 
 namespace feldspar {
@@ -21,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// From here on the time between the making of the specimen and a test's first report is worth a line.
-constexpr int many_grains = 20000;
 
 // Bytes that the job will leave, roughly: fields at the snapshots in two formats, histories and the report.
 double expected_bytes(const Job& job, const std::vector<PlannedRun>& runs) {
@@ -49,27 +54,23 @@ void check_space(const std::optional<std::string>& out, const Job& job, const st
                          "a directory on a disk with more space, or fewer snapshots");
 }
 
-// One campaign: makes everything, runs test after test, and writes each test's files as soon as it has ended.
+// One campaign: makes everything, runs the tests, and writes each test's files as soon as it has ended.
 class Campaign {
 public:
-    Campaign(const Job& job, const RunOptions& options) : job_(job), runs_(planned_runs(job)), specimens_(job) {
+    Campaign(const Job& job, const RunOptions& options)
+        : job_(job), runs_(planned_runs(job)), specimens_(job), threads_(thread_count(job)), sharing_(job, threads_) {
         RunDirectory::check(options.out, job.name);
         check_space(options.out, job, runs_);
-        control_.threads = thread_count(job);
-        control_.stop = &stop_requested();
-        provenance_ = collect_provenance(options.command_line, control_.threads);
+        provenance_ = collect_provenance(options.command_line, threads_);
     }
 
     /// Makes every specimen and judges every setting of the user's, so that a mistake shows before there is a directory.
     void prepare() {
-        for (const PlannedRun& run : runs_) {
-            if (stop_requested()) throw Interrupted();
-            const std::shared_ptr<const Specimen> specimen =
-                specimens_.get(run, progress_.making(Specimens::packing_stem(run), control_.threads));
-            const NumericsSpec& numerics = run.variant->numerics;
-            const bool own_setting = numerics.kind != NumericsKind::adaptive || numerics.mass_factor;
-            if (own_setting) (void)preview_test(setup_of(run, specimen), control_);
-        }
+        if (stop_requested()) throw Interrupted();
+        const int packings = specimens_.missing(runs_);
+        progress_.busy(fmt::format("making {} packing{}", packings, packings == 1 ? "" : "s"));
+        specimens_.make(runs_, threads_, [this](const std::string& what, const SpecimenProgress& p) { progress_.making(what, p); });
+        side_by_side(static_cast<int>(runs_.size()), threads_, [this](int i) { judge_setting(runs_[static_cast<std::size_t>(i)]); });
         progress_.clear();
         for (const PlannedRun& run : runs_)
             for (const std::string& warning : specimens_.get(run)->quality.warnings) warn(warning);
@@ -82,22 +83,29 @@ public:
         directory_->write_text("job-resolved.toml", resolved_toml(job_));
     }
 
-    /// Runs everything. @throws what a test or a write throws, after the results so far have been written.
+    /// Runs everything. @throws what a test or a write throws, after the results so far have been written; of several tests that
+    /// fail, what the first of them in the job's order threw.
     void run() {
-        for (std::size_t i = 0; i < runs_.size() && !stop_requested(); ++i) {
-            try {
-                run_one(i);
-            } catch (const Interrupted&) {
-                break;  // before there was anything to keep of this test
-            } catch (const NumericalError& error) {
-                progress_.clear();
-                write_overview(false);
-                throw NumericalError(fmt::format("{}: {}", label_of(runs_[i]), error.what()));
+        RunningTests running(threads_);
+        std::size_t next = 0;
+        while (true) {
+            while (may_start(running, next)) start(running, next++);
+            running.share_out_free_threads();
+            if (running.count() == 0 && ended_.empty()) break;
+            // files are written only when every thread has something to do
+            if (ended_.empty()) {
+                listen(running.events(true));
+            } else {
+                take(std::move(ended_.front()), running.count());
+                ended_.pop_front();
+                listen(running.events(false));
             }
         }
         progress_.clear();
-        interrupted_ = results_.size() < runs_.size() || (!results_.empty() && results_.back().interrupted);
-        write_overview(!interrupted_);
+        interrupted_ = results_.size() < runs_.size() ||
+                       std::any_of(results_.begin(), results_.end(), [](const TestResult& result) { return result.interrupted; });
+        write_overview(!interrupted_, true);
+        if (!failed_.empty()) rethrow(failed_.begin()->first, failed_.begin()->second);
     }
 
     bool interrupted() const { return interrupted_; }
@@ -117,34 +125,112 @@ private:
         return fmt::format("{}, seed {}", title(run.variant->name, *run.test), run.seed);
     }
 
-    void run_one(std::size_t i) {
+    // An unstable setting is refused here; what the program chooses itself is stable.
+    void judge_setting(const PlannedRun& run) {
+        if (stop_requested()) throw Interrupted();
+        const NumericsSpec& numerics = run.variant->numerics;
+        if (numerics.kind == NumericsKind::adaptive && !numerics.mass_factor) return;
+        RunControl control;
+        control.stop = &stop_requested();
+        (void)preview_test(setup_of(run, specimens_.get(run)), control);
+    }
+
+    int bodies(std::size_t i) { return body_count(runs_[i], *specimens_.get(runs_[i])); }
+
+    // Tests start in the job's order, so that an interrupted job leaves whole packings behind.
+    bool may_start(const RunningTests& running, std::size_t next) {
+        if (next == runs_.size() || !failed_.empty() || stop_requested()) return false;
+        return running.free_threads() > 0 && running.count() < company_with(running, next);
+    }
+
+    // Most tests at once that go with test i and with those that run.
+    int company_with(const RunningTests& running, std::size_t i) {
+        const int most = sharing_.most_at_once(bodies(i));
+        return running.count() == 0 ? most : std::min(most, company_);
+    }
+
+    void start(RunningTests& running, std::size_t i) {
         const PlannedRun& run = runs_[i];
-        const std::string label = label_of(run);
-        const int number = static_cast<int>(i) + 1, count = static_cast<int>(runs_.size());
         const std::shared_ptr<const Specimen> specimen = specimens_.get(run);
         const std::string packing = Specimens::packing_stem(run) + ".txt";
         if (std::find(packings_.begin(), packings_.end(), packing) == packings_.end()) {
             directory_->write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
             packings_.push_back(packing);
         }
-        control_.progress = [&](const TestProgress& state) { progress_.report(number, count, label, state); };
-        const int grains = specimen->quality.grains;
-        if (grains >= many_grains) progress_.busy(fmt::format("{}/{} {}: bonding {} grains", number, count, label, grains));
-        TestResult result = run_test(setup_of(run, specimen), control_);
-        result.variant = run.variant->name;
-        progress_.note(fmt::format("{}/{} {}: {}", number, count, label, test_line(result)));
-        if (result.history.empty()) return;  // interrupted before the first row
-        results_.push_back(std::move(result));
-        write_history_csv(*directory_, results_.back(), provenance_);
-        write_hdf5(*directory_, results_.back(), job_, provenance_);
-        write_vtu(*directory_, results_.back());
-        if (i + 1 < runs_.size()) write_overview(false);
+        company_ = company_with(running, i);
+        const int places = std::min(company_ - running.count(), static_cast<int>(runs_.size() - i));
+        const int useful = sharing_.useful_threads(bodies(i));
+        running.start(i, share_for_next(running.free_threads(), places, useful), useful, [this, &run, specimen](const RunControl& control) {
+            TestResult result = run_test(setup_of(run, specimen), control);
+            result.variant = run.variant->name;
+            if (!result.history.empty()) {   // else interrupted before the first row
+                write_history_csv(*directory_, result, provenance_);
+                write_vtu(*directory_, result, *control.more_threads);
+            }
+            return result;
+        });
     }
 
-    void write_overview(bool complete) {
+    // Shows what running tests tell, and puts those that have ended aside until there is time to write.
+    void listen(RunningTests::Events events) {
+        const int count = static_cast<int>(runs_.size());
+        for (const auto& [i, state] : events.news) progress_.report(number_of(i), count, label_of(runs_[i]), state);
+        for (RunningTests::Ended& test : events.ended) {
+            progress_.ended(number_of(test.number));
+            if (test.error) note_failure(test.number, test.error);
+            ended_.push_back(std::move(test));
+        }
+    }
+
+    static int number_of(std::size_t i) { return static_cast<int>(i) + 1; }
+
+    // Nothing new is started after a failure. @throws OutputError at once: what is still running could not be written either
+    void note_failure(std::size_t i, const std::exception_ptr& error) {
+        try {
+            std::rethrow_exception(error);
+        } catch (const Interrupted&) {
+            // before there was anything to keep of this test
+        } catch (const OutputError&) {
+            throw;
+        } catch (...) {
+            failed_[i] = error;
+        }
+    }
+
+    // Writes what only this thread may write: the HDF5 library is not made for several, and the overview holds all tests.
+    void take(RunningTests::Ended test, int still_running) {
+        const std::string label = fmt::format("{}/{} {}", number_of(test.number), runs_.size(), label_of(runs_[test.number]));
+        if (failed_.contains(test.number)) {
+            if (still_running > 0) progress_.note(fmt::format("{}: failed; the tests that run now are finished first", label));
+            return;
+        }
+        if (!test.result) return;
+        progress_.note(fmt::format("{}: {}", label, test_line(*test.result)));
+        if (test.result->history.empty()) return;
+        const auto place = std::upper_bound(order_.begin(), order_.end(), test.number) - order_.begin();
+        order_.insert(order_.begin() + place, test.number);
+        const auto result = results_.insert(results_.begin() + place, std::move(*test.result));
+        write_hdf5(*directory_, *result, job_, provenance_);
+        if (results_.size() < runs_.size()) write_overview(false, false);
+    }
+
+    [[noreturn]] void rethrow(std::size_t i, const std::exception_ptr& error) {
+        try {
+            std::rethrow_exception(error);
+        } catch (const NumericalError& problem) {
+            throw NumericalError(fmt::format("{}: {}", label_of(runs_[i]), problem.what()));
+        }
+    }
+
+    // The report of many tests takes a second to make: on the way it may take a twentieth of the time.
+    void write_overview(bool complete, bool last) {
+        using Clock = std::chrono::steady_clock;
         if (!job_.has_variants()) properties_ = summarise(results_);  // else each variant has its own
         write_summary(*directory_, job_, results_, properties_, provenance_, complete);
+        const Clock::time_point start = Clock::now();
+        if (!last && start < next_report_) return;
         write_report(*directory_, job_, results_, properties_, provenance_, complete);
+        next_report_ = Clock::now() + 20 * (Clock::now() - start);
     }
 
     void warn(const std::string& warning) {
@@ -156,11 +242,17 @@ private:
     const Job& job_;
     std::vector<PlannedRun> runs_;
     Specimens specimens_;
-    RunControl control_;
+    int threads_;
+    Sharing sharing_;
+    int company_ = 1;  // most tests at once that go with those that run
     Provenance provenance_;
     Progress progress_;
     std::optional<RunDirectory> directory_;
-    std::vector<TestResult> results_;
+    std::deque<RunningTests::Ended> ended_;              // not written yet
+    std::vector<TestResult> results_;                    // in the job's order, whatever the order in which they ended
+    std::vector<std::size_t> order_;                     // the number of each
+    std::map<std::size_t, std::exception_ptr> failed_;   // by number
+    std::chrono::steady_clock::time_point next_report_;
     PropertySummary properties_;
     std::vector<std::string> packings_;  // written already
     std::vector<std::string> warned_;
@@ -205,6 +297,7 @@ Job job_with_options(const JobOptions& options) {
     keep_variants(job, options.variants);
     keep_tests(job, options.tests);
     if (options.threads) job.threads = *options.threads;
+    if (options.at_once) job.at_once = *options.at_once;
     if (options.seeds.empty()) return job;
     for (std::uint64_t seed : options.seeds)
         if (std::count(options.seeds.begin(), options.seeds.end(), seed) > 1)
@@ -218,7 +311,7 @@ Job job_with_options(const JobOptions& options) {
 }
 
 int thread_count(const Job& job) {
-    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const int cores = usable_cores();
     if (job.threads == 0) return cores;
     if (job.threads > cores)
         fmt::print(stderr, "warning: {} threads on {} core{} will wait for each other\n", job.threads, cores,

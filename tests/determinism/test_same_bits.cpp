@@ -1,4 +1,5 @@
 // Same job, same seed: same bits, for any number of threads and every time.
+#include <atomic>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -76,6 +77,14 @@ TEST_P(SameBits, ForAnyNumberOfThreadsAndEveryTime) {
     EXPECT_EQ(hash(run_test(s, fixtures::threads(1))), one);
     EXPECT_EQ(hash(run_test(s, fixtures::threads(2))), one);
     EXPECT_EQ(hash(run_test(s, fixtures::threads(3))), one);
+    // more threads on the way, as tests get them when others have ended
+    std::atomic<int> more{1};
+    RunControl growing = fixtures::threads(1);
+    growing.more_threads = &more;
+    growing.progress = [&](const TestProgress& now) { more = now.stage == "loading" ? 3 : 2; };
+    const TestResult grown = run_test(s, growing);
+    EXPECT_EQ(hash(grown), one);
+    EXPECT_EQ(grown.threads, 3);
     s.specimen = fixtures::make(fixtures::filled_for(model, spec), 12);
     EXPECT_NE(hash(run_test(s, fixtures::threads(1))), one);   // another packing is another rock
 }

@@ -6,6 +6,7 @@
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/laws/bond.hpp"
+#include "../table7.hpp"
 
 namespace feldspar {
 namespace {
@@ -13,15 +14,8 @@ namespace {
 constexpr double kArea = 8e-5;
 
 ContactMaterial material(ContactLaw law) {
-    ContactMaterial m;
+    ContactMaterial m = fixtures::table7();
     m.law = law;
-    m.Kn_Pa_m = 18e13;
-    m.eta = 0.28;
-    m.sigma_nt_Pa = 8.5e6;
-    m.tau_Pa = 29.75e6;
-    m.mu = 0.4;
-    m.Gfn_J_m2 = 20.0;
-    m.Gfs_J_m2 = 800.0;
     return m;
 }
 

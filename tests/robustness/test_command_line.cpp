@@ -33,6 +33,13 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
                                                       {"run", "job.toml", "--fast"},
                                                       {"run", "job.toml", "--threads", "0"},
                                                       {"run", "job.toml", "--threads", "many"},
+                                                      {"run", "job.toml", "--at-once", "0"},
+                                                      {"run", "job.toml", "--at-once", "-2"},
+                                                      {"run", "job.toml", "--at-once", "257"},
+                                                      {"run", "job.toml", "--at-once", "1.5"},
+                                                      {"run", "job.toml", "--at-once", "all"},
+                                                      {"run", "job.toml", "--at-once"},
+                                                      {"check", "job.toml", "--at-once", "0"},
                                                       {"run", "job.toml", "--seed", "-1"},
                                                       {"run", "job.toml", "--seed", "1.5"},
                                                       {"run", "job.toml", "--seed", "1", "--seed", "1"},
@@ -50,6 +57,19 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
         EXPECT_NE(outcome.err.find("feldspar: "), std::string::npos) << outcome.err;
     }
     EXPECT_EQ(place.entries(), (std::set<std::string>{"job.toml"}));
+}
+
+TEST(CommandLine, SaysHowManyTestsAtOnceAreAllowed) {
+    const Workplace place;
+    write_text(place / "job.toml", small_job());
+    const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--at-once", "300"});
+    for (const char* part : {"--at-once", "300", "1", "256"}) EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+    write_text(place / "wrong.toml", replaced(small_job(), "threads = 1", "at_once = \"some\""));
+    const Outcome wrong = run_program(place.path(), {"run", "wrong.toml"});
+    EXPECT_EQ(wrong.code, 2);
+    for (const char* part : {"wrong.toml:", "run.at_once", "'some'", "\"auto\"", "1 to 256"})
+        EXPECT_NE(wrong.err.find(part), std::string::npos) << wrong.err;
+    EXPECT_EQ(place.entries(), (std::set<std::string>{"job.toml", "wrong.toml"}));
 }
 
 TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,23 +13,12 @@
 #include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/specimen.hpp"
+#include "feldspar/step/step.hpp"
+#include "../table7.hpp"
 
 namespace feldspar::fixtures {
 
 inline GrainMaterial granite() { return {25.8e9, 0.23, 2650.0}; }
-
-/// Table 7 of the paper.
-inline ContactMaterial table7() {
-    ContactMaterial c;
-    c.Kn_Pa_m = 18e13;
-    c.eta = 0.28;
-    c.sigma_nt_Pa = 8.5e6;
-    c.tau_Pa = 29.75e6;
-    c.mu = 0.40;
-    c.Gfn_J_m2 = 20.0;
-    c.Gfs_J_m2 = 800.0;
-    return c;
-}
 
 inline SpecimenSpec rectangle(double width_m, double height_m) {
     SpecimenSpec spec;
@@ -138,6 +128,26 @@ inline RunControl threads(int count) {
     RunControl control;
     control.threads = count;
     return control;
+}
+
+/// Steps a vibrating body until `amplitude()` has changed its sign five times. @return the mean time between two of these changes,
+/// half a period, with each placed between its two steps; nothing if it does not vibrate
+template <class Amplitude>
+std::optional<double> half_period(Assembly& assembly, Team& team, const StepSettings& settings, Amplitude amplitude) {
+    PlatenWork work;
+    double before = 0.0, first = 0.0, last = 0.0;
+    int crossings = 0;
+    for (int k = 0; crossings < 5 && k < 100000; ++k) {
+        advance(assembly, team, settings, k, 1, work);
+        const double now = amplitude();
+        if (k > 0 && (before < 0.0) != (now < 0.0)) {
+            last = (k + now / (before - now)) * settings.dt;
+            if (crossings++ == 0) first = last;
+        }
+        before = now;
+    }
+    if (crossings < 5) return std::nullopt;
+    return (last - first) / 4.0;
 }
 
 }  // namespace feldspar::fixtures

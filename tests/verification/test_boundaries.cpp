@@ -10,6 +10,7 @@
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/platens.hpp"
 #include "fixtures.hpp"
+#include "plate_checks.hpp"
 
 namespace feldspar {
 namespace {
@@ -68,27 +69,7 @@ TEST(Boundaries, DampingOfTheDeviationLeavesTheLoadingMotionAlone) {   // (M3)
 }
 
 TEST(Boundaries, PlateContactsHaveTheirStiffnessFrictionAndFirstTouch) {   // (C19)
-    TestSetup s = fixtures::setup(fixtures::make(fixtures::disc(0.03)), TestKind::brazilian);
-    s.test.plate_stiffness_factor = 0.5;
-    s.test.plate_mu = 0.25;
-    const RunControl control = fixtures::threads(1);
-    const Experiment e(s, control);
-    const BondLaw& law = e.assembly.laws.at(at_plates);
-    EXPECT_DOUBLE_EQ(law.Kn_Pa_m, 0.5 * s.contact.Kn_Pa_m);
-    EXPECT_DOUBLE_EQ(law.Ks_Pa_m, s.contact.eta * 0.5 * s.contact.Kn_Pa_m);
-    EXPECT_DOUBLE_EQ(law.mu, 0.25);
-    for (const Platen& platen : e.assembly.platens) {
-        double smallest = INFINITY;
-        for (const Contact& contact : e.assembly.contacts) {
-            if (contact.b.body != platen.plate) continue;
-            ASSERT_EQ(contact.points, 1);
-            const ContactPoint& point = e.assembly.points[contact.first_point];
-            EXPECT_DOUBLE_EQ(point.area_m2, 2.0 * e.assembly.bodies[contact.a.body].radius_m * e.assembly.thickness_m);
-            EXPECT_EQ(e.assembly.bonds.at(point.state).damage, 1.0);
-            smallest = std::min(smallest, e.assembly.bonds.at(point.state).un_m);
-        }
-        EXPECT_NEAR(smallest, 0.0, 1e-15);
-    }
+    expect_plates_on_a_disc(fixtures::model(GrainKind::flexible));
 }
 
 TEST(Boundaries, StressRefersToTheInitialSectionOrToTheDiscsOwn) {   // (L2)

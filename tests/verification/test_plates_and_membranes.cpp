@@ -1,7 +1,6 @@
 // How rigid grains and inner particles are loaded: plates at the ends and on a disc, and the membrane.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include <gtest/gtest.h>
 
@@ -11,6 +10,7 @@
 #include "feldspar/model/platens.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
+#include "plate_checks.hpp"
 
 namespace feldspar {
 namespace {
@@ -72,14 +72,6 @@ std::vector<ModelSpec> plate_models() { return {fixtures::model(GrainKind::rigid
 class PlatesOf : public testing::TestWithParam<ModelSpec> {};
 INSTANTIATE_TEST_SUITE_P(Models, PlatesOf, testing::ValuesIn(plate_models()), [](const auto& tested) { return fixtures::label(tested.param); });
 
-// Contacts of a plate.
-std::vector<const Contact*> contacts_of(const Assembly& assembly, int plate) {
-    std::vector<const Contact*> found;
-    for (const Contact& contact : assembly.contacts)
-        if (contact.plate && contact.b.body == plate) found.push_back(&contact);
-    return found;
-}
-
 TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
     const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, GetParam());
     const RunControl control = fixtures::threads(1);
@@ -102,32 +94,7 @@ TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
     EXPECT_NEAR(e.section_m2 / (0.02 * 0.08), 1.0, 1e-12);
 }
 
-TEST_P(PlatesOf, OnADiscHaveTheStiffnessOfTheirDiametersAndStartAtFirstTouch) {   // (C19)
-    TestSetup s = fixtures::setup(fixtures::disc(0.03), TestKind::brazilian, GetParam());
-    s.test.plate_stiffness_factor = 0.5;
-    s.test.plate_mu = 0.25;
-    const RunControl control = fixtures::threads(1);
-    const Experiment e(s, control);
-    const BondLaw& law = e.assembly.laws.at(at_plates);
-    EXPECT_DOUBLE_EQ(law.Kn_Pa_m, 0.5 * s.contact.Kn_Pa_m);
-    EXPECT_DOUBLE_EQ(law.Ks_Pa_m, s.contact.eta * 0.5 * s.contact.Kn_Pa_m);
-    EXPECT_DOUBLE_EQ(law.mu, 0.25);
-    for (const Platen& platen : e.assembly.platens) {
-        double smallest = INFINITY;
-        std::map<int, int> touched;
-        for (const Contact* contact : contacts_of(e.assembly, platen.plate)) {
-            ASSERT_EQ(contact->points, 1);
-            const ContactPoint& point = e.assembly.points[contact->first_point];
-            const double diameter = 2.0 * e.assembly.bodies[contact->a.body].radius_m;
-            EXPECT_DOUBLE_EQ(point.area_m2, diameter * e.assembly.thickness_m);
-            EXPECT_EQ(e.assembly.bonds.at(point.state).damage, 1.0);
-            EXPECT_EQ(++touched[contact->a.body], 1);   // a body touches once
-            smallest = std::min(smallest, e.assembly.bonds.at(point.state).un_m);
-        }
-        EXPECT_NEAR(smallest, 0.0, 1e-15);
-        EXPECT_GE(touched.size(), 3U);
-    }
-}
+TEST_P(PlatesOf, OnADiscHaveTheStiffnessOfTheirDiametersAndStartAtFirstTouch) { expect_plates_on_a_disc(GetParam()); }   // (C19)
 
 TEST_P(PlatesOf, FeelTheSumOfTheirContactsForces) {
     TestSetup s = fixtures::setup(fixtures::disc(0.03), TestKind::brazilian, GetParam());

@@ -104,20 +104,9 @@ double note_over_closed_form(const ModelSpec& model) {
         for (const Body& body : assembly.bodies) sum += assembly.nodes.mass[body.centre_node] * shape(body) * assembly.nodes.displacement[body.centre_node].y;
         return sum;
     };
-    PlatenWork work;
-    double before = 0.0, first = 0.0, last = 0.0;
-    int crossings = 0;
-    for (int k = 0; crossings < 5 && k < 100000; ++k) {
-        advance(assembly, team, settings, k, 1, work);
-        const double now = amplitude();
-        if (k > 0 && (before < 0.0) != (now < 0.0)) {
-            last = (k + now / (before - now)) * settings.dt;
-            if (crossings++ == 0) first = last;
-        }
-        before = now;
-    }
-    EXPECT_EQ(crossings, 5);
-    return kHeight / std::sqrt(E / kDensity) / ((last - first) / 4.0);   // half a period is H / sqrt(E / rho)
+    const std::optional<double> half = fixtures::half_period(assembly, team, settings, amplitude);
+    EXPECT_TRUE(half);
+    return kHeight / std::sqrt(E / kDensity) / half.value_or(0.0);   // half a period is H / sqrt(E / rho)
 }
 
 TEST(RealMasses, AFreeBarRingsWithTheClosedFormFrequency) {

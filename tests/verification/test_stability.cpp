@@ -136,22 +136,10 @@ TEST(Stability, ARealBarRingsWithTheClosedFormFrequency) {
         for (const int node : assembly.platens[0].nodes) sum += assembly.nodes.displacement[node].y;
         return sum;
     };
-    PlatenWork work;
-    double before = 0.0, last_crossing = 0.0, first_crossing = 0.0;
-    int crossings = 0;
-    for (int k = 0; crossings < 5 && k < 100000; ++k) {
-        advance(assembly, team, settings, k, 1, work);
-        const double now = mean_top();
-        if (k > 0 && (before < 0.0) != (now < 0.0)) {
-            last_crossing = (k + now / (before - now)) * settings.dt;
-            if (crossings++ == 0) first_crossing = last_crossing;
-        }
-        before = now;
-    }
-    ASSERT_EQ(crossings, 5);
-    const double half_period = (last_crossing - first_crossing) / 4.0;
+    const std::optional<double> half_period = fixtures::half_period(assembly, team, settings, mean_top);
+    ASSERT_TRUE(half_period);
     const double expected = 2.0 * 0.04 / std::sqrt(24.3e9 / 2650.0);
-    EXPECT_NEAR(half_period / expected, 1.0, 0.03);   // the small bar's own E differs from the large specimen's by 2 %
+    EXPECT_NEAR(*half_period / expected, 1.0, 0.03);   // the small bar's own E differs from the large specimen's by 2 %
 }
 
 }  // namespace

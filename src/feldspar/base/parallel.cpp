@@ -1,5 +1,8 @@
 #include "feldspar/base/parallel.hpp"
 
+#include <algorithm>
+#include <exception>
+
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -24,8 +27,11 @@ void spin_while(Condition waiting) {
 
 }  // namespace
 
-Team::Team(int threads) : size_(threads < 1 ? 1 : threads) {
-    for (int thread = 1; thread < size_; ++thread) workers_.emplace_back([this, thread] { serve(thread); });
+Team::Team(int threads) : size_(1) { grow(threads); }
+
+void Team::grow(int threads) {
+    const std::uint32_t seen = round_.load(std::memory_order_relaxed);  // a newcomer has no part in earlier rounds
+    for (; size_ < threads; ++size_) workers_.emplace_back([this, thread = size_, seen] { serve(thread, seen); });
 }
 
 Team::~Team() {
@@ -44,8 +50,7 @@ void Team::run(const std::function<void(int)>& work) {
     spin_while([this] { return unfinished_.load(std::memory_order_acquire) > 0; });
 }
 
-void Team::serve(int thread) {
-    std::uint32_t seen = 0;
+void Team::serve(int thread, std::uint32_t seen) {
     for (;;) {
         for (int turn = 0; turn < 20000 && round_.load(std::memory_order_acquire) == seen; ++turn) {
 #if defined(__x86_64__)
@@ -69,6 +74,33 @@ void Team::barrier() {
     } else {
         spin_while([&] { return generation_.load(std::memory_order_acquire) == generation; });
     }
+}
+
+void side_by_side(int count, int threads, const std::function<void(int)>& work) {
+    std::vector<std::exception_ptr> thrown(static_cast<std::size_t>(std::max(count, 0)));
+    std::atomic<int> next{0};
+    std::atomic<bool> failed{false};
+    const auto take_turns = [&] {
+        // whoever takes a number works on it, and they are taken in order: all before one that failed are done, so that the smallest
+        // that fails is found
+        while (!failed) {
+            const int i = next++;
+            if (i >= count) return;
+            try {
+                work(i);
+            } catch (...) {
+                thrown[static_cast<std::size_t>(i)] = std::current_exception();
+                failed = true;
+            }
+        }
+    };
+    {
+        std::vector<std::jthread> others;
+        for (int thread = 1; thread < std::min(threads, count); ++thread) others.emplace_back(take_turns);
+        take_turns();
+    }
+    for (const std::exception_ptr& problem : thrown)
+        if (problem) std::rethrow_exception(problem);
 }
 
 }  // namespace feldspar

@@ -1,4 +1,5 @@
-// The only door to threads: a team that stays alive between steps and meets at spin barriers.
+// Threads for one computation: a team that stays alive between steps and meets at spin barriers; and for several that have
+// nothing to do with each other.
 #pragma once
 
 #include <atomic>
@@ -27,6 +28,9 @@ public:
 
     int size() const { return size_; }
 
+    /// More threads from the next run() on; fewer than there are changes nothing. By the caller, between two runs.
+    void grow(int threads);
+
     /// Calls `work(thread)` on every thread, 0 being the caller's, and returns when all have finished. `work` must not throw.
     void run(const std::function<void(int)>& work);
 
@@ -40,7 +44,7 @@ public:
     }
 
 private:
-    void serve(int thread);
+    void serve(int thread, std::uint32_t seen);
 
     int size_;
     const std::function<void(int)>* work_ = nullptr;
@@ -60,5 +64,9 @@ void in_shares(Team* team, int count, const Work& work) {
     const auto part = [&](int thread) { work(team->share(count, thread), thread); };
     team->run(std::ref(part));   // a reference, so that no call allocates
 }
+
+/// Calls work(0) ... work(count - 1), at most `threads` at a time, the caller being one of them. If some throw, none is begun after
+/// that, and what the one of the smallest number threw comes out when all have ended: the same whichever was first.
+void side_by_side(int count, int threads, const std::function<void(int)>& work);
 
 }  // namespace feldspar

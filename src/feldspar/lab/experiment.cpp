@@ -103,6 +103,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
 }
 
 void Experiment::run(int count) {
+    if (control.more_threads != nullptr) team.grow(control.more_threads->load(std::memory_order_relaxed));
     advance(assembly, team, settings, step, count, platen_work);
     platen_travel_m += count * settings.dt * settings.speed;
     step += count;

@@ -140,7 +140,7 @@ struct TestResult {
     long long preparation_steps = 0;      ///< steps of the elastic start and the consolidation
     double wall_s = 0.0;
     double ms_per_step = 0.0;
-    int threads = 1;
+    int threads = 1;                      ///< at the end: a test may get more while it runs
     long long shape_fallbacks = 0;        ///< contact sides that used the initial shape functions, summed over steps
     double angular_momentum_loss = 0.0;   ///< moment lost by them, relative to the contact moments
     long long vanished_compressions = 0;  ///< points whose compression vanished at damage 1 (model, section 5)

@@ -47,7 +47,6 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     result.numerics = setup.numerics;
     result.seed = setup.specimen->seed;
     result.specimen = setup.specimen;
-    result.threads = control.threads;
 
     Experiment e(setup, control);
     choose_step(e);
@@ -72,6 +71,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
         result.stop_reason = "interrupted by the user";
     }
     result.preparation_steps = e.preparation_steps;
+    result.threads = e.team.size();
     recorder.finish();
     result.vanished_compressions = count_vanished(e.assembly);
     if (!result.history.empty()) result.energy_at_end = result.history.back().energy;

@@ -25,6 +25,7 @@ struct TestProgress {
 /// What the caller decides about the running itself; none of it changes a result.
 struct RunControl {
     int threads = 1;
+    const std::atomic<int>* more_threads = nullptr;      ///< may grow while the test runs: so many threads from then on
     std::function<void(const TestProgress&)> progress;   ///< may be empty
     const std::atomic<bool>* stop = nullptr;             ///< becomes true when the user interrupts: the test ends at the next record
 };

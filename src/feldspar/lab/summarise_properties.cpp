@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "feldspar/base/median.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 
@@ -16,12 +17,6 @@ namespace {
 
 /// A property's value on each packing. A packing tested twice in the same way keeps its first value.
 using BySeed = std::map<std::uint64_t, double>;
-
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
 
 void add(PropertySummary& summary, const std::string& name, const BySeed& values) {
     if (values.empty()) return;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "feldspar/base/parallel.hpp"
 #include "feldspar/output/crack_geometry.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
@@ -41,8 +42,8 @@ std::vector<float> floats_in_MPa(const std::vector<double>& values_Pa) {
     return values;
 }
 
-std::string grains_vtu(const Specimen& specimen, const Snapshot& snapshot, const std::string& comment) {
-    const GrainMesh& mesh = specimen.mesh;
+/// What the grids of all snapshots have in common.
+VtuGrid undeformed_grains(const GrainMesh& mesh) {
     std::vector<double> points;
     for (const Vec2 node : mesh.nodes) points.insert(points.end(), {node.x, node.y, 0.0});
     std::vector<std::int32_t> corners;
@@ -52,11 +53,16 @@ std::string grains_vtu(const Specimen& specimen, const Snapshot& snapshot, const
         for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t)
             grain[static_cast<std::size_t>(t)] = static_cast<int>(g);
     }
+    VtuGrid grid(points, corners, VtkCell::triangle);
+    grid.cell_data("grain", std::span<const std::int32_t>(grain));
+    return grid;
+}
+
+std::string grains_vtu(VtuGrid grid, const Snapshot& snapshot, const std::string& comment) {
     std::vector<float> displacement;
     for (const Vec2 u : snapshot.displacement_m)
         displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
     const PrincipalStresses principal = principal_stresses(snapshot);
-    VtuGrid grid(points, corners, VtkCell::triangle);
     grid.point_data("displacement_m", displacement, 3);
     grid.cell_data("damage", std::span<const float>(snapshot.damage));
     grid.cell_data("stress_xx_MPa", floats_in_MPa(snapshot.stress_xx_Pa));
@@ -65,7 +71,6 @@ std::string grains_vtu(const Specimen& specimen, const Snapshot& snapshot, const
     grid.cell_data("sigma_1_MPa", principal.sigma_1_MPa);
     grid.cell_data("sigma_3_MPa", principal.sigma_3_MPa);
     grid.cell_data("mean_stress_MPa", principal.mean_MPa);
-    grid.cell_data("grain", std::span<const std::int32_t>(grain));
     return grid.file(comment);
 }
 
@@ -126,11 +131,12 @@ Times times(const std::vector<Snapshot>& snapshots) {
 
 }  // namespace
 
-void write_vtu(const RunDirectory& directory, const TestResult& result) {
+void write_vtu(const RunDirectory& directory, const TestResult& result, int threads) {
     if (!result.specimen) return;
     const std::string stem = test_stem(result);
     const std::string folder = stem + "-vtu/";
     const std::vector<CrackFaces> faces = find_crack_faces(*result.specimen, result.cracks);
+    const VtuGrid undeformed = undeformed_grains(result.specimen->mesh);
     const Times time = times(result.snapshots);
     std::string collection = fmt::format(
         "<?xml version=\"1.0\"?>\n<!-- {}; {}. Part 0: grains; part 1: cracks (mode 0 tensile, 1 shear; time = magnitude of the "
@@ -138,17 +144,20 @@ void write_vtu(const RunDirectory& directory, const TestResult& result) {
         "strain at the break). timestep = {}. -->\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
         stem, sign_convention, time.meaning);
-    for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
+    const auto grains_file = [&](std::size_t n) { return fmt::format("{}grains-{:03}.vtu", folder, n); };
+    const auto cracks_file = [&](std::size_t n) { return fmt::format("{}cracks-{:03}.vtu", folder, n); };
+    side_by_side(static_cast<int>(result.snapshots.size()), threads, [&](int number) {
+        const auto n = static_cast<std::size_t>(number);
         const Snapshot& snapshot = result.snapshots[n];
         // numbers only: the label is free text, which an XML comment could not always hold
         const std::string comment = fmt::format("{}, snapshot {}, step {}, axial strain {}; {}", stem, n, snapshot.step,
                                                 snapshot.axial_strain, sign_convention);
-        const std::string grains = fmt::format("{}grains-{:03}.vtu", folder, n);
-        const std::string cracks = fmt::format("{}cracks-{:03}.vtu", folder, n);
-        directory.write_text(grains, grains_vtu(*result.specimen, snapshot, comment));
-        directory.write_text(cracks, cracks_vtu(result, faces, snapshot, comment));
-        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time.values[n], grains);
-        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"1\" file=\"{}\"/>\n", time.values[n], cracks);
+        directory.write_text(grains_file(n), grains_vtu(undeformed, snapshot, comment));
+        directory.write_text(cracks_file(n), cracks_vtu(result, faces, snapshot, comment));
+    });
+    for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time.values[n], grains_file(n));
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"1\" file=\"{}\"/>\n", time.values[n], cracks_file(n));
     }
     directory.write_text(stem + ".pvd", collection + "</Collection>\n</VTKFile>\n");
 }

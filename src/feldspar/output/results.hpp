@@ -61,8 +61,9 @@ void write_history_csv(const RunDirectory& directory, const TestResult& result, 
 /// <stem>.h5: history, cracks, mesh and fields at the snapshots, with provenance.
 void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance);
 
-/// <stem>.pvd with <stem>-vtu/*.vtu: triangles with stress and damage, cracks as lines with mode, time and opening.
-void write_vtu(const RunDirectory& directory, const TestResult& result);
+/// <stem>.pvd with <stem>-vtu/*.vtu: triangles with stress and damage, cracks as lines with mode, time and opening. The snapshots are
+/// compressed side by side on `threads`.
+void write_vtu(const RunDirectory& directory, const TestResult& result, int threads = 1);
 
 /// summary.json: rewritten after each test, so that an interrupted run leaves what it had.
 void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,

@@ -1,7 +1,8 @@
 #include "feldspar/output/variant_summary.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "feldspar/base/median.hpp"
 
 namespace feldspar {
 
@@ -17,12 +18,6 @@ TestResult numbers_of(const TestResult& result) {
     light.interrupted = result.interrupted;
     light.ms_per_step = result.ms_per_step;
     return light;
-}
-
-double median_of(std::vector<double> values) {
-    std::ranges::sort(values);
-    const std::size_t half = values.size() / 2;
-    return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 /// Contacts between grains; each of their edges belongs to two cells.
@@ -53,7 +48,7 @@ std::vector<VariantSummary> summarise_variants(const Job& job, std::span<const T
                 costs[result.test.kind].push_back(result.ms_per_step);
         }
         VariantSummary summary{&variant, summarise(own), {}};
-        for (auto& [kind, values] : costs) summary.ms_per_step[kind] = median_of(std::move(values));
+        for (auto& [kind, values] : costs) summary.ms_per_step[kind] = median(std::move(values));
         summaries.push_back(std::move(summary));
     }
     return summaries;

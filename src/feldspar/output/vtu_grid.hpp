@@ -11,7 +11,8 @@ namespace feldspar {
 
 enum class VtkCell : std::uint8_t { line = 3, triangle = 5 };
 
-/// Collects points, cells and data arrays, then gives the file. All cells have one type.
+/// Collects points, cells and data arrays, then gives the file. All cells have one type. Arrays are compressed as they come, so
+/// a copy of a grid shares that work: what all snapshots have in common is added before the copy is made.
 class VtuGrid {
 public:
     /// @param points  x, y, z of each point, m
@@ -37,8 +38,11 @@ private:
     std::string appended_;                                     ///< the data behind it
 };
 
+/// Whether zlib looks for repeated bytes; where there are none the search costs most of the time.
+enum class Repeats { searched, not_searched };
+
 /// VTK's compressed block format: number of blocks, their size, the size of the last if it is shorter, the compressed sizes,
 /// the blocks. @throws OutputError if zlib fails
-std::string vtk_compressed(std::string_view bytes);
+std::string vtk_compressed(std::string_view bytes, Repeats repeats = Repeats::searched);
 
 }  // namespace feldspar

@@ -92,6 +92,7 @@ Job parse_job(const std::string& text, const std::string& name) {
     const RunSettings run = read_run(root);
     job.seeds = run.seeds;
     job.threads = run.threads;
+    job.at_once = run.at_once;
     job.variants = read_variants(root);
     const bool filled = std::any_of(job.variants.begin(), job.variants.end(),
                                     [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });

@@ -40,7 +40,8 @@ struct Job {
     std::vector<Variant> variants{{}};  ///< at least one; a single one without a name if the job has no [[variant]]
     std::vector<TestSpec> tests;
     std::vector<std::uint64_t> seeds;
-    int threads = 0;                           ///< 0 = as many as the machine has cores
+    int threads = 0;                           ///< of the whole program; 0 = as many as there are cores for it
+    int at_once = 0;                           ///< at most so many tests side by side; 0 = as suits their size
     std::map<std::string, double> laboratory;  ///< SI (radians for angles), by the names of `summary.json`: E, nu, UCS, DTS, BTS,
                                                ///< cohesion, friction_angle, hoek_brown_mi
 

@@ -42,10 +42,11 @@ struct TestList {
 TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                     const std::vector<std::uint64_t>& run_seeds);
 
-/// [run]: seeds and threads.
+/// [run]: seeds, threads and tests at once.
 struct RunSettings {
     std::vector<std::uint64_t> seeds{1};
     int threads = 0;
+    int at_once = 0;
 };
 RunSettings read_run(const TableReader& root);
 

@@ -73,6 +73,7 @@ constexpr const char* common_end = R"(
 [run]
 seeds = [1, 2, 3]                   # one packing each: the scatter between packings is part of the answer
 threads = "auto"                    # as many as there are cores; the results do not depend on it
+# at_once = "auto"                  # tests side by side: as many as there are threads, large specimens one after the other
 
 [laboratory]                        # measured values, shown beside the results; leave out what you have not
 E = "25.8 GPa"

@@ -167,20 +167,28 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     return result;
 }
 
+namespace {
+
+// "auto", here 0, or a number of `things` from 1 to 256.
+int read_number_or_auto(const TableReader& table, const char* key, const char* things) {
+    const toml::node* node = table.find(key);
+    if (node == nullptr || (node->is_string() && node->as_string()->get() == "auto")) return 0;
+    if (!node->is_integer())
+        table.fail(key, shown(*node) + " is not a number of " + things, "\"auto\", or a whole number from 1 to 256");
+    return static_cast<int>(table.integer(key, 1, 256));
+}
+
+}  // namespace
+
 RunSettings read_run(const TableReader& root) {
     RunSettings run;
     if (!root.has("run")) return run;
-    const TableReader table = root.table("run", {"seeds", "seed", "threads"});
+    const TableReader table = root.table("run", {"seeds", "seed", "threads", "at_once"});
     if (table.has("seeds") && table.has("seed")) table.fail("seed", "given beside seeds", "seeds = [1, 2, 3], or seed = 1");
     if (table.has("seeds")) run.seeds = read_seed_list(table, "seeds");
     if (table.has("seed")) run.seeds = {static_cast<std::uint64_t>(table.integer("seed", 0, largest_seed))};
-    const toml::node* threads = table.find("threads");
-    const bool automatic = threads != nullptr && threads->is_string() && threads->as_string()->get() == "auto";
-    if (threads != nullptr && !automatic) {
-        if (!threads->is_integer())
-            table.fail("threads", shown(*threads) + " is not a number of threads", "\"auto\", or a whole number from 1 to 256");
-        run.threads = static_cast<int>(table.integer("threads", 1, 256));
-    }
+    run.threads = read_number_or_auto(table, "threads", "threads");
+    run.at_once = read_number_or_auto(table, "at_once", "tests at once");
     return run;
 }
 

@@ -219,6 +219,7 @@ std::string resolved_toml(const Job& job) {
     out.head("[run]");
     out.raw("seeds", list(job.seeds));
     out.raw("threads", job.threads == 0 ? "\"auto\"" : std::to_string(job.threads));
+    out.raw("at_once", job.at_once == 0 ? "\"auto\"" : std::to_string(job.at_once));
     write_laboratory(out, job);
     return out.take();
 }

@@ -190,6 +190,7 @@ TEST(VtkCompressed, HoldsAnyLength) {
         std::string bytes(length, '\0');
         for (std::size_t i = 0; i < length; ++i) bytes[i] = static_cast<char>(i * i % 251);
         EXPECT_EQ(decompress(vtk_compressed(bytes)), bytes) << length;
+        EXPECT_EQ(decompress(vtk_compressed(bytes, Repeats::not_searched)), bytes) << length;
     }
 }
 

@@ -8,10 +8,22 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/job.hpp"
 #include "feldspar/study/job_template.hpp"
+#include "../../table7.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {
 namespace {
+
+void expect_table7(const ContactMaterial& contact) {
+    const ContactMaterial table7 = fixtures::table7();
+    EXPECT_EQ(contact.Kn_Pa_m, table7.Kn_Pa_m);
+    EXPECT_EQ(contact.eta, table7.eta);
+    EXPECT_EQ(contact.sigma_nt_Pa, table7.sigma_nt_Pa);
+    EXPECT_EQ(contact.tau_Pa, table7.tau_Pa);
+    EXPECT_EQ(contact.mu, table7.mu);
+    EXPECT_EQ(contact.Gfn_J_m2, table7.Gfn_J_m2);
+    EXPECT_EQ(contact.Gfs_J_m2, table7.Gfs_J_m2);
+}
 
 TEST(Job, ReadsTheGuidesCompleteJob) {
     const Job job = parse_job(sample_job, "somewhere/augig.toml");
@@ -29,19 +41,14 @@ TEST(Job, ReadsTheGuidesCompleteJob) {
     EXPECT_EQ(job.variants.front().grain.nu, 0.23);
     EXPECT_EQ(job.variants.front().grain.density_kg_m3, 2650.0);
     EXPECT_EQ(job.variants.front().contact.law, ContactLaw::bilinear);
-    EXPECT_EQ(job.variants.front().contact.Kn_Pa_m, 18e13);
-    EXPECT_EQ(job.variants.front().contact.eta, 0.28);
-    EXPECT_EQ(job.variants.front().contact.sigma_nt_Pa, 8.5e6);
-    EXPECT_EQ(job.variants.front().contact.tau_Pa, 29.75e6);
-    EXPECT_EQ(job.variants.front().contact.mu, 0.4);
-    EXPECT_EQ(job.variants.front().contact.Gfn_J_m2, 20.0);
-    EXPECT_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
+    expect_table7(job.variants.front().contact);
     EXPECT_EQ(job.variants.front().numerics.kind, NumericsKind::adaptive);
     EXPECT_EQ(job.variants.front().numerics.accuracy, 0.005);
     ASSERT_EQ(job.tests.size(), 1u);
     EXPECT_EQ(job.tests[0].kind, TestKind::uniaxial_compression);
     EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
     EXPECT_EQ(job.threads, 0);
+    EXPECT_EQ(job.at_once, 0);
     EXPECT_EQ(job.laboratory.at("UCS"), 122.1e6);
 }
 
@@ -229,6 +236,7 @@ void expect_same(const Job& a, const Job& b) {
     }
     EXPECT_EQ(a.seeds, b.seeds);
     EXPECT_EQ(a.threads, b.threads);
+    EXPECT_EQ(a.at_once, b.at_once);
     EXPECT_EQ(a.laboratory, b.laboratory);
 }
 
@@ -259,7 +267,7 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
         edited("kind = \"uniaxial-compression\"",
                "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = "
                "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\""));
-    expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3"));
+    expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));
     expect_round_trip(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
@@ -311,13 +319,7 @@ TEST(Examples, TheAugigGraniteIsTable7) {
     const std::filesystem::path folder = std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples/augig";
     for (const char* file : {"job.toml", "short.toml"}) {
         const Job job = read_job(folder / file);
-        EXPECT_EQ(job.variants.front().contact.sigma_nt_Pa, 8.5e6);
-        EXPECT_EQ(job.variants.front().contact.tau_Pa, 29.75e6);
-        EXPECT_EQ(job.variants.front().contact.mu, 0.40);
-        EXPECT_EQ(job.variants.front().contact.Gfn_J_m2, 20.0);
-        EXPECT_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
-        EXPECT_EQ(job.variants.front().contact.Kn_Pa_m, 18e13);
-        EXPECT_EQ(job.variants.front().contact.eta, 0.28);
+        expect_table7(job.variants.front().contact);
         EXPECT_EQ(job.laboratory.at("UCS"), 122.1e6);
     }
     EXPECT_EQ(read_job(folder / "job.toml").seeds.size(), 5u);
