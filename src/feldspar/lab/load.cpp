@@ -103,7 +103,7 @@ double typical_steps(const Experiment& e) {
         const double strain = kind == TestKind::direct_tension ? 5e-4 : 6e-3;
         return strain * e.height_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
     }
-    const double base = kind == TestKind::brazilian ? 40000.0 : kind == TestKind::direct_tension ? 12000.0 : kind == TestKind::biaxial ? 45000.0 : 24000.0;
+    const double base = kind == TestKind::brazilian ? 21000.0 : kind == TestKind::direct_tension ? 6500.0 : kind == TestKind::biaxial ? 35000.0 : 15000.0;
     NumericsSpec usual;
     return base * std::sqrt(residual_target(usual, kind, e.setup.model.kind) / residual_target(n, kind, e.setup.model.kind));
 }
@@ -115,8 +115,8 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
     const GrainKind grains = e.setup.model.kind;
     const double target = residual_target(e.setup.numerics, e.setup.test.kind, grains);
     const double relative_target = target / residual_target(NumericsSpec{}, e.setup.test.kind, grains);
-    RateControl control(target, relative_target, e.height_m, e.travel_time, expected_strength(e.setup.contact, e.setup.test) * e.section_m2,
-                        load_while_cracking(e.setup.test.kind, relative_target));
+    RateControl control(e.setup.test.kind, target, relative_target, e.height_m, e.travel_time,
+                        expected_strength(e.setup.contact, e.setup.test) * e.section_m2);
     LoadingModeUpdate mode_update(e.travel_time);
     const long long first_step = e.step;
     StopRule stop(e, first_step);

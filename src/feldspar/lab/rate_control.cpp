@@ -10,23 +10,25 @@ namespace {
 // is to find the platens nearly at rest, and when it has stopped the time at low speed is lost.
 constexpr double kMostSlowing = 0.4;
 constexpr double kMostHastening = 1.1;
+// A crack that runs away shows by R* growing faster than the speed ever does; waiting for the target costs half a percent of strength.
+constexpr double kRunningAway = 1.5, kSeen = 0.5;   // growth in three blocks; targets below which it is not looked at
 // A local crack rings for a travel time whatever the speed is. If the load changes by no more than this share meanwhile, going
 // slower does not change what the crack does. At an accuracy of 0.5 %; it grows with the target, and no further than the last: at three
 // times that a Brazilian test with the brittle law ran through its strength.
-constexpr double kLoadWhileCracking = 0.005, kBrazilianLoadWhileCracking = 0.01, kMostLoadWhileCracking = 0.01;
+constexpr double kLoadWhileCracking = 0.005, kMostLoadWhileCracking = 0.01;
 // Where nothing is out of balance the record still has to resolve the load: by a fiftieth from row to row.
 constexpr double kLoadPerStep = 2e-3;
-// An unstable crack takes a part of a travel time to show. Where the first one may be the strength, the load must not rise by
-// more than this share in a travel time before it is seen.
-constexpr double kNearStrength = 0.9, kLoadBeforeItShows = 0.05;
+// An unstable crack takes a part of a travel time to show. Where the first one may be the strength (shares of the expected one; discs
+// split from a half to above one), the load must not rise by more than this share in a travel time before it is seen.
+constexpr double kNearStrength = 0.9, kNearBrazilianStrength = 0.3, kLoadBeforeItShows = 0.05;
 // Heights a step after the peak: neither crawling beside a dynamic failure nor racing down a soft branch. The lower one as long as
 // the load may rise to a new peak.
 constexpr double kSpeedAfterPeak = 1e-7, kSpeedFarAfterPeak = 3e-7;
 constexpr double kPastPeak = 0.98, kFarPastPeak = 0.95;   // shares of the peak
 constexpr double kFailing = 0.02;   // R* of a body that fails dynamically whatever the speed
-// A crack that runs away shows by R* growing faster than the speed ever does; waiting for the target costs half a percent of strength.
-constexpr double kRunningAway = 1.5, kSeen = 0.5;   // growth in three blocks; targets below which it is not looked at
-constexpr double kLocalEvents = 2.0;   // targets that the total R* may reach while the typical body is in balance
+// Targets that the total R* may reach while the typical body is in balance. Crushed grains under a Brazilian plate rattle for the rest of
+// the test.
+constexpr double kLocalEvents = 2.0, kBrazilianLocalEvents = 20.0;
 constexpr double kBlend = 0.5;   // of the newly observed loading mode
 constexpr double kMostMode = 1.5;   // platen travels that a node may move per platen travel, as the loading mode counts it
 
@@ -44,11 +46,6 @@ double expected_strength(const ContactMaterial& contact, const TestSpec& test) {
     if (test.kind == TestKind::direct_tension || test.kind == TestKind::brazilian) return contact.sigma_nt_Pa;
     const double root_N = contact.mu + std::sqrt(1.0 + contact.mu * contact.mu);
     return 2.0 * contact.tau_Pa * root_N + root_N * root_N * test.sigma3_Pa;
-}
-
-double load_while_cracking(TestKind kind, double relative_target) {
-    const double share = kind == TestKind::brazilian ? kBrazilianLoadWhileCracking : kLoadWhileCracking;
-    return std::min(relative_target * share, kMostLoadWhileCracking);
 }
 
 Unbalanced unbalanced(const Assembly& assembly) {
@@ -72,10 +69,19 @@ Unbalanced unbalanced(const Assembly& assembly) {
     return sum;
 }
 
+RateControl::RateControl(TestKind kind, double target, double relative_target, double height_m, double travel_time, double expected_N)
+    : target_(target),
+      relative_target_(relative_target),
+      height_m_(height_m),
+      travel_time_(travel_time),
+      near_N_((kind == TestKind::brazilian ? kNearBrazilianStrength : kNearStrength) * expected_N),
+      local_events_(kind == TestKind::brazilian ? kBrazilianLocalEvents : kLocalEvents),
+      largest_force_N_(expected_N) {}
+
 double RateControl::next(double speed, const Unbalanced& unbalanced, double platen_force_N, double platen_travel_m, double share_of_peak) {
     largest_force_N_ = std::max(largest_force_N_, platen_force_N);
     const double load_N = std::max(platen_force_N, 0.5 * largest_force_N_);
-    const double now = std::max(unbalanced.typical_N, unbalanced.total_N / kLocalEvents) / load_N;
+    const double now = std::max(unbalanced.typical_N, unbalanced.total_N / local_events_) / load_N;
     const double total = unbalanced.total_N / load_N;
     const bool running_away = recent_[0] > 0.0 && total > kRunningAway * recent_[0] && total > kSeen * target_;
     recent_ = {recent_[1], recent_[2], total};
@@ -84,11 +90,12 @@ double RateControl::next(double speed, const Unbalanced& unbalanced, double plat
     // Once the specimen fails by itself, crawling does not help; a branch that softens quietly stays under control.
     const bool past_peak = share_of_peak < kPastPeak, failing = past_peak && total > kFailing;
     const double per_travel_time = platen_travel_m / travel_time_;
-    const double crawling = std::max(relative_target_ * 6e-9 * height_m_, load_while_cracking_ * per_travel_time);
+    const double share = std::min(relative_target_ * kLoadWhileCracking, kMostLoadWhileCracking);
+    const double crawling = std::max(relative_target_ * 6e-9 * height_m_, share * per_travel_time);
     const double after_peak = (share_of_peak < kFarPastPeak ? kSpeedFarAfterPeak : kSpeedAfterPeak) * height_m_;
     const double slowest = failing ? std::max(crawling, after_peak) : crawling;
     double fastest = std::min(0.4 * per_travel_time, relative_target_ * kLoadPerStep * platen_travel_m);
-    if (platen_force_N > kNearStrength * expected_N_) fastest = std::min(fastest, relative_target_ * kLoadBeforeItShows * per_travel_time);
+    if (platen_force_N > near_N_) fastest = std::min(fastest, relative_target_ * kLoadBeforeItShows * per_travel_time);
     if (past_peak) fastest = std::min(fastest, after_peak);
     return std::clamp(speed * factor, slowest, std::max(slowest, fastest));
 }

@@ -17,10 +17,6 @@ double residual_target(const NumericsSpec& numerics, TestKind kind, GrainKind gr
 /// a material with the contacts' cohesion and friction, 2 tau (mu + sqrt(1 + mu^2)) + N sigma_3. Only the rate control uses it.
 double expected_strength(const ContactMaterial& contact, const TestSpec& test);
 
-/// By how much of itself the load may rise in a travel time of a wave while a crack rings: the slowest speed.
-/// @param relative_target  target over that of an accuracy of 0.5 %
-double load_while_cracking(TestKind kind, double relative_target);
-
 /// What the free degrees of freedom leave unbalanced, sums of |F|.
 struct Unbalanced {
     double total_N = 0.0;
@@ -39,15 +35,7 @@ public:
     /// @param travel_time  of a wave over the height, in steps
     /// @param expected_N   about what the specimen will carry, so that the first weak points at a tenth of the strength do not
     ///                     slow the test down as if it were failing, and the strength is not approached too fast
-    /// @param load_while_cracking  share of the load by which it may rise in a travel time however far out of balance some bodies are
-    RateControl(double target, double relative_target, double height_m, double travel_time, double expected_N, double load_while_cracking)
-        : target_(target),
-          relative_target_(relative_target),
-          height_m_(height_m),
-          travel_time_(travel_time),
-          expected_N_(expected_N),
-          load_while_cracking_(load_while_cracking),
-          largest_force_N_(expected_N) {}
+    RateControl(TestKind kind, double target, double relative_target, double height_m, double travel_time, double expected_N);
 
     double start() const { return 6e-8 * height_m_; }
 
@@ -63,8 +51,8 @@ private:
     double relative_target_;
     double height_m_;
     double travel_time_;
-    double expected_N_;
-    double load_while_cracking_;
+    double near_N_;         ///< load from which an unstable crack may be the strength
+    double local_events_;   ///< targets that the total R* may reach while the typical body is in balance
     double largest_force_N_;
     std::array<double, 3> recent_{};   ///< total R* of the last blocks, the oldest first
 };
