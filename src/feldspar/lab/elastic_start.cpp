@@ -10,6 +10,8 @@ namespace feldspar {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
+// Of the critical damping of the Rayleigh quotient: a motion of many modes lies above the slowest, which is the one that is waited for.
+constexpr double kOfCritical = 0.6;
 
 // Smallest factor > 0 with value + factor x change = limit; the start is below the limit.
 double reaches(double value, double change, double limit) { return change > 0.0 ? std::max(0.0, (limit - value) / change) : kNever; }
@@ -95,7 +97,7 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
             inertia += nodes.mass[n] * dot(v, v);
             force += std::hypot(fx * nodes.force[n].x, fy * nodes.force[n].y);
         }
-        if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9, 2.0 * std::sqrt(stiffness / inertia));
+        if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9, kOfCritical * 2.0 * std::sqrt(stiffness / inertia));
         if (result.steps % 10 == 0) {
             const double contacts = mean_contact_force(assembly);
             result.residual = contacts > 0.0 ? force / nodes.count() / contacts : kNever;

@@ -103,7 +103,7 @@ double typical_steps(const Experiment& e) {
         const double strain = kind == TestKind::direct_tension ? 5e-4 : 6e-3;
         return strain * e.height_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
     }
-    const double base = kind == TestKind::brazilian ? 40000.0 : kind == TestKind::direct_tension ? 12000.0 : kind == TestKind::biaxial ? 45000.0 : 24000.0;
+    const double base = kind == TestKind::brazilian ? 21000.0 : kind == TestKind::direct_tension ? 6500.0 : kind == TestKind::biaxial ? 35000.0 : 15000.0;
     NumericsSpec usual;
     return base * std::sqrt(residual_target(usual, kind, e.setup.model.kind) / residual_target(n, kind, e.setup.model.kind));
 }
@@ -114,9 +114,10 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
     ContactFinder finder(e.assembly, 0.1 * mean_body_diameter(e.assembly));
     const GrainKind grains = e.setup.model.kind;
     const double target = residual_target(e.setup.numerics, e.setup.test.kind, grains);
-    RateControl control(target, target / residual_target(NumericsSpec{}, e.setup.test.kind, grains), e.height_m, e.travel_time,
+    const double relative_target = target / residual_target(NumericsSpec{}, e.setup.test.kind, grains);
+    RateControl control(e.setup.test.kind, target, relative_target, e.height_m, e.travel_time,
                         expected_strength(e.setup.contact, e.setup.test) * e.section_m2);
-    LoadingModeUpdate mode_update(e.travel_time, target);
+    LoadingModeUpdate mode_update(e.travel_time);
     const long long first_step = e.step;
     StopRule stop(e, first_step);
     ProgressReporter progress(e);
@@ -138,10 +139,9 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
         }
         if (adaptive) {
             const double force = std::abs(row.axial_stress_Pa) * e.section_m2;
-            const bool past_peak = e.direction * row.axial_stress_Pa < 0.98 * stop.peak();
-            const double unbalanced = unbalanced_force(e.assembly);
-            mode_update.observe(e.assembly, e.step, e.platen_travel_m, control.residual(unbalanced, force));
-            const double speed = control.next(e.settings.speed, unbalanced, force, e.platen_travel_m, past_peak);
+            const double share_of_peak = stop.peak() > 0.0 ? e.direction * row.axial_stress_Pa / stop.peak() : 1.0;
+            mode_update.observe(e.assembly, e.step, e.platen_travel_m);
+            const double speed = control.next(e.settings.speed, unbalanced(e.assembly), force, e.platen_travel_m, share_of_peak);
             if (speed != e.settings.speed) e.change_speed(speed);
         }
     }

@@ -15,6 +15,7 @@ namespace feldspar {
 namespace {
 
 constexpr double kTolerance = 1e-5;         // mean |F| / mean |contact force| of the relaxed body
+constexpr double kOnTheWay = 1e-3;          // the same for a state that is only scaled or corrected next
 constexpr double kBelowDamage = 0.98;       // of the first damage: where the elastic phase ends
 constexpr long long kMaximumSteps = 20000;
 
@@ -97,7 +98,7 @@ void set_loading_mode(Experiment& e, const BodyState& from, const BodyState& to)
 void elastic_loading(Experiment& e, const BodyState& base) {
     const double force_before = platen_force(e);
     add_affine(e, 1e-5 * e.height_m);
-    relax_or_throw(e);
+    relax_or_throw(e, kOnTheWay);
     learn_from(e, platen_force(e) - force_before, e.platen_travel_m - base.platen_travel_m);
     for (int attempt = 0; attempt < 4; ++attempt) {
         const BodyState reached = capture(e.assembly, e.platen_travel_m);
@@ -113,19 +114,20 @@ void elastic_loading(Experiment& e, const BodyState& base) {
 // The Brazilian start: plate contact is not linear, so scale and relax several times; B from the last two states.
 void elastic_plates(Experiment& e) {
     const BodyState unloaded = capture(e.assembly, 0.0);
-    const auto settle = [&] {
-        relax_or_throw(e);
+    const auto settle = [&](double tolerance = kTolerance) {
+        relax_or_throw(e, tolerance);
         return capture(e.assembly, e.platen_travel_m);
     };
     add_affine(e, 2e-5 * e.height_m);
-    BodyState reached = settle();
+    BodyState reached = settle(kOnTheWay);
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the disc is loaded");
         if (round > 0 && factor > 1.0 && factor < 1.04) break;
         go_to(e, superpose(unloaded, reached, std::min(kBelowDamage * factor, 20.0)));
-        reached = settle();
+        reached = settle(kOnTheWay);
     }
+    reached = settle();
     if (first_damage(e.assembly, unloaded, reached) <= 1.0) {   // the rounds did not settle below the first damage
         go_to(e, superpose(unloaded, reached, 0.9 * first_damage(e.assembly, unloaded, reached)));
         reached = settle();
@@ -141,15 +143,22 @@ void elastic_plates(Experiment& e) {
 void consolidate_elastically(Experiment& e) {
     const double target = e.setup.test.sigma3_Pa * e.section_m2;
     e.assembly.pressure_Pa = e.setup.test.sigma3_Pa;
-    relax_or_throw(e);
-    for (int round = 0; round < 8; ++round) {
+    double tolerance = kOnTheWay;   // until the platens are right; a loose state moves on when it is relaxed in full, so both are asked then
+    relax_or_throw(e, tolerance);
+    for (int round = 0; round < 12; ++round) {
         const double missing = target - platen_force(e);
-        if (round > 0 && std::abs(missing) < 1e-3 * target) break;   // what the relaxation leaves moving is of this size
+        if (round > 0 && std::abs(missing) < 1e-3 * target) {   // what the relaxation leaves moving is of this size
+            if (tolerance == kTolerance) return;
+            tolerance = kTolerance;
+            relax_or_throw(e, tolerance);
+            continue;
+        }
         add_affine(e, missing / e.axial_stiffness);
         const double before = target - missing, travel = missing / e.axial_stiffness;
-        relax_or_throw(e);
+        relax_or_throw(e, tolerance);
         if (round == 0) learn_from(e, platen_force(e) - before, travel);
     }
+    relax_or_throw(e);
 }
 
 // Isotropic stress with the real law: pressure and platen servo follow a ramp of many travel times, then wait for rest.
