@@ -32,6 +32,22 @@ struct KernelStep {
     long long step = 0;
 };
 
+/// A contact law with what its kernel divides by, inverted once.
+struct KernelLaw {
+    struct Envelope {
+        double x0 = 0.0, x_y = 0.0, x_f = 0.0;
+        double first_slope = 0.0, second_slope = 0.0;   ///< of the damage over the displacement, 1/m
+        bool brittle = false;
+    };
+    double Kn = 0.0, Ks = 0.0, inverse_Kn = 0.0, inverse_Ks = 0.0;   ///< inverse_Ks: 0 without shear stiffness
+    double sigma_nt = 0.0, tau = 0.0, mu = 0.0;
+    Envelope normal, shear;
+    bool shear_beyond_friction = false, secant_unloading = false;
+
+    KernelLaw() = default;
+    explicit KernelLaw(const BondLaw& law);
+};
+
 /// The arrays of an assembly. Points (x, y) as pairs of doubles, lines of 64 bytes as 8 doubles.
 struct KernelArrays {
     Assembly* assembly = nullptr;
@@ -39,7 +55,7 @@ struct KernelArrays {
     const PackForces* pack_forces = nullptr;
     ContactPack* contact_packs = nullptr;
     const Body* bodies = nullptr;
-    const BondLaw* laws = nullptr;
+    std::array<KernelLaw, contact_roles> laws;
     const double *reference = nullptr, *inverse_mass = nullptr, *loading_mode = nullptr, *mass = nullptr;
     double *displacement = nullptr, *velocity = nullptr, *force = nullptr;
     double *un = nullptr, *us = nullptr, *Fn = nullptr, *Fs = nullptr, *max_un = nullptr, *max_us = nullptr, *damage = nullptr;
@@ -54,12 +70,21 @@ struct KernelArrays {
     RigidForces* rigid_forces = nullptr;
     double* inverse_cross = nullptr;
     BodyWork* body_work = nullptr;
-    std::int32_t line_of_first_body = 0;
+    std::int32_t line_of_first_body = 0, grain_pack_count = 0, contact_pack_count = 0;
     double thickness = 0.0, D11 = 0.0, D12 = 0.0;
     /// Called when point `point` of contact `contact` breaks; may change its bond.
     void (*broke)(Assembly& assembly, int contact, int point, BondEvent event, long long step) = nullptr;
 
     explicit KernelArrays(Assembly& assembly);
+    /// For kernels that write nothing.
+    static KernelArrays to_read(const Assembly& assembly) { return KernelArrays(const_cast<Assembly&>(assembly)); }
+};
+
+/// Sums over all packs, J.
+struct PackEnergies {
+    double grains = 0.0;                            ///< elastic, in the triangles of packed grains
+    std::array<double, contact_roles> contacts{};   ///< elastic, in the points of each material
+    double fracture = 0.0, friction = 0.0;          ///< dissipated by all points
 };
 
 /// The stages for one instruction set. Ranges are of packs, or of bodies.
@@ -71,6 +96,7 @@ struct Kernels {
     void (*rigid)(const KernelArrays&, const KernelStep&, int begin, int end);
     void (*grain_lines)(const KernelArrays&, int begin, int end);   ///< writes the lines of the present state only
     void (*rigid_lines)(const KernelArrays&, int begin, int end);
+    PackEnergies (*energies)(const KernelArrays&, double since);    ///< triangles at the displacements of `since` ago, by the present velocities
 };
 
 /// All that this program holds, the fastest first.

@@ -3,6 +3,6 @@
 
 namespace feldspar {
 
-const Kernels kernels_portable{"portable", FELDSPAR_LANES, contacts, grains, rigid, grain_lines, rigid_lines};
+const Kernels kernels_portable{"portable", FELDSPAR_LANES, contacts, grains, rigid, grain_lines, rigid_lines, energies};
 
 }  // namespace feldspar

@@ -75,28 +75,26 @@ FELDSPAR_INLINE void store_forces(double* const (&line)[kWidth], Real2 F, Real x
 }
 
 // 1 - f(x) / F of an envelope.
-FELDSPAR_INLINE Real envelope_damage(const SofteningEnvelope& e, Real x) {
-    if (e.brittle || !(e.x_y > e.x0)) return Real{};
-    const Real first = 0.75 * (x - e.x0) / (e.x_y - e.x0), second = 1.0 - 0.25 * (e.x_f - x) / (e.x_f - e.x_y);
-    const Real softened = x <= all(e.x_y) ? first : x < all(e.x_f) ? second : all(1.0);
-    return x <= all(e.x0) ? Real{} : softened;
+FELDSPAR_INLINE Real envelope_damage(const KernelLaw::Envelope& e, Real x) {
+    if (e.first_slope == 0.0) return Real{};
+    const Real softened = x <= all(e.x_y) ? e.first_slope * (x - e.x0) : 1.0 - e.second_slope * (e.x_f - x);
+    return x <= all(e.x0) ? Real{} : x < all(e.x_f) ? softened : all(1.0);
 }
 
 struct BondLanes {
     Real un, us, Fn, Fs, max_un, max_us, damage, fracture, friction;
 };
 
-FELDSPAR_INLINE Real elastic_energy_of(const BondLaw& law, Real inverse_kn, const BondLanes& s) {
-    const Real energy = 0.5 * s.Fn * s.Fn * inverse_kn;
+FELDSPAR_INLINE Real normal_energy(const KernelLaw& law, Real inverse_area, Real Fn, Real un, Real damage) {
+    const Real energy = 0.5 * law.inverse_Kn * inverse_area * Fn * Fn;
     if (!law.secant_unloading) return energy;
-    return (s.un > 0.0) & (s.damage > 0.0) ? 0.5 * absolute(s.Fn) * s.un : energy;
+    return (un > 0.0) & (damage > 0.0) ? 0.5 * absolute(Fn) * un : energy;
 }
 
 // update_damaged() of laws/bond.hpp, lane by lane; `s` is the bond before. @return lanes that break now
-FELDSPAR_INLINE Mask update_damaged(const BondLaw& law, Real area, Real dun, Real dus, BondLanes& s, Real& Fn_trial_out) {
-    const Real kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
-    const Real inverse_kn = 1.0 / kn, inverse_ks = law.Ks_Pa_m > 0.0 ? 1.0 / ks : Real{};
-    const Real normal_energy_before = elastic_energy_of(law, inverse_kn, s);
+FELDSPAR_INLINE Mask update_damaged(const KernelLaw& law, Real area, Real dun, Real dus, BondLanes& s, Real& Fn_trial_out) {
+    const Real kn = law.Kn * area, ks = law.Ks * area, inverse_area = 1.0 / area, inverse_ks = law.inverse_Ks * inverse_area;
+    const Real normal_energy_before = normal_energy(law, inverse_area, s.Fn, s.un, s.damage);
     const Real Fn_before = s.Fn, Fs_before = s.Fs;
     const Mask broken_before = s.damage >= 1.0;
     const Real Fn_trial = s.Fn - kn * dun, Fs_trial = s.Fs - ks * dus;
@@ -109,8 +107,8 @@ FELDSPAR_INLINE Mask update_damaged(const BondLaw& law, Real area, Real dun, Rea
     s.max_un = broken_before ? s.max_un : larger(s.max_un, s.un);
     s.max_us = broken_before ? s.max_us : larger(s.max_us, measure);
     Real damage = larger(s.damage, smaller(all(1.0), envelope_damage(law.normal, s.max_un) + envelope_damage(law.shear, s.max_us)));
-    const Real tension_limit = (1.0 - damage) * law.sigma_nt_Pa * area;
-    Real cohesion_limit = (1.0 - damage) * law.tau_Pa * area;
+    const Real tension_limit = (1.0 - damage) * law.sigma_nt * area;
+    Real cohesion_limit = (1.0 - damage) * law.tau * area;
     if (law.normal.brittle) damage = Fn_trial < -tension_limit ? all(1.0) : damage;
     if (law.shear.brittle) damage = absolute(Fs_trial) > cohesion_limit + law.mu * pressed ? all(1.0) : damage;
     s.damage = broken_before ? s.damage : damage;
@@ -124,7 +122,7 @@ FELDSPAR_INLINE Mask update_damaged(const BondLaw& law, Real area, Real dun, Rea
 
     const Real work_n = -0.5 * (Fn_before + s.Fn) * dun, work_s = -0.5 * (Fs_before + s.Fs) * dus;
     const Real dissipated_s = work_s + 0.5 * (Fs_before * Fs_before - s.Fs * s.Fs) * inverse_ks;
-    const Real dissipated_n = work_n + normal_energy_before - elastic_energy_of(law, inverse_kn, s);
+    const Real dissipated_n = work_n + normal_energy_before - normal_energy(law, inverse_area, s.Fn, s.un, s.damage);
     const Real share = limit > 0.0 ? friction_limit / limit : Real{};
     const Real friction_share = broken_before ? all(1.0) : share;
     s.friction += friction_share * dissipated_s;
@@ -152,10 +150,10 @@ struct PointForces {
     Real Fn, Fs;
 };
 [[gnu::noinline]] PointForces update_points(const KernelArrays& a, const KernelStep& step, const ContactPack& pack, Chunk chunk, int j, const Real& dun, const Real& dus) {
-    const BondLaw& law = a.laws[pack.material];
+    const KernelLaw& law = a.laws[pack.material];
     const int state = pack.first_state + j * pack.lanes + chunk.begin, count = chunk.count;
     const Mask takes_part = lanes_of(pack.active >> chunk.begin) & lanes_of((1U << count) - 1U);
-    const Real area = load(a.area + state, count), kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
+    const Real area = load(a.area + state, count), kn = law.Kn * area, ks = law.Ks * area;
     BondLanes s{load(a.un + state, count), load(a.us + state, count), load(a.Fn + state, count), load(a.Fs + state, count), load(a.max_un + state, count),
                 load(a.max_us + state, count), load(a.damage + state, count), load(a.fracture + state, count), load(a.friction + state, count)};
     const Mask intact = s.damage == 0.0;
@@ -228,9 +226,9 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     };
     const int points = pack.points, stride = pack.lanes, first = pack.first_state + chunk.begin;
     if (plain && pack.intact) {
-        const BondLaw& law = a.laws[pack.material];
+        const KernelLaw& law = arrays.laws[pack.material];
         const double x0n = step.unlimited ? __builtin_inf() : law.normal.x0, x0s = step.unlimited ? __builtin_inf() : law.shear.x0;
-        const double Kn = law.Kn_Pa_m, Ks = law.Ks_Pa_m;
+        const double Kn = law.Kn, Ks = law.Ks;
         for (int j = 0; j < points; ++j) {
             const int state = first + j * stride;
             const Real w = load(a.along + state), area = load(a.area + state), dun = n0 + w * n1, dus = s0 + w * s1;
@@ -647,6 +645,79 @@ void rigid_lines(const KernelArrays& a, int begin, int end) {
         const int node = 2 * a.bodies[i].first_node;
         write_rigid_line(a, i, a.bodies[i], load_quad(a.displacement + node), load_quad(a.velocity + node));
     }
+}
+
+// ---------------------------------------------------------------------------------------------------------------- energies
+
+FELDSPAR_INLINE double sum_of(Real v) {
+    double sum = 0.0;
+    for (int lane = 0; lane < kWidth; ++lane) sum += v[lane];
+    return sum;
+}
+
+// V W of a triangle: laws/plane_elasticity.hpp.
+FELDSPAR_INLINE Real triangle_energy(const NodeLanes& i, const NodeLanes& j, const NodeLanes& k, Real scale, const Elastic& D) {
+    const Real2 E1 = j.X - i.X, E2 = k.X - i.X, d1 = j.u - i.u, d2 = k.u - i.u;
+    const Real Gxx = d1.x * E2.y - d2.x * E1.y, Gxy = d2.x * E1.x - d1.x * E2.x;
+    const Real Gyx = d1.y * E2.y - d2.y * E1.y, Gyy = d2.y * E1.x - d1.y * E2.x;
+    const Real a = scale * (Gxx + Gyy), b = scale * (Gyx - Gxy), p = scale * (Gxx - Gyy), q = scale * (Gxy + Gyx);
+    const Real x = 2.0 * a + (a * a + b * b), r_minus_1 = x / (1.0 + square_root(1.0 + x));
+    return cross(E1, E2) * (D.volumetric * r_minus_1 * r_minus_1 + D.deviatoric * (p * p + q * q));   // t/2 is in D
+}
+
+double energy_of_grains(const KernelArrays& a, double since) {
+    const Elastic D{all(0.5 * a.thickness * (a.D11 + a.D12)), all(0.5 * a.thickness * (a.D11 - a.D12))};
+    Real sum{};
+    GrainLanes g;
+    for (int p = 0; p < a.grain_pack_count; ++p) {
+        const GrainPack& pack = a.grain_packs[p];
+        const GrainNodes nodes{pack.vertices, pack.vertices - pack.collapsed};
+        for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA {
+            for (int i = 0; i < pack.nodes(); ++i) {
+                const int node = pack.first_node + chunk.begin + i * pack.lanes;
+                const Real2 v = load_points(a.velocity + 2 * node, chunk.count);
+                g.node[i].X = load_points(a.reference + 2 * node, chunk.count);
+                g.node[i].u = load_points(a.displacement + 2 * node, chunk.count) - Real2{since * v.x, since * v.y};
+            }
+            const double* scale = a.scale + pack.first_triangle + chunk.begin;
+            const auto add = [&](int i, int j, int k) FELDSPAR_LAMBDA {   // lanes without a grain have no area
+                sum += triangle_energy(g.node[i], g.node[j], g.node[k], load(scale, chunk.count), D);
+                scale += pack.lanes;
+            };
+            for (int k = 0; k < pack.vertices; ++k) {
+                const int next = nodes.next(k);
+                add(k, next, nodes.ring(k));
+                if (k + 1 == pack.vertices && pack.collapsed) continue;
+                add(next, nodes.ring(next), nodes.ring(k));
+                add(nodes.centre(), nodes.ring(k), nodes.ring(next));
+            }
+        });
+    }
+    return sum_of(sum);
+}
+
+PackEnergies energies(const KernelArrays& a, double since) {
+    PackEnergies sums;
+    sums.grains = energy_of_grains(a, since);
+    Real fracture{}, friction{};
+    for (int p = 0; p < a.contact_pack_count; ++p) {
+        const ContactPack& pack = a.contact_packs[p];
+        const KernelLaw& law = a.laws[pack.material];
+        Real stored{};
+        const int end = pack.first_state + pack.lanes * pack.points;
+        for (int state = pack.first_state; state < end; state += kWidth) {
+            const int count = end - state < kWidth ? end - state : kWidth;
+            const Real Fn = load(a.Fn + state, count), Fs = load(a.Fs + state, count), area = load(a.area + state, count);
+            const Real inverse_area = area > 0.0 ? 1.0 / area : Real{};
+            stored += normal_energy(law, inverse_area, Fn, load(a.un + state, count), load(a.damage + state, count)) + 0.5 * law.inverse_Ks * inverse_area * Fs * Fs;
+            fracture += load(a.fracture + state, count);
+            friction += load(a.friction + state, count);
+        }
+        sums.contacts[static_cast<std::size_t>(pack.material)] += sum_of(stored);
+    }
+    sums.fracture = sum_of(fracture);
+    sums.friction = sum_of(friction);
+    return sums;
 }
 
 }  // namespace

@@ -6,19 +6,20 @@ namespace feldspar {
 
 StoredEnergy stored_energy(const Assembly& assembly, double since) {
     StoredEnergy sum;
+    const PackEnergies packs = best_kernels().energies(KernelArrays::to_read(assembly), since);
+    sum.grains_J = packs.grains + packs.contacts[inside_grains];
+    for (const ContactRole role : {between_grains, at_plates, at_membranes}) sum.contacts_J += packs.contacts[role];
+    sum.fracture_J = packs.fracture;
+    sum.friction_J = packs.friction;
     const Nodes& nodes = assembly.nodes;
-    Array<Vec2> u = nodes.displacement;
-    for (std::size_t n = 0; n < u.size(); ++n) u[n] -= since * nodes.velocity[n];
-    for (const Triangle& triangle : assembly.triangles)
-        sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity, displacement_gradient(u, triangle));
-    for (const Contact& contact : assembly.contacts) {
-        const BondLaw& law = assembly.laws[contact.material];
-        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
-            const BondState bond = assembly.bond(p);
-            double& stored = contact.material == inside_grains ? sum.grains_J : sum.contacts_J;
-            if (!contact.dropped) stored += elastic_energy(law, assembly.points[p].area_m2, bond);
-            sum.fracture_J += bond.fracture_J;
-            sum.friction_J += bond.friction_J;
+    Array<Vec2> u;   // of grains in no pack, if there are any
+    for (const int b : assembly.packs.loose_bodies) {
+        const Body& grain = assembly.bodies[b];
+        if (u.empty() && grain.triangle_begin < grain.triangle_end) u = nodes.displacement;
+        for (int t = grain.triangle_begin; t < grain.triangle_end; ++t) {
+            const Triangle& triangle = assembly.triangles[t];
+            for (const int n : triangle.node) u[n] = nodes.displacement[n] - since * nodes.velocity[n];
+            sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity, displacement_gradient(u, triangle));
         }
     }
     for (const BodyWork& work : assembly.body_work) {

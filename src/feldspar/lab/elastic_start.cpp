@@ -95,7 +95,7 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
             const Vec2 v = {fx * velocity_before[n].x, fy * velocity_before[n].y};
             stiffness -= dot(v, nodes.force[n] - force_before[n]);
             inertia += nodes.mass[n] * dot(v, v);
-            force += std::hypot(fx * nodes.force[n].x, fy * nodes.force[n].y);
+            force += norm({fx * nodes.force[n].x, fy * nodes.force[n].y});
         }
         if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9, kOfCritical * 2.0 * std::sqrt(stiffness / inertia));
         if (result.steps % 10 == 0) {

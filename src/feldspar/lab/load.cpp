@@ -84,11 +84,11 @@ private:
 };
 
 // Contacts between grains, looked after every few steps.
-void maintain_contacts(Experiment& e, ContactFinder& finder, TestResult& result, int steps) {
+void maintain_contacts(Experiment& e, ContactFinder& finder, ShapeWatch& watch, TestResult& result, int steps) {
     const ContactFinder::Changes changes = finder.update(e.assembly, e.mass_factor);
     e.rate_control_J += changes.kinetic_J + changes.elastic_J;   // heavier nodes took their speed along; contacts began with an overlap
     result.new_contacts += changes.made;
-    const ShapeChoice shapes = choose_shape_functions(e.assembly, e.mass_factor);
+    const ShapeChoice shapes = watch.look(e.assembly, e.mass_factor);
     e.rate_control_J += shapes.kinetic_J;
     result.shape_fallbacks += static_cast<long long>(shapes.fallback_sides) * steps;
     if (shapes.fallback_sides > 0) result.angular_momentum_loss = std::max(result.angular_momentum_loss, fallback_moment_loss(e.assembly));
@@ -112,6 +112,7 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
     const bool adaptive = e.setup.numerics.kind == NumericsKind::adaptive;
     const int block = adaptive ? 10 : 50;   // steps between records
     ContactFinder finder(e.assembly, 0.1 * mean_body_diameter(e.assembly));
+    ShapeWatch watch(e.assembly);
     const GrainKind grains = e.setup.model.kind;
     const double target = residual_target(e.setup.numerics, e.setup.test.kind, grains);
     const double relative_target = target / residual_target(NumericsSpec{}, e.setup.test.kind, grains);
@@ -126,7 +127,7 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
     const Clock::time_point start = Clock::now();
     for (;;) {
         e.run(block);
-        maintain_contacts(e, finder, result, block);
+        maintain_contacts(e, finder, watch, result, block);
         const HistoryRow& row = recorder.record(Phase::loading);
         if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa))
             throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g})", e.step, row.axial_strain));

@@ -9,7 +9,7 @@
 namespace feldspar {
 namespace {
 
-// Force of the linearised body on the displacement field x (with the sign of -K x), by one step of zero length.
+// K x of the linearised body, from the forces of one step.
 void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& x, Eigen::VectorXd& Kx) {
     constexpr double kAmplitude = 1e-12;   // m: rotations of 1e-8, far from both nonlinearity and rounding
     Nodes& nodes = assembly.nodes;
@@ -19,14 +19,9 @@ void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& x, E
     const std::size_t bonds = assembly.points.size();
     assembly.bonds = {};
     assembly.bonds.resize(bonds);
-    for (int n = 0; n < nodes.count(); ++n) {
-        nodes.displacement[n] = {};
-        nodes.velocity[n] = {scale * x[2 * n], scale * x[2 * n + 1]};
-    }
-    team.run([&](int t) { contact_forces(assembly, team.share(static_cast<int>(assembly.contacts.size()), t), settings, -1); });
-    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] = nodes.velocity[n];
-    settings.dt = 0.0;
-    team.run([&](int t) { body_forces(assembly, team.share(static_cast<int>(assembly.bodies.size()), t), settings); });
+    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] = nodes.velocity[n] = {scale * x[2 * n], scale * x[2 * n + 1]};
+    PlatenWork none;
+    advance(assembly, team, settings, -1, 1, none);   // contacts feel the velocity, triangles the displacement; where it all goes then is of no interest
     for (int n = 0; n < nodes.count(); ++n) {
         Kx[2 * n] = -nodes.force[n].x / scale;
         Kx[2 * n + 1] = -nodes.force[n].y / scale;

@@ -82,6 +82,11 @@ ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_fac
         for (Contact& contact : assembly.contacts) {
             if (contact.dropped || contact.plate || !wide_open(assembly, contact, skin_m_)) continue;
             contact.dropped = true;
+            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {   // carries nothing, and holds nothing
+                BondState bond = assembly.bond(p);
+                bond.Fn_N = bond.Fs_N = 0.0;
+                assembly.set_bond(p, bond);
+            }
             ++changes.dropped;
         }
         search(assembly);
@@ -137,34 +142,95 @@ double follow_stiffness(Assembly& assembly, const Contact& contact, int p, const
     return kinetic;
 }
 
+// The choice for one contact. @return what it adds to the whole
+ShapeChoice choose(Assembly& assembly, Contact& contact, double mass_factor) {
+    ShapeChoice choice;
+    contact.initial_shape = false;
+    if (contact.dropped || !contact.flexible) return choice;
+    const ContactFrame frame = contact_frame(assembly, contact);
+    const bool b_is_grain = !contact.plate;
+    const auto pa = corners(assembly.nodes, contact.a.node);
+    const auto pb = b_is_grain ? corners(assembly.nodes, contact.b.node) : pa;
+    const auto shapes_at = [&](int p) {
+        const Vec2 x = frame.reference_point + assembly.points[p].along_m * frame.edge_tangent;
+        return std::array{shape_functions(pa, x), shape_functions(pb, x)};
+    };
+    const int end = contact.first_point + contact.points;
+    for (int p = contact.first_point; p < end && !contact.initial_shape; ++p) {
+        const auto [Na, Nb] = shapes_at(p);
+        contact.initial_shape = departs(Na, assembly.initial_shapes[p].a) || (b_is_grain && departs(Nb, assembly.initial_shapes[p].b));
+    }
+    if (contact.initial_shape) {
+        choice.fallback_sides += b_is_grain ? 2 : 1;
+    } else if (mass_factor > 0.0) {
+        for (int p = contact.first_point; p < end; ++p) {
+            const auto [Na, Nb] = shapes_at(p);
+            choice.kinetic_J += follow_stiffness(assembly, contact, p, Na, Nb, mass_factor);
+        }
+    }
+    return choice;
+}
+
+void add(ShapeChoice& sum, const ShapeChoice& one) {
+    sum.fallback_sides += one.fallback_sides;
+    sum.kinetic_J += one.kinetic_J;
+}
+
+// Smallest height of the triangle behind an edge: a point that moves by it changes some shape function by 1.
+double smallest_height(const Assembly& assembly, const SideNodes& node) {
+    const auto p = corners(assembly.nodes, node);
+    const double longest = std::max({norm(p[1] - p[0]), norm(p[2] - p[1]), norm(p[0] - p[2])});
+    return std::abs(cross(p[1] - p[0], p[2] - p[0])) / longest;
+}
+
 }  // namespace
 
 ShapeChoice choose_shape_functions(Assembly& assembly, double mass_factor) {
     ShapeChoice choice;
-    for (Contact& contact : assembly.contacts) {
-        contact.initial_shape = false;
-        if (contact.dropped || !contact.flexible) continue;
-        const ContactFrame frame = contact_frame(assembly, contact);
-        const bool b_is_grain = !contact.plate;
-        const auto pa = corners(assembly.nodes, contact.a.node);
-        const auto pb = b_is_grain ? corners(assembly.nodes, contact.b.node) : pa;
-        const auto shapes_at = [&](int p) {
-            const Vec2 x = frame.reference_point + assembly.points[p].along_m * frame.edge_tangent;
-            return std::array{shape_functions(pa, x), shape_functions(pb, x)};
-        };
-        const int end = contact.first_point + contact.points;
-        for (int p = contact.first_point; p < end && !contact.initial_shape; ++p) {
-            const auto [Na, Nb] = shapes_at(p);
-            contact.initial_shape = departs(Na, assembly.initial_shapes[p].a) || (b_is_grain && departs(Nb, assembly.initial_shapes[p].b));
+    for (Contact& contact : assembly.contacts) add(choice, choose(assembly, contact, mass_factor));
+    return choice;
+}
+
+void ShapeWatch::measure(const Assembly& assembly, std::size_t first_contact) {
+    for (std::size_t c = first_contact; c < assembly.contacts.size(); ++c) {
+        const Contact& contact = assembly.contacts[c];
+        double height = 0.0;
+        if (contact.flexible) {
+            height = smallest_height(assembly, contact.a.node);
+            if (!contact.plate) height = std::min(height, smallest_height(assembly, contact.b.node));
         }
-        if (contact.initial_shape) {
-            choice.fallback_sides += b_is_grain ? 2 : 1;
-        } else if (mass_factor > 0.0) {
-            for (int p = contact.first_point; p < end; ++p) {
-                const auto [Na, Nb] = shapes_at(p);
-                choice.kinetic_J += follow_stiffness(assembly, contact, p, Na, Nb, mass_factor);
-            }
-        }
+        allowed_m_.push_back(0.02 * height);
+        seen_m_.resize(assembly.points.size());
+        remember(assembly, contact);
+    }
+}
+
+void ShapeWatch::remember(const Assembly& assembly, const Contact& contact) {
+    for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+        const auto i = static_cast<std::size_t>(assembly.points[p].state);
+        seen_m_[p] = {assembly.bonds.un_m[i], assembly.bonds.us_m[i]};
+    }
+}
+
+bool ShapeWatch::has_moved(const Assembly& assembly, const Contact& contact, std::size_t c) const {
+    for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+        const auto i = static_cast<std::size_t>(assembly.points[p].state);
+        const double un = assembly.bonds.un_m[i] - seen_m_[p].x, us = assembly.bonds.us_m[i] - seen_m_[p].y;
+        if (std::abs(un) > allowed_m_[c] || std::abs(us) > allowed_m_[c]) return true;
+    }
+    return false;
+}
+
+ShapeChoice ShapeWatch::look(Assembly& assembly, double mass_factor) {
+    constexpr int kAll = 20;   // looks
+    measure(assembly, allowed_m_.size());
+    const bool all = looks_++ % kAll == 0;
+    ShapeChoice choice;
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+        Contact& contact = assembly.contacts[c];
+        if (!contact.flexible || !(all || contact.initial_shape || has_moved(assembly, contact, c))) continue;
+        add(choice, choose(assembly, contact, mass_factor));
+        remember(assembly, contact);
     }
     return choice;
 }

@@ -103,8 +103,25 @@ struct ShapeChoice {
 
 /// Chooses for each contact of flexible bodies between current and initial shape functions: the initial ones where any current value departs
 /// from its initial one by more than 0.5. Where extrapolation makes a point stiffer than the scaled masses allow for, the
-/// masses follow, so that the step stays stable.
+/// masses follow, so that the step stays stable. Looks at all contacts.
 /// @param mass_factor  factor of the scaled masses; 0 with real masses, which stay
 ShapeChoice choose_shape_functions(Assembly& assembly, double mass_factor);
+
+/// The same for every few steps: looks again only at contacts that have moved by a fiftieth of their triangles' height since they were
+/// looked at, and now and then at all of them, because grains may also roll on each other.
+class ShapeWatch {
+public:
+    explicit ShapeWatch(const Assembly& assembly) { measure(assembly, 0); }
+    ShapeChoice look(Assembly& assembly, double mass_factor);
+
+private:
+    void measure(const Assembly& assembly, std::size_t first_contact);
+    bool has_moved(const Assembly& assembly, const Contact& contact, std::size_t c) const;
+    void remember(const Assembly& assembly, const Contact& contact);
+
+    int looks_ = 0;
+    std::vector<double> allowed_m_;          // of each contact
+    std::vector<Vec2> seen_m_;               // of each point: un and us when it was looked at
+};
 
 }  // namespace feldspar
