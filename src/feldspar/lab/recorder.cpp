@@ -99,10 +99,12 @@ void Recorder::collect_cracks() {
         int contact, point;
     };
     std::vector<Found> found;
-    for (int c = 0; c < static_cast<int>(e_.assembly.contacts.size()); ++c) {
-        const Contact& contact = e_.assembly.contacts[c];
-        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
-            if (e_.assembly.points[p].broken_step >= std::max(0LL, cracks_seen_until_)) found.push_back({e_.assembly.points[p].broken_step, c, p});
+    const std::vector<Contact>& contacts = e_.assembly.contacts;   // in the order of their points
+    for (int p = 0; p < std::ssize(e_.assembly.points); ++p) {
+        const long long step = e_.assembly.points[p].broken_step;
+        if (step < std::max(0LL, cracks_seen_until_)) continue;
+        const auto behind = std::upper_bound(contacts.begin(), contacts.end(), p, [](int point, const Contact& c) { return point < c.first_point; });
+        found.push_back({step, static_cast<int>(behind - contacts.begin()) - 1, p});
     }
     std::stable_sort(found.begin(), found.end(), [](const Found& l, const Found& r) { return l.step < r.step; });
     for (const Found& f : found) {

@@ -340,6 +340,19 @@ int Nodes::add(Vec2 place, Vec2 free) {
     return count() - 1;
 }
 
+namespace {
+
+// What growing arrays have reserved beyond their ends: up to half of the memory.
+void release_spare_memory(Assembly& a) {
+    const auto release = [](auto&... arrays) { (arrays.shrink_to_fit(), ...); };
+    release(a.nodes.reference, a.nodes.displacement, a.nodes.velocity, a.nodes.force, a.nodes.inverse_mass, a.nodes.loading_mode, a.nodes.mass);
+    release(a.triangles, a.bodies, a.edges, a.contacts, a.origins, a.points, a.initial_shapes);
+    release(a.bonds.un_m, a.bonds.us_m, a.bonds.Fn_N, a.bonds.Fs_N, a.bonds.max_un_m, a.bonds.max_us_m, a.bonds.damage, a.bonds.fracture_J, a.bonds.friction_J);
+    release(a.packs.offset, a.packs.tangent_x, a.packs.tangent_y, a.packs.line_a, a.packs.line_b, a.packs.contacts);
+}
+
+}  // namespace
+
 void Bonds::resize(std::size_t count) {
     for (auto* quantity : {&un_m, &us_m, &Fn_N, &Fs_N, &max_un_m, &max_us_m, &damage, &fracture_J, &friction_J}) quantity->resize(count);
 }
@@ -392,6 +405,7 @@ Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainM
     }
     index_bodies(assembly);
     index_contacts(assembly);
+    release_spare_memory(assembly);
     return assembly;
 }
 

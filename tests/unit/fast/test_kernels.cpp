@@ -241,6 +241,33 @@ TEST_P(OneStep, HasTheSameBitsForAnyNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, OneStep, testing::ValuesIn(cases()), label);
 
+TEST(Packs, HoldTheEnergyOfTheReadableFormulas) {
+    for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant}) {
+        TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+        setup.contact.tension_unloading = unloading;
+        const RunControl control = fixtures::threads(1);
+        Experiment e(setup, control);
+        choose_step(e);
+        stir(e.assembly);
+        const Assembly& a = e.assembly;
+        PackEnergies expected;
+        for (const Triangle& triangle : a.triangles) {
+            Array<Vec2> u = a.nodes.displacement;
+            for (const int n : triangle.node) u[n] -= 0.5 * a.nodes.velocity[n];
+            expected.grains += triangle.volume_m3 * strain_energy_density(a.elasticity, displacement_gradient(u, triangle));
+        }
+        for (const Contact& contact : a.contacts)
+            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
+                expected.contacts[contact.material] += elastic_energy(a.laws[contact.material], a.points[p].area_m2, a.bond(p));
+        for (const Kernels* kernels : kernels_here()) {
+            const PackEnergies sums = kernels->energies(KernelArrays::to_read(a), 0.5);
+            EXPECT_NEAR(sums.grains / expected.grains, 1.0, 1e-12) << kernels->name;   // sums of thousands of terms in another order
+            for (std::size_t role = 0; role < sums.contacts.size(); ++role)
+                EXPECT_NEAR(sums.contacts[role], expected.contacts[role], 1e-12 * expected.contacts[role]) << kernels->name;
+        }
+    }
+}
+
 TEST(Packs, HoldEveryGrainOfTheCommonTopologyOnce) {
     const auto specimen = fixtures::make(fixtures::rectangle(0.04, 0.08));
     const Assembly assembly = assemble(*specimen, fixtures::model(GrainKind::flexible), fixtures::granite(), fixtures::table7());
