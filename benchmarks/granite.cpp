@@ -180,8 +180,9 @@ void Granite::run(Stage stage, Team& team, int steps) {
     switch (stage) {
         case Stage::contacts:   // forces take the place of motions in the lines, so these are written anew: it counts with the stage
             return on_all_threads([&](const KernelArrays& arrays, const KernelStep& step, int thread) {
-                const IndexRange grains = share(packs.grains, thread), contacts = share(packs.contacts, thread);
+                const IndexRange grains = share(packs.grains, thread), contacts = share(packs.contacts, thread), rigid = team.share(packs.rigid_end, thread);
                 kernels.grain_lines(arrays, grains.begin, grains.end);
+                kernels.rigid_lines(arrays, rigid.begin, rigid.end);
                 team.barrier();
                 kernels.contacts(arrays, step, contacts.begin, contacts.end);
             });

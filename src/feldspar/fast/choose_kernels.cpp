@@ -72,6 +72,7 @@ KernelArrays::KernelArrays(Assembly& s)
       line_of_first_body(s.packs.line_of_first_body),
       grain_pack_count(static_cast<std::int32_t>(s.packs.grains.size())),
       contact_pack_count(static_cast<std::int32_t>(s.packs.contacts.size())),
+      node_count(s.nodes.count()),
       thickness(s.thickness_m),
       D11(s.elasticity.D11),
       D12(s.elasticity.D12),

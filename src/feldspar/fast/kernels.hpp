@@ -70,7 +70,7 @@ struct KernelArrays {
     RigidForces* rigid_forces = nullptr;
     double* inverse_cross = nullptr;
     BodyWork* body_work = nullptr;
-    std::int32_t line_of_first_body = 0, grain_pack_count = 0, contact_pack_count = 0;
+    std::int32_t line_of_first_body = 0, grain_pack_count = 0, contact_pack_count = 0, node_count = 0;
     double thickness = 0.0, D11 = 0.0, D12 = 0.0;
     /// Called when point `point` of contact `contact` breaks; may change its bond.
     void (*broke)(Assembly& assembly, int contact, int point, BondEvent event, long long step) = nullptr;
@@ -87,6 +87,11 @@ struct PackEnergies {
     double fracture = 0.0, friction = 0.0;          ///< dissipated by all points
 };
 
+/// Sums over all free components of all nodes (lab/body_energy.hpp: Motion).
+struct NodeSums {
+    double kinetic = 0.0, deviation = 0.0, ahead_damping = 0.0;   ///< J
+};
+
 /// The stages for one instruction set. Ranges are of packs, or of bodies.
 struct Kernels {
     const char* name;   ///< "avx512", "avx2", "portable"
@@ -96,6 +101,8 @@ struct Kernels {
     void (*rigid)(const KernelArrays&, const KernelStep&, int begin, int end);
     void (*grain_lines)(const KernelArrays&, int begin, int end);   ///< writes the lines of the present state only
     void (*rigid_lines)(const KernelArrays&, int begin, int end);
+    NodeSums (*node_sums)(const KernelArrays&, const KernelStep&);  ///< after a step
+    void (*unbalanced)(const KernelArrays&, double* of_bodies);     ///< of each packed grain: sum of |F| over its free components, N
     PackEnergies (*energies)(const KernelArrays&, double since);    ///< triangles at the displacements of `since` ago, by the present velocities
 };
 

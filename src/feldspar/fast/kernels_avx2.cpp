@@ -3,6 +3,6 @@
 
 namespace feldspar {
 
-const Kernels kernels_avx2{"avx2", FELDSPAR_LANES, contacts, grains, rigid, grain_lines, rigid_lines, energies};
+const Kernels kernels_avx2{"avx2", FELDSPAR_LANES, contacts, grains, rigid, grain_lines, rigid_lines, node_sums, unbalanced, energies};
 
 }  // namespace feldspar

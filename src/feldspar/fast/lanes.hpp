@@ -144,6 +144,20 @@ FELDSPAR_INLINE void store_points(double* p, Real2 v, int count) {
     }
 }
 
+// Each of kWidth values twice, in two vectors: for x and y.
+FELDSPAR_INLINE void twice(Real v, Real& lower, Real& upper) {
+#if FELDSPAR_LANES == 8
+    lower = __builtin_shufflevector(v, v, 0, 0, 1, 1, 2, 2, 3, 3);
+    upper = __builtin_shufflevector(v, v, 4, 4, 5, 5, 6, 6, 7, 7);
+#elif FELDSPAR_LANES == 4
+    lower = __builtin_shufflevector(v, v, 0, 0, 1, 1);
+    upper = __builtin_shufflevector(v, v, 2, 2, 3, 3);
+#else
+    lower = __builtin_shufflevector(v, v, 0, 0);
+    upper = __builtin_shufflevector(v, v, 1, 1);
+#endif
+}
+
 // Four quantities of each lane, from four consecutive doubles of a line a lane: a transposition.
 struct Real4 {
     Real q[4];

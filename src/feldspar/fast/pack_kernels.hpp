@@ -647,12 +647,52 @@ void rigid_lines(const KernelArrays& a, int begin, int end) {
     }
 }
 
-// ---------------------------------------------------------------------------------------------------------------- energies
+// ---------------------------------------------------------------------------------------------------------------- sums of a record
 
 FELDSPAR_INLINE double sum_of(Real v) {
     double sum = 0.0;
     for (int lane = 0; lane < kWidth; ++lane) sum += v[lane];
     return sum;
+}
+
+NodeSums node_sums(const KernelArrays& a, const KernelStep& step) {
+    Real kinetic{}, deviation{}, ahead{};
+    const double half = 0.5 * step.viscous * step.dt, inverse = 1.0 / (1.0 - half);
+    const auto add = [&](int at, int count, Real mass) FELDSPAR_LAMBDA {   // components [at, at + count)
+        const Real V = load(a.velocity + at, count), F = load(a.force + at, count), inverse_mass = load(a.inverse_mass + at, count);
+        const Real loading = step.speed * load(a.loading_mode + at, count), w = V - loading;
+        const Real before = step.local_damping ? V - step.dt * inverse_mass * (F - with_sign_of(step.alpha * F, V))
+                                               : loading + (w * (1.0 + half) - step.dt * inverse_mass * F) * inverse;
+        const Real m = inverse_mass == 0.0 ? Real{} : mass;
+        kinetic += m * V * before;
+        deviation += m * w * w;
+        ahead += V * (inverse_mass == 0.0 ? Real{} : step.dt * F - m * (V - before));
+    };
+    const auto part = [](int count) { return count < 0 ? 0 : count < kWidth ? count : kWidth; };
+    for (int n = 0; n < a.node_count; n += kWidth) {
+        Real lower, upper;
+        const int nodes = part(a.node_count - n);
+        twice(load(a.mass + n, nodes), lower, upper);
+        add(2 * n, part(2 * nodes), lower);
+        add(2 * n + kWidth, part(2 * nodes - kWidth), upper);
+    }
+    return {0.5 * sum_of(kinetic), 0.5 * sum_of(deviation), 0.5 * sum_of(ahead)};
+}
+
+void unbalanced(const KernelArrays& a, double* of_bodies) {
+    for (int p = 0; p < a.grain_pack_count; ++p) {
+        const GrainPack& pack = a.grain_packs[p];
+        for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA {
+            Real sum{};
+            for (int i = 0; i < pack.nodes(); ++i) {
+                const int node = pack.first_node + chunk.begin + i * pack.lanes;
+                const Real2 F = load_points(a.force + 2 * node, chunk.count), free = load_points(a.inverse_mass + 2 * node, chunk.count);
+                sum += free.x == 0.0 ? Real{} : absolute(F.x);
+                sum += free.y == 0.0 ? Real{} : absolute(F.y);
+            }
+            for (int lane = 0; lane < chunk.count; ++lane) of_bodies[pack.grain[chunk.begin + lane]] = sum[lane];
+        });
+    }
 }
 
 // V W of a triangle: laws/plane_elasticity.hpp.

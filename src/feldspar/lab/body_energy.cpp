@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "feldspar/step/advance_packs.hpp"
+
 namespace feldspar {
 
 StoredEnergy stored_energy(const Assembly& assembly, double since) {
@@ -31,14 +33,6 @@ StoredEnergy stored_energy(const Assembly& assembly, double since) {
 
 namespace {
 
-// The velocity before the last step, from that after it: the inverse of what step/body_forces.cpp does to one component.
-double velocity_before(double after, double F, double inverse_mass, double loading, const StepSettings& settings) {
-    const double dt = settings.dt;
-    if (settings.damping == Damping::local) return after - dt * inverse_mass * (F - std::copysign(settings.alpha * F, after));
-    const double half = 0.5 * settings.viscous * dt, w = after - loading;
-    return loading + (w * (1.0 + half) - dt * inverse_mass * F) / (1.0 - half);
-}
-
 double pressure_power(const Assembly& assembly) {
     double power = 0.0;
     for (const PressureEdge& edge : assembly.pressure_edges) {
@@ -52,32 +46,33 @@ double pressure_power(const Assembly& assembly) {
 }  // namespace
 
 Motion motion(const Assembly& assembly, const StepSettings& settings) {
-    Motion sum;
-    const Nodes& nodes = assembly.nodes;
-    const auto add = [&](double V, double F, double inverse_mass, double mass, double loading) {
-        if (inverse_mass == 0.0) return;
-        const double before = velocity_before(V, F, inverse_mass, loading, settings);
-        sum.kinetic_J += 0.5 * mass * V * before;
-        sum.deviation_J += 0.5 * mass * (V - loading) * (V - loading);
-        sum.ahead_damping_J += 0.5 * V * (settings.dt * F - mass * (V - before));   // m (V - before) = dt (F - damping)
-    };
-    for (int n = 0; n < nodes.count(); ++n) {
-        const Vec2 V = nodes.velocity[n], F = nodes.force[n], inverse = nodes.inverse_mass[n], loading = settings.speed * nodes.loading_mode[n];
-        add(V.x, F.x, inverse.x, nodes.mass[n], loading.x);
-        add(V.y, F.y, inverse.y, nodes.mass[n], loading.y);
-    }
+    const NodeSums sums = best_kernels().node_sums(KernelArrays::to_read(assembly), kernel_step(settings));
+    Motion motion;
+    motion.kinetic_J = sums.kinetic;
+    motion.deviation_J = sums.deviation;
+    motion.ahead_damping_J = sums.ahead_damping;
     const double platen_power = -platen_reactions(assembly).loading * assembly.platens[0].mode.y * settings.speed;
-    sum.ahead_external_J = 0.5 * settings.dt * (platen_power + pressure_power(assembly));
-    return sum;
+    motion.ahead_external_J = 0.5 * settings.dt * (platen_power + pressure_power(assembly));
+    return motion;
+}
+
+std::vector<double> unbalanced_forces(const Assembly& assembly) {
+    std::vector<double> of_bodies(assembly.bodies.size(), 0.0);
+    best_kernels().unbalanced(KernelArrays::to_read(assembly), of_bodies.data());
+    const Nodes& nodes = assembly.nodes;
+    for (std::size_t b = 0; b < of_bodies.size(); ++b) {
+        if (assembly.packs.pack_of_body[b] >= 0) continue;
+        for (const int n : assembly.bodies[b].nodes()) {
+            if (nodes.inverse_mass[n].x != 0.0) of_bodies[b] += std::abs(nodes.force[n].x);
+            if (nodes.inverse_mass[n].y != 0.0) of_bodies[b] += std::abs(nodes.force[n].y);
+        }
+    }
+    return of_bodies;
 }
 
 double unbalanced_force(const Assembly& assembly) {
     double sum = 0.0;
-    const Nodes& nodes = assembly.nodes;
-    for (int n = 0; n < nodes.count(); ++n) {
-        if (nodes.inverse_mass[n].x != 0.0) sum += std::abs(nodes.force[n].x);
-        if (nodes.inverse_mass[n].y != 0.0) sum += std::abs(nodes.force[n].y);
-    }
+    for (const double force : unbalanced_forces(assembly)) sum += force;
     return sum;
 }
 

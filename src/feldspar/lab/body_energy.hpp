@@ -1,6 +1,8 @@
 // Sums over the whole body, each in a fixed order: energies, the unbalanced force, forces of the contacts.
 #pragma once
 
+#include <vector>
+
 #include "feldspar/model/assembly.hpp"
 #include "feldspar/step/step.hpp"
 
@@ -31,6 +33,9 @@ struct Motion {
 /// Over the degrees of freedom whose motion is not imposed.
 /// @param settings  those of the last step; dt = 0 for a state that has not been stepped
 Motion motion(const Assembly& assembly, const StepSettings& settings);
+
+/// Of each body: sum over its free degrees of freedom of |F|, N.
+std::vector<double> unbalanced_forces(const Assembly& assembly);
 
 /// Sum over free degrees of freedom of |F|, N: the numerator of R*.
 double unbalanced_force(const Assembly& assembly);

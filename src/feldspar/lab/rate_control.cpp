@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "feldspar/lab/body_energy.hpp"
+
 namespace feldspar {
 namespace {
 
@@ -49,19 +51,10 @@ double expected_strength(const ContactMaterial& contact, const TestSpec& test) {
 }
 
 Unbalanced unbalanced(const Assembly& assembly) {
-    const Nodes& nodes = assembly.nodes;
+    std::vector<double> of_bodies = unbalanced_forces(assembly);
     Unbalanced sum;
-    std::vector<double> of_bodies;
-    of_bodies.reserve(assembly.bodies.size());
-    for (const Body& body : assembly.bodies) {
-        double force = 0.0;
-        for (const int n : body.nodes()) {
-            if (nodes.inverse_mass[n].x != 0.0) force += std::abs(nodes.force[n].x);
-            if (nodes.inverse_mass[n].y != 0.0) force += std::abs(nodes.force[n].y);
-        }
-        sum.total_N += force;
-        if (body.kind != BodyKind::plate) of_bodies.push_back(force);
-    }
+    for (const double force : of_bodies) sum.total_N += force;
+    while (!of_bodies.empty() && assembly.bodies[of_bodies.size() - 1].kind == BodyKind::plate) of_bodies.pop_back();   // plates stand at the end
     if (of_bodies.empty()) return sum;
     const auto middle = of_bodies.begin() + static_cast<std::ptrdiff_t>(of_bodies.size() / 2);
     std::nth_element(of_bodies.begin(), middle, of_bodies.end());

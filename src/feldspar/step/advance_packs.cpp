@@ -5,7 +5,6 @@
 #include "feldspar/model/attachment.hpp"
 
 namespace feldspar {
-namespace {
 
 KernelStep kernel_step(const StepSettings& settings) {
     KernelStep step;
@@ -17,6 +16,8 @@ KernelStep kernel_step(const StepSettings& settings) {
     step.unlimited = settings.strength == Strength::unlimited;
     return step;
 }
+
+namespace {
 
 // What the edges of these packs feel that several contacts share.
 void sum_shared_edges(Assembly& assembly, IndexRange share) {

@@ -11,6 +11,7 @@
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
+#include "feldspar/step/advance_packs.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 
@@ -240,6 +241,56 @@ TEST_P(OneStep, HasTheSameBitsForAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, OneStep, testing::ValuesIn(cases()), label);
+
+TEST_P(OneStep, LeavesTheMotionOfTheReadableFormulas) {
+    const TestSetup setup = make();
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    stir(e.assembly);
+    for (const Damping damping : {Damping::deviation, Damping::local}) {
+        StepSettings settings = e.settings;
+        settings.damping = damping;
+        settings.viscous = 0.02;
+        settings.speed = 1e-9;
+        Assembly before = e.assembly, after = e.assembly;
+        PlatenWork work;
+        advance(before, e.team, settings, 0, 4, work);
+        advance(after, e.team, settings, 0, 5, work);   // the same bits, one step further
+        const Nodes& nodes = after.nodes;
+        double kinetic = 0.0, deviation = 0.0, damped = 0.0, size = 0.0;
+        for (int n = 0; n < nodes.count(); ++n)
+            for (double Vec2::*component : {&Vec2::x, &Vec2::y}) {
+                if (nodes.inverse_mass[n].*component == 0.0) continue;
+                const double V = nodes.velocity[n].*component, F = nodes.force[n].*component, m = nodes.mass[n];
+                // Local damping is undone with the direction that the motion has now: exact unless it has just turned.
+                const double V_before = damping == Damping::deviation ? before.nodes.velocity[n].*component
+                                                                      : V - settings.dt / m * (F - std::copysign(settings.alpha * F, V));
+                const double w = V - settings.speed * (nodes.loading_mode[n].*component);
+                kinetic += 0.5 * m * V * V_before;
+                deviation += 0.5 * m * w * w;
+                damped += 0.5 * V * (settings.dt * F - m * (V - V_before));
+                size += 0.5 * std::abs(V * settings.dt * F);
+            }
+        Array<double> unbalanced(after.bodies.size(), 0.0);
+        for (std::size_t b = 0; b < after.bodies.size(); ++b)
+            for (const int n : after.bodies[b].nodes())
+                for (double Vec2::*component : {&Vec2::x, &Vec2::y})
+                    if (nodes.inverse_mass[n].*component != 0.0) unbalanced[b] += std::abs(nodes.force[n].*component);
+        for (const Kernels* kernels : kernels_here()) {
+            const NodeSums sums = kernels->node_sums(KernelArrays::to_read(after), kernel_step(settings));
+            EXPECT_NEAR(sums.kinetic / kinetic, 1.0, 1e-9) << kernels->name;
+            EXPECT_NEAR(sums.deviation / deviation, 1.0, 1e-12) << kernels->name;
+            EXPECT_NEAR(sums.ahead_damping, damped, 1e-9 * size) << kernels->name;   // a small difference of large works
+            Array<double> of_bodies(after.bodies.size(), 0.0);
+            kernels->unbalanced(KernelArrays::to_read(after), of_bodies.data());
+            for (std::size_t b = 0; b < of_bodies.size(); ++b) {
+                if (after.packs.pack_of_body[b] < 0) continue;
+                EXPECT_NEAR(of_bodies[b], unbalanced[b], 1e-12 * unbalanced[b]) << kernels->name;
+            }
+        }
+    }
+}
 
 TEST(Packs, HoldTheEnergyOfTheReadableFormulas) {
     for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant}) {

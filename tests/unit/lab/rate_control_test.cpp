@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "feldspar/lab/rate_control.hpp"
+#include "feldspar/model/assemble.hpp"
 
 using namespace feldspar;
 
@@ -100,6 +101,7 @@ TEST(Unbalanced, TheTypicalBodyLeavesOutTheFew) {
     assembly.bodies.push_back(plate);
     assembly.nodes.force[plate.first_node] = {50.0, 7.0};   // x is imposed and no imbalance
     for (int n = 0; n < assembly.nodes.count(); ++n) assembly.nodes.inverse_mass[n] = {n == plate.first_node ? 0.0 : 1.0, 1.0};
+    index_bodies(assembly);
     const Unbalanced sum = unbalanced(assembly);
     EXPECT_DOUBLE_EQ(sum.total_N, 4 * 3.0 + 900.0 + 7.0);
     EXPECT_DOUBLE_EQ(sum.typical_N, 5 * 3.0);
