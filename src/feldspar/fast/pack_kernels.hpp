@@ -4,8 +4,6 @@
 // Here they stand in the form that costs least; tests/unit/fast compares them with the readable stages.
 #pragma once
 
-#include <cmath>
-
 #include "feldspar/fast/kernels.hpp"
 #include "feldspar/fast/lanes.hpp"
 
@@ -53,7 +51,6 @@ FELDSPAR_INLINE void load_motion(double* const (&line)[kWidth], Side& side) {
 template <bool rigid>
 FELDSPAR_INLINE void load_gradient(double* const (&line)[kWidth], Side& side) {
     if constexpr (rigid) {
-
         for (int lane = 0; lane < kWidth; ++lane) side.yx[lane] = line[lane][6];
     } else {
         double* high[kWidth];

@@ -24,7 +24,7 @@ inline std::array<Vec2, 3> corners(const Nodes& nodes, const SideNodes& t) {
 }
 
 /// What the corners p of a triangle feel of a force F and its moment M about a centre c that moves with the triangle's linear field:
-/// f_i = N_i(c) F + M grad N_i.
+/// f_i = N_i(c) F + M grad N_i (C20).
 inline std::array<Vec2, 3> forces_on_corners(const std::array<Vec2, 3>& p, Vec2 centre, const SlotForces& slot) {
     const Vec2 e1 = p[1] - p[0], e2 = p[2] - p[0], r = centre - p[0], F = slot.force;
     const double inverse = 1.0 / cross(e1, e2);

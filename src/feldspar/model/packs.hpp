@@ -83,7 +83,7 @@ struct SideField {
 
 /// What a contact does to one of its bodies: the force, and its first moment about the body's centre, sum of F (x) (x - centre).
 /// A linear velocity field v + L (x - centre) gets the power F v + M : L, so this is all that a body needs to know, be it the
-/// triangle behind an edge, a rigid body (turning moment Myx - Mxy) or a plate.
+/// triangle behind an edge, a rigid body (turning moment Myx - Mxy) or a plate (C20).
 struct SlotForces {
     Vec2 force;     ///< N
     Mat2 moment;    ///< N m
