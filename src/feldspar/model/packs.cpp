@@ -1,12 +1,16 @@
 #include "feldspar/model/packs.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
 #include "feldspar/model/assembly.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -141,7 +145,10 @@ void index_grain_packs(Assembly& assembly) {
             packs.loose_bodies.push_back(b);
         }
     }
-    packs.lines.assign(static_cast<std::size_t>(lines) + assembly.bodies.size(), {});
+    const std::size_t all_lines = static_cast<std::size_t>(lines) + assembly.bodies.size();
+    if (all_lines * sizeof(SideLine) > std::numeric_limits<std::uint32_t>::max())   // contacts find their lines by 32 bits
+        throw InputError({}, fmt::format("{} edges of grains and rigid bodies are more than a specimen may have", all_lines), "67 million", "larger grains, or a smaller specimen");
+    packs.lines.assign(all_lines, {});
     packs.inverse_cross.assign(static_cast<std::size_t>(lines), 0.0);
 }
 
