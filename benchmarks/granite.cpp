@@ -6,12 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "benchmarks/granite_material.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/platens.hpp"
 #include "feldspar/specimen/specimen.hpp"
-#include "feldspar/step/step.hpp"
+#include "feldspar/step/advance_packs.hpp"
 
 namespace feldspar::benchmarks {
 namespace {
@@ -26,22 +27,10 @@ SpecimenSpec specimen_spec(GrainKind grains, Load load, double length_scale) {
     spec.outline.width_m = 0.08 * length_scale;
     spec.outline.height_m = 0.16 * length_scale;
     spec.outline.diameter_m = 0.08 * length_scale;
-    spec.grain_sizes.minimum_m = 0.002;
-    spec.grain_sizes.maximum_m = 0.004;
+    spec.grain_sizes.minimum_m = kSmallestGrain;
+    spec.grain_sizes.maximum_m = kLargestGrain;
     if (grains == GrainKind::inner_particles) spec.particles_per_grain = 26.36;
     return spec;
-}
-
-ContactMaterial contact_material(GrainKind grains) {
-    ContactMaterial contact;
-    contact.Kn_Pa_m = grains == GrainKind::flexible ? 18e13 : grains == GrainKind::rigid ? 1.08e13 : 4.9e13;
-    contact.eta = grains == GrainKind::inner_particles ? 0.30 : 0.28;
-    contact.sigma_nt_Pa = 8.5e6;
-    contact.tau_Pa = 29.75e6;
-    contact.mu = 0.4;
-    contact.Gfn_J_m2 = 20.0;
-    contact.Gfs_J_m2 = 800.0;
-    return contact;
 }
 
 // All models and all programs that share the folder run on the same packing. Written aside, so that an interrupted run leaves none.
@@ -64,8 +53,8 @@ Specimen make_or_load(SpecimenSpec spec, const std::filesystem::path& packings) 
 Assembly make_assembly(GrainKind grains, Load load, const Specimen& specimen) {
     ModelSpec model;
     model.kind = grains;
-    const ContactMaterial contact = contact_material(grains);
-    Assembly assembly = assemble(specimen, model, {25.8e9, 0.23, 2650.0}, contact);
+    const ContactMaterial contact = granite_contact(grains);
+    Assembly assembly = assemble(specimen, model, kGranite, contact);
     if (load == Load::brazilian) {
         attach_brazilian_plates(assembly, specimen, {contact.Kn_Pa_m, contact.eta, 0.4, false});
     } else if (grains == GrainKind::flexible) {
@@ -163,12 +152,7 @@ void Granite::run(Stage stage, Team& team, int steps) {
     const auto on_all_threads = [&](auto one_step) {
         sort_out_packs(assembly);
         const KernelArrays arrays(assembly);
-        KernelStep step;
-        step.dt = settings.dt;
-        step.local_damping = settings.damping == Damping::local;
-        step.alpha = settings.alpha;
-        step.viscous = settings.viscous;
-        step.speed = settings.speed;
+        const KernelStep step = kernel_step(settings);
         team.run([&](int thread) {
             for (int k = 0; k < steps; ++k) {
                 one_step(arrays, step, thread);

@@ -9,47 +9,16 @@
 #include "feldspar/base/error.hpp"
 
 namespace feldspar::benchmarks {
+
+// A key a member, both ways.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Machine, processor, vector_bits, cores, system, compiler, build_type, version, commit, started)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Counts, grains, bodies, nodes, triangles, contacts, points, memory_bytes)
+
 namespace {
 
 using nlohmann::json;
 
 constexpr const char* kFormat = "feldspar benchmark 1";
-
-json machine_json(const Machine& m) {
-    return {{"processor", m.processor}, {"vector_bits", m.vector_bits}, {"cores", m.cores},     {"system", m.system},   {"compiler", m.compiler},
-            {"build_type", m.build_type}, {"version", m.version},       {"commit", m.commit},   {"started", m.started}};
-}
-
-Machine machine_from(const json& j) {
-    Machine m;
-    j.at("processor").get_to(m.processor);
-    j.at("vector_bits").get_to(m.vector_bits);
-    j.at("cores").get_to(m.cores);
-    j.at("system").get_to(m.system);
-    j.at("compiler").get_to(m.compiler);
-    j.at("build_type").get_to(m.build_type);
-    j.at("version").get_to(m.version);
-    j.at("commit").get_to(m.commit);
-    j.at("started").get_to(m.started);
-    return m;
-}
-
-json counts_json(const Counts& c) {
-    return {{"grains", c.grains},       {"bodies", c.bodies}, {"nodes", c.nodes},
-            {"triangles", c.triangles}, {"contacts", c.contacts}, {"points", c.points}, {"memory_bytes", c.memory_bytes}};
-}
-
-Counts counts_from(const json& j) {
-    Counts c;
-    j.at("grains").get_to(c.grains);
-    j.at("bodies").get_to(c.bodies);
-    j.at("nodes").get_to(c.nodes);
-    j.at("triangles").get_to(c.triangles);
-    j.at("contacts").get_to(c.contacts);
-    j.at("points").get_to(c.points);
-    j.at("memory_bytes").get_to(c.memory_bytes);
-    return c;
-}
 
 json rates_json(const Rates& r) { return {{"multiply_add_GFLOPs", r.multiply_add}, {"memory_GB_s", r.memory}}; }
 
@@ -94,7 +63,7 @@ json reading_json(const Reading& reading, const Report& report) {
     return {{"name", reading.name},
             {"stage", reading.stage},
             {"threads", reading.threads},
-            {"counts", counts_json(reading.counts)},
+            {"counts", reading.counts},
             {"best_ms", 1e3 * s.best_s},
             {"median_ms", 1e3 * s.median_s},
             {"cpu_ms", 1e3 * s.cpu_s},
@@ -109,7 +78,7 @@ Reading reading_from(const json& j) {
     j.at("name").get_to(reading.name);
     j.at("stage").get_to(reading.stage);
     j.at("threads").get_to(reading.threads);
-    reading.counts = counts_from(j.at("counts"));
+    j.at("counts").get_to(reading.counts);
     for (const json& block : j.at("blocks")) reading.blocks.push_back(block_from(block));
     return reading;
 }
@@ -120,7 +89,7 @@ std::string to_json(const Report& report) {
     json readings = json::array();
     for (const Reading& reading : report.readings) readings.push_back(reading_json(reading, report));
     const json all = {{"format", kFormat},
-                      {"machine", machine_json(report.machine)},
+                      {"machine", report.machine},
                       {"quiet", {{"share", report.quiet.share}, {"blocks", report.quiet.blocks}}},
                       {"best_calibrations", calibrations_json(report.best)},
                       {"best_calibrations_on_record", calibrations_json(report.on_record)},
@@ -134,7 +103,7 @@ Report from_json(const std::string& text, const std::string& origin) {
         const json all = json::parse(text);
         if (all.at("format") != kFormat) throw InputError(place, "this is not a report of this benchmark", kFormat);
         Report report;
-        report.machine = machine_from(all.at("machine"));
+        all.at("machine").get_to(report.machine);
         all.at("quiet").at("share").get_to(report.quiet.share);
         all.at("quiet").at("blocks").get_to(report.quiet.blocks);
         report.best = calibrations_from(all.at("best_calibrations"));

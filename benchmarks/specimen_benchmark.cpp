@@ -5,6 +5,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "benchmarks/granite_material.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
@@ -31,8 +32,8 @@ SpecimenSpec rectangle_of(std::int64_t grains) {
     SpecimenSpec spec;
     spec.outline.width_m = 0.08 * std::sqrt(static_cast<double>(grains) / kPaper);
     spec.outline.height_m = 2.0 * spec.outline.width_m;
-    spec.grain_sizes.minimum_m = 0.002;
-    spec.grain_sizes.maximum_m = 0.004;
+    spec.grain_sizes.minimum_m = benchmarks::kSmallestGrain;
+    spec.grain_sizes.maximum_m = benchmarks::kLargestGrain;
     return spec;
 }
 
@@ -56,15 +57,7 @@ CellGraph cells_of(const Specimen& specimen) {
 }
 
 Assembly granite(std::int64_t grains) {
-    ContactMaterial contact;
-    contact.Kn_Pa_m = 18e13;
-    contact.eta = 0.28;
-    contact.sigma_nt_Pa = 8.5e6;
-    contact.tau_Pa = 29.75e6;
-    contact.mu = 0.4;
-    contact.Gfn_J_m2 = 20.0;
-    contact.Gfs_J_m2 = 800.0;
-    return assemble(specimen_of(grains), ModelSpec{}, {25.8e9, 0.23, 2650.0}, contact);
+    return assemble(specimen_of(grains), ModelSpec{}, benchmarks::kGranite, benchmarks::granite_contact(GrainKind::flexible));
 }
 
 void packing(benchmark::State& state) {

@@ -256,42 +256,38 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
 
     // On B: force F, and W = sum of w F. Arms: along n to the reference point, then w along t.
     const Real2 F = Fn_sum * n + Fs_sum * s, W = Fn_moment * n + Fs_moment * s;
+    const Real2 minus_F = {-F.x, -F.y};
     const int contact = pack.first_contact + chunk.begin;
-    alignas(64) double nowhere[8];
+    const auto takes_part = [&](int lane) FELDSPAR_LAMBDA { return plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U)); };
     if constexpr (rigid) {   // a short line a side: F and the turning moment
         const Real across = cross(t, W);
+        alignas(64) double nowhere[8];
         double *short_a[kWidth], *short_b[kWidth];
         for (int lane = 0; lane < kWidth; ++lane) {
-            const bool takes_part = plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U));
             double* const forces = reinterpret_cast<double*>(a.rigid_forces + 2 * (contact + lane));
-            short_a[lane] = takes_part ? forces : nowhere;
-            short_b[lane] = takes_part ? forces + 4 : nowhere;
+            short_a[lane] = takes_part(lane) ? forces : nowhere;
+            short_b[lane] = takes_part(lane) ? forces + 4 : nowhere;
         }
-        store_quads(short_a, {{-F.x, -F.y, -(along_n * Fs_sum + across), Real{}}});
+        store_quads(short_a, {{minus_F.x, minus_F.y, -(along_n * Fs_sum + across), Real{}}});
         store_quads(short_b, {{F.x, F.y, from_b * Fs_sum + across, Real{}}});
     } else {
         const Real Wxx = W.x * t.x, Wxy = W.x * t.y, Wyx = W.y * t.x, Wyy = W.y * t.y;
         const Real2 at_a = along_n * n, at_b = from_b * n;
-        const Real2 minus_F = {-F.x, -F.y};
-        if constexpr (!plain) {
-            alignas(64) double slot_a[kWidth][8], slot_b[kWidth][8];
+        alignas(64) double slot_a[plain ? 1 : kWidth][8], slot_b[plain ? 1 : kWidth][8];   // of sides that must leave their line alone
+        if constexpr (!plain)
             for (int lane = 0; lane < kWidth; ++lane) {
-                const bool takes_part = lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U);
-                if (!takes_part || a.apart_a[constants + lane]) line_a[lane] = slot_a[lane];
-                if (!takes_part || a.apart_b[constants + lane]) line_b[lane] = slot_b[lane];
+                if (!takes_part(lane) || a.apart_a[constants + lane]) line_a[lane] = slot_a[lane];
+                if (!takes_part(lane) || a.apart_b[constants + lane]) line_b[lane] = slot_b[lane];
             }
-            store_forces(line_a, minus_F, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
-            store_forces(line_b, F, F.x * at_b.x + Wxx, F.x * at_b.y + Wxy, F.y * at_b.x + Wyx, F.y * at_b.y + Wyy);
+        store_forces(line_a, minus_F, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
+        store_forces(line_b, F, F.x * at_b.x + Wxx, F.x * at_b.y + Wxy, F.y * at_b.x + Wyx, F.y * at_b.y + Wyy);
+        if constexpr (!plain)
             for (int lane = 0; lane < chunk.count; ++lane) {
-                if (!(pack.active >> (chunk.begin + lane) & 1U)) continue;
+                if (!takes_part(lane)) continue;
                 const auto slot = [](const double* f) { return SlotForces{{f[0], f[1]}, {f[2], f[3], f[4], f[5]}}; };
                 if (a.apart_a[constants + lane]) a.slots[2 * (contact + lane)] = slot(slot_a[lane]);
                 if (a.apart_b[constants + lane]) a.slots[2 * (contact + lane) + 1] = slot(slot_b[lane]);
             }
-        } else {
-            store_forces(line_a, minus_F, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
-            store_forces(line_b, F, F.x * at_b.x + Wxx, F.x * at_b.y + Wxy, F.y * at_b.x + Wyx, F.y * at_b.y + Wyy);
-        }
     }
 }
 
@@ -341,6 +337,9 @@ struct GrainLanes {
 
 struct Elastic {
     Real volumetric, deviatoric;   // (D11 + D12) t / 2, (D11 - D12) t / 2
+
+    FELDSPAR_INLINE explicit Elastic(const KernelArrays& a)
+        : volumetric(all(0.5 * a.thickness * (a.D11 + a.D12))), deviatoric(all(0.5 * a.thickness * (a.D11 - a.D12))) {}
 };
 
 // 1 - 1/r from x = r^2 - 1: the binomial series, whose next term is below 1e-17 of the result for |x| < 1/128. A compression of 150 MPa makes x
@@ -362,14 +361,30 @@ FELDSPAR_INLINE Real one_minus_inverse_root(Real x) {
     return x * sum;
 }
 
+// Undeformed sides of a triangle (i, j, k), and its displacement gradient split as in laws/plane_elasticity.hpp.
+struct PolarLanes {
+    Real2 E1, E2;
+    Real a, b, p, q;
+    Real r2_minus_1;
+
+    FELDSPAR_INLINE PolarLanes(Real2 Xi, Real2 Xj, Real2 Xk, Real2 ui, Real2 uj, Real2 uk, Real scale) : E1(Xj - Xi), E2(Xk - Xi) {
+        const Real2 d1 = uj - ui, d2 = uk - ui;
+        const Real Gxx = d1.x * E2.y - d2.x * E1.y, Gxy = d2.x * E1.x - d1.x * E2.x;   // x 2 A
+        const Real Gyx = d1.y * E2.y - d2.y * E1.y, Gyy = d2.y * E1.x - d1.y * E2.x;
+        a = scale * (Gxx + Gyy);
+        b = scale * (Gyx - Gxy);
+        p = scale * (Gxx - Gyy);
+        q = scale * (Gxy + Gyx);
+        r2_minus_1 = 2.0 * a + (a * a + b * b);
+    }
+};
+
 // Adds the forces of the triangle (i, j, k): f_j = -V P grad N_j, V grad N_j = t/2 (y_k - y_i, x_i - x_k) undeformed.
 FELDSPAR_INLINE void add_triangle(Real2 Xi, Real2 Xj, Real2 Xk, Real2 ui, Real2 uj, Real2 uk, Real scale, const Elastic& D, Real2& fi, Real2& fj, Real2& fk) {
-    const Real2 E1 = Xj - Xi, E2 = Xk - Xi, d1 = uj - ui, d2 = uk - ui;
-    const Real Gxx = d1.x * E2.y - d2.x * E1.y, Gxy = d2.x * E1.x - d1.x * E2.x;   // x 2 A
-    const Real Gyx = d1.y * E2.y - d2.y * E1.y, Gyy = d2.y * E1.x - d1.y * E2.x;
-    const Real a = scale * (Gxx + Gyy), b = scale * (Gyx - Gxy), p = scale * (Gxx - Gyy), q = scale * (Gxy + Gyx);
-    const Real volumetric = D.volumetric * one_minus_inverse_root(2.0 * a + (a * a + b * b));
-    const Real c = volumetric + volumetric * a, vb = volumetric * b, dp = D.deviatoric * p, dq = D.deviatoric * q;
+    const PolarLanes s(Xi, Xj, Xk, ui, uj, uk, scale);
+    const Real2 E1 = s.E1, E2 = s.E2;
+    const Real volumetric = D.volumetric * one_minus_inverse_root(s.r2_minus_1);
+    const Real c = volumetric + volumetric * s.a, vb = volumetric * s.b, dp = D.deviatoric * s.p, dq = D.deviatoric * s.q;
     const Real Pxx = c + dp, Pxy = dq - vb, Pyx = dq + vb, Pyy = c - dp;
     const Real2 gj = {Pxy * E2.x - Pxx * E2.y, Pyy * E2.x - Pyx * E2.y}, gk = {Pxx * E1.y - Pxy * E1.x, Pyx * E1.y - Pyy * E1.x};
     fj = fj + gj;
@@ -483,13 +498,14 @@ FELDSPAR_INLINE Real move_node(const KernelArrays& a, const KernelStep& step, co
 struct GrainNodes {
     int vertices, ring_nodes;
 
+    FELDSPAR_INLINE explicit GrainNodes(const GrainPack& pack) : vertices(pack.vertices), ring_nodes(pack.vertices - pack.collapsed) {}
     FELDSPAR_INLINE int centre() const { return vertices; }
     FELDSPAR_INLINE int ring(int k) const { return vertices + 1 + (k < ring_nodes ? k : 0); }
     FELDSPAR_INLINE int next(int k) const { return k + 1 < vertices ? k + 1 : 0; }
 };
 
 FELDSPAR_INLINE void write_lines(const KernelArrays& a, const GrainPack& pack, const GrainLanes& g, Chunk chunk) {
-    const GrainNodes nodes{pack.vertices, pack.vertices - pack.collapsed};
+    const GrainNodes nodes(pack);
     const Real2 centre = g.node[nodes.centre()].position();
     Real2 xi = g.node[0].position(), vi = g.node[0].f;
     for (int k = 0; k < pack.vertices; ++k) {
@@ -506,7 +522,7 @@ template <bool local>
 FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelStep& step, const GrainPack& pack, PackForces forces, Chunk chunk) {
     const KernelArrays a = arrays;   // a copy that nobody else can change: its pointers stay in registers
     GrainLanes g;
-    const GrainNodes nodes{pack.vertices, pack.vertices - pack.collapsed};
+    const GrainNodes nodes(pack);
     const int count = pack.nodes(), first = pack.first_node + chunk.begin;
     for (int i = 0; i < count; ++i) {
         const int node = first + i * pack.lanes;
@@ -515,7 +531,7 @@ FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelSte
         g.node[i].f = forces == PackForces::on_top_of_others ? load_points(a.force + 2 * node, chunk.count) : Real2{};
     }
 
-    const Elastic D{all(0.5 * a.thickness * (a.D11 + a.D12)), all(0.5 * a.thickness * (a.D11 - a.D12))};
+    const Elastic D(a);
     NodeLanes& hub = g.node[nodes.centre()];
     const Real2 centre = hub.position();
     Real2 centre_force = hub.f;
@@ -697,21 +713,18 @@ void unbalanced(const KernelArrays& a, double* of_bodies) {
 
 // V W of a triangle: laws/plane_elasticity.hpp.
 FELDSPAR_INLINE Real triangle_energy(const NodeLanes& i, const NodeLanes& j, const NodeLanes& k, Real scale, const Elastic& D) {
-    const Real2 E1 = j.X - i.X, E2 = k.X - i.X, d1 = j.u - i.u, d2 = k.u - i.u;
-    const Real Gxx = d1.x * E2.y - d2.x * E1.y, Gxy = d2.x * E1.x - d1.x * E2.x;
-    const Real Gyx = d1.y * E2.y - d2.y * E1.y, Gyy = d2.y * E1.x - d1.y * E2.x;
-    const Real a = scale * (Gxx + Gyy), b = scale * (Gyx - Gxy), p = scale * (Gxx - Gyy), q = scale * (Gxy + Gyx);
-    const Real x = 2.0 * a + (a * a + b * b), r_minus_1 = x / (1.0 + square_root(1.0 + x));
-    return cross(E1, E2) * (D.volumetric * r_minus_1 * r_minus_1 + D.deviatoric * (p * p + q * q));   // t/2 is in D
+    const PolarLanes s(i.X, j.X, k.X, i.u, j.u, k.u, scale);
+    const Real r_minus_1 = s.r2_minus_1 / (1.0 + square_root(1.0 + s.r2_minus_1));
+    return cross(s.E1, s.E2) * (D.volumetric * r_minus_1 * r_minus_1 + D.deviatoric * (s.p * s.p + s.q * s.q));   // t/2 is in D
 }
 
 double energy_of_grains(const KernelArrays& a, double since) {
-    const Elastic D{all(0.5 * a.thickness * (a.D11 + a.D12)), all(0.5 * a.thickness * (a.D11 - a.D12))};
+    const Elastic D(a);
     Real sum{};
     GrainLanes g;
     for (int p = 0; p < a.grain_pack_count; ++p) {
         const GrainPack& pack = a.grain_packs[p];
-        const GrainNodes nodes{pack.vertices, pack.vertices - pack.collapsed};
+        const GrainNodes nodes(pack);
         for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA {
             for (int i = 0; i < pack.nodes(); ++i) {
                 const int node = pack.first_node + chunk.begin + i * pack.lanes;

@@ -142,7 +142,7 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
             const double force = std::abs(row.axial_stress_Pa) * e.section_m2;
             const double share_of_peak = stop.peak() > 0.0 ? e.direction * row.axial_stress_Pa / stop.peak() : 1.0;
             mode_update.observe(e.assembly, e.step, e.platen_travel_m);
-            const double speed = control.next(e.settings.speed, unbalanced(e.assembly), force, e.platen_travel_m, share_of_peak);
+            const double speed = control.next(e.settings.speed, recorder.unbalanced(), force, e.platen_travel_m, share_of_peak);
             if (speed != e.settings.speed) e.change_speed(speed);
         }
     }

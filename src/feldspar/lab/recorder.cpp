@@ -25,7 +25,7 @@ EdgeShare share_of_edge(int point, int points) {
 
 Recorder::Recorder(const Experiment& experiment, TestResult& result) : e_(experiment), result_(result) {}
 
-HistoryRow Recorder::present(Phase phase) const {
+HistoryRow Recorder::present(Phase phase) {
     HistoryRow row;
     const Reactions reactions = platen_reactions(e_.assembly);
     row.phase = phase;
@@ -41,7 +41,8 @@ HistoryRow Recorder::present(Phase phase) const {
     row.cracks_tensile = tensile_;
     row.cracks_shear = shear_;
     const double force = 0.5 * (std::abs(reactions.loading) + std::abs(reactions.rest));
-    row.residual = force > 0.0 ? unbalanced_force(e_.assembly) / force : 0.0;
+    unbalanced_ = feldspar::unbalanced(e_.assembly);
+    row.residual = force > 0.0 ? unbalanced_.total_N / force : 0.0;
     row.platen_speed = e_.settings.speed;
     StepSettings last = e_.settings;
     if (!e_.stepped) last.dt = 0.0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/result.hpp"
 
 namespace feldspar {
@@ -21,6 +22,9 @@ public:
     /// Fields of the present state.
     void snapshot(const std::string& label);
 
+    /// What was unbalanced in the state of the last row.
+    const Unbalanced& unbalanced() const { return unbalanced_; }
+
     /// Puts the snapshots in order and adds the end and the peak. @param last_row  the last row of the history
     void finish();
 
@@ -34,7 +38,7 @@ private:
         std::vector<double> opening;   // a contact point
         int cracks = 0;
     };
-    HistoryRow present(Phase phase) const;
+    HistoryRow present(Phase phase);
     Fields fields(const std::string& label, const HistoryRow& row) const;
     Snapshot complete(const Fields& fields) const;
     void collect_cracks();
@@ -50,6 +54,7 @@ private:
     int next_cracks_ = 0;
     std::vector<Fields> start_, first_crack_, peak_;
     int tensile_ = 0, shear_ = 0;
+    Unbalanced unbalanced_;
 };
 
 }  // namespace feldspar

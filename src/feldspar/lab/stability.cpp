@@ -17,7 +17,7 @@ void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& x, E
     settings.strength = Strength::unlimited;
     const double scale = kAmplitude / x.lpNorm<Eigen::Infinity>();
     const std::size_t bonds = assembly.points.size();
-    assembly.bonds = {};
+    assembly.bonds.resize(0);   // keeps the memory: this is done 80 times
     assembly.bonds.resize(bonds);
     for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] = nodes.velocity[n] = {scale * x[2 * n], scale * x[2 * n + 1]};
     PlatenWork none;
