@@ -62,7 +62,7 @@ struct KernelArrays {
     double *fracture = nullptr, *friction = nullptr;
     const double *offset = nullptr, *tangent_x = nullptr, *tangent_y = nullptr, *along = nullptr, *area = nullptr;
     const std::uint32_t *line_a = nullptr, *line_b = nullptr;
-    const std::uint8_t *apart_a = nullptr, *apart_b = nullptr, *bare = nullptr;
+    const std::uint8_t *shared = nullptr, *bare = nullptr;
     const std::int32_t* slots_of_bodies = nullptr;
     const double* scale = nullptr;
     SideLine* lines = nullptr;

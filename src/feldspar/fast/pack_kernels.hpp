@@ -133,10 +133,7 @@ FELDSPAR_INLINE Mask update_damaged(const KernelLaw& law, Real area, Real dun, R
                                    Real un, int count, Real& Fn, Real& Fs) {
     for (int lane = 0; lane < count; ++lane) {
         if (broke[lane] == 0) continue;
-        const BondEvent event = Fn_trial[lane] < 0.0 ? BondEvent::broke_in_tension
-                                : Fn_trial[lane] > 0.0 && un[lane] > 0.0 ? BondEvent::broke_in_shear_losing_compression
-                                                                         : BondEvent::broke_in_shear;
-        a.broke(*a.assembly, first_contact + lane, point, event, step.step);
+        a.broke(*a.assembly, first_contact + lane, point, how_it_broke(Fn_trial[lane], un[lane]), step.step);
         Fn[lane] = a.Fn[state + lane];
         Fs[lane] = a.Fs[state + lane];
     }
@@ -273,11 +270,12 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     } else {
         const Real Wxx = W.x * t.x, Wxy = W.x * t.y, Wyx = W.y * t.x, Wyy = W.y * t.y;
         const Real2 at_a = along_n * n, at_b = from_b * n;
+        const auto apart = [&](const std::uint32_t* lines_of, int lane) FELDSPAR_LAMBDA { return a.shared[lines_of[constants + lane] / sizeof(SideLine)] != 0; };
         alignas(64) double slot_a[plain ? 1 : kWidth][8], slot_b[plain ? 1 : kWidth][8];   // of sides that must leave their line alone
         if constexpr (!plain)
             for (int lane = 0; lane < kWidth; ++lane) {
-                if (!takes_part(lane) || a.apart_a[constants + lane]) line_a[lane] = slot_a[lane];
-                if (!takes_part(lane) || a.apart_b[constants + lane]) line_b[lane] = slot_b[lane];
+                if (!takes_part(lane) || apart(a.line_a, lane)) line_a[lane] = slot_a[lane];
+                if (!takes_part(lane) || apart(a.line_b, lane)) line_b[lane] = slot_b[lane];
             }
         store_forces(line_a, minus_F, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
         store_forces(line_b, F, F.x * at_b.x + Wxx, F.x * at_b.y + Wxy, F.y * at_b.x + Wyx, F.y * at_b.y + Wyy);
@@ -285,8 +283,8 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
             for (int lane = 0; lane < chunk.count; ++lane) {
                 if (!takes_part(lane)) continue;
                 const auto slot = [](const double* f) { return SlotForces{{f[0], f[1]}, {f[2], f[3], f[4], f[5]}}; };
-                if (a.apart_a[constants + lane]) a.slots[2 * (contact + lane)] = slot(slot_a[lane]);
-                if (a.apart_b[constants + lane]) a.slots[2 * (contact + lane) + 1] = slot(slot_b[lane]);
+                if (apart(a.line_a, lane)) a.slots[2 * (contact + lane)] = slot(slot_a[lane]);
+                if (apart(a.line_b, lane)) a.slots[2 * (contact + lane) + 1] = slot(slot_b[lane]);
             }
     }
 }

@@ -19,9 +19,6 @@ public:
     /// A row of the present state; collects new cracks and keeps snapshots as they fall due.
     const HistoryRow& record(Phase phase);
 
-    /// Fields of the present state.
-    void snapshot(const std::string& label);
-
     /// What was unbalanced in the state of the last row.
     const Unbalanced& unbalanced() const { return unbalanced_; }
 

@@ -80,6 +80,13 @@ struct BondState {
 /// What an update tells besides the state.
 enum class BondEvent { none, broke_in_tension, broke_in_shear, broke_in_shear_losing_compression };
 
+/// How a point broke whose trial normal force is Fn_trial at the gap un. Unloading with the slope kn may have left compression at an open
+/// gap, which vanishes then.
+[[gnu::always_inline]] inline BondEvent how_it_broke(double Fn_trial_N, double un_m) {
+    if (Fn_trial_N < 0.0) return BondEvent::broke_in_tension;
+    return Fn_trial_N > 0.0 && un_m > 0.0 ? BondEvent::broke_in_shear_losing_compression : BondEvent::broke_in_shear;
+}
+
 /// Recoverable energy of a point, J.
 inline double elastic_energy(const BondLaw& law, double area_m2, const BondState& s) {
     const double shear = law.Ks_Pa_m > 0.0 ? 0.5 * s.Fs_N * s.Fs_N / (law.Ks_Pa_m * area_m2) : 0.0;
@@ -129,9 +136,7 @@ inline BondEvent update_damaged(const BondLaw& law, double area_m2, double dun_m
             if (law.secant_unloading && s.un_m > 0.0 && s.max_un_m > law.normal.x0)
                 s.Fn_N = -tension_limit * s.un_m / s.max_un_m;
         } else {
-            // Unloading with the slope kn may have left compression at an open gap, which vanishes now: counted.
-            event = Fn_trial < 0.0 ? BondEvent::broke_in_tension
-                    : Fn_trial > 0.0 && s.un_m > 0.0 ? BondEvent::broke_in_shear_losing_compression : BondEvent::broke_in_shear;
+            event = how_it_broke(Fn_trial, s.un_m);
         }
     }
     if (s.damage >= 1.0) {

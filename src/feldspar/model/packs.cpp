@@ -187,7 +187,7 @@ void index_contact_packs(Assembly& assembly) {
         }
     packs.shared_edges.clear();
     packs.shared_slots.clear();
-    packs.shared.assign(edges, 0);
+    packs.shared.assign(packs.lines.size(), 0);
     for (const auto& [line, slots] : several) {
         packs.shared[line] = 1;
         const auto begin = static_cast<std::int32_t>(packs.shared_slots.size());
@@ -206,7 +206,6 @@ void index_contact_packs(Assembly& assembly) {
     packs.loose_contacts.clear();
     for (auto* array : {&packs.offset, &packs.tangent_x, &packs.tangent_y}) array->clear();
     for (auto* array : {&packs.line_a, &packs.line_b}) array->clear();
-    for (auto* array : {&packs.apart_a, &packs.apart_b}) array->clear();
     for (int c = 0; c < contacts;) {
         const Contact& first = assembly.contacts[c];
         ContactPack pack{c, 1, first.points, assembly.points[first.first_point].state, first.material, !first.flexible, false, false, 0};
@@ -227,8 +226,6 @@ void index_contact_packs(Assembly& assembly) {
             const std::int32_t a = packs.line_of(assembly, contact.a.body, contact.a.edge), b = packs.line_of(assembly, contact.b.body, contact.b.edge);
             packs.line_a.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(a)));
             packs.line_b.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(b)));
-            packs.apart_a.push_back(several.contains(a));
-            packs.apart_b.push_back(several.contains(b));
         }
         packs.contacts.push_back(pack);
         c += pack.lanes;
@@ -261,7 +258,7 @@ void sort_out_packs(Assembly& assembly) {
             if (takes_part) pack.active = static_cast<std::uint8_t>(pack.active | 1U << lane);
             if (!contact.dropped && !takes_part) packs.loose_contacts.push_back(pack.first_contact + lane);
             const std::size_t at = kMostLanes * p + static_cast<std::size_t>(lane);
-            pack.plain = pack.plain && takes_part && !packs.apart_a[at] && !packs.apart_b[at];
+            pack.plain = pack.plain && takes_part && !packs.shared[packs.line_a[at] / sizeof(SideLine)] && !packs.shared[packs.line_b[at] / sizeof(SideLine)];
         }
         const double* damage = &assembly.bonds.damage[pack.first_state];
         pack.intact = std::all_of(damage, damage + pack.lanes * pack.points, [](double D) { return D == 0.0; });

@@ -142,7 +142,7 @@ struct Packs {
     Array<SideLine> lines;                           ///< of the edges of flexible grains; then of the bodies
     Array<double> inverse_cross;                     ///< of each edge line: 1 / (2 x present area of its triangle)
     std::vector<std::uint8_t> bare;                  ///< of each edge line: 1 if no contact hangs on the edge: it stays zero
-    std::vector<std::uint8_t> shared;                ///< of each edge line: 1 if several contacts hang on the edge
+    std::vector<std::uint8_t> shared;                ///< of each line: 1 if several contacts hang on the edge, which leave it alone
     std::vector<SharedEdge> shared_edges;            ///< by pack
     std::vector<std::int32_t> shared_slots;
 
@@ -150,7 +150,6 @@ struct Packs {
     std::vector<std::int32_t> loose_contacts;
     Array<double> offset, tangent_x, tangent_y;      ///< kMostLanes a pack
     Array<std::uint32_t> line_a, line_b;             ///< kMostLanes a pack: distance in bytes from the first line; some more at the end
-    std::vector<std::uint8_t> apart_a, apart_b;      ///< kMostLanes a pack: 1 if the side's edge has other contacts
     Array<double> along, area;                       ///< as bonds
     Array<RigidForces> rigid_forces;                 ///< 2 x contact + side; none without rigid bodies
 
