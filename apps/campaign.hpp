@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "feldspar/lab/run_test.hpp"
-#include "feldspar/study/job.hpp"
+#include "feldspar/job/job.hpp"
 
 namespace feldspar {
 

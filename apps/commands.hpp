@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/job.hpp"
+#include "feldspar/job/job.hpp"
 
 namespace feldspar {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "commands.hpp"
-#include "feldspar/study/job_template.hpp"
-#include "feldspar/study/presets.hpp"
+#include "feldspar/job/job_template.hpp"
+#include "feldspar/job/presets.hpp"
 
 namespace feldspar {
 

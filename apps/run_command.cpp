@@ -17,7 +17,7 @@
 #include "feldspar/base/thread_shares.hpp"
 #include "feldspar/base/usable_cores.hpp"
 #include "feldspar/output/results.hpp"
-#include "feldspar/study/toml_reader.hpp"
+#include "feldspar/job/toml_reader.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "running_tests.hpp"

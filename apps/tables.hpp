@@ -5,7 +5,7 @@
 #include <string>
 
 #include "feldspar/lab/properties.hpp"
-#include "feldspar/study/job.hpp"
+#include "feldspar/job/job.hpp"
 
 namespace feldspar {
 

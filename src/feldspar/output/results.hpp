@@ -10,7 +10,7 @@
 
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/result.hpp"
-#include "feldspar/study/job.hpp"
+#include "feldspar/job/job.hpp"
 
 namespace feldspar {
 

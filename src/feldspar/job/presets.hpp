@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "feldspar/model/spec.hpp"
-#include "feldspar/study/toml_reader.hpp"
+#include "feldspar/job/toml_reader.hpp"
 
 namespace feldspar {
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "feldspar/study/job_sections.hpp"
-#include "feldspar/study/presets.hpp"
+#include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/presets.hpp"
 
 namespace feldspar {
 namespace {

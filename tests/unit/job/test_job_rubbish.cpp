@@ -5,8 +5,8 @@
 #include <string>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/job.hpp"
-#include "feldspar/study/job_template.hpp"
+#include "feldspar/job/job.hpp"
+#include "feldspar/job/job_template.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {

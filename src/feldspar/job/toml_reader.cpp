@@ -1,5 +1,5 @@
 #define TOML_IMPLEMENTATION
-#include "feldspar/study/toml_reader.hpp"
+#include "feldspar/job/toml_reader.hpp"
 
 #include <algorithm>
 #include <cctype>

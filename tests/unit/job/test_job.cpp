@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/job.hpp"
-#include "feldspar/study/job_template.hpp"
+#include "feldspar/job/job.hpp"
+#include "feldspar/job/job_template.hpp"
 #include "../../table7.hpp"
 #include "sample_job.hpp"
 

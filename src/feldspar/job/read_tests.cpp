@@ -2,7 +2,7 @@
 #include <cmath>
 #include <set>
 
-#include "feldspar/study/job_sections.hpp"
+#include "feldspar/job/job_sections.hpp"
 
 namespace feldspar {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/job.hpp"
-#include "feldspar/study/presets.hpp"
+#include "feldspar/job/job.hpp"
+#include "feldspar/job/presets.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/job.hpp"
+#include "feldspar/job/job.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {

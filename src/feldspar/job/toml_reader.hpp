@@ -15,7 +15,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
-#include "feldspar/study/toml_include.hpp"
+#include "feldspar/job/toml_include.hpp"
 
 namespace feldspar {
 

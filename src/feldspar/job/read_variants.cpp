@@ -2,7 +2,7 @@
 #include <cctype>
 #include <map>
 
-#include "feldspar/study/job_sections.hpp"
+#include "feldspar/job/job_sections.hpp"
 
 namespace feldspar {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "feldspar/base/units.hpp"
-#include "feldspar/study/job.hpp"
+#include "feldspar/job/job.hpp"
 
 namespace feldspar {
 namespace {

@@ -1,11 +1,11 @@
-#include "feldspar/study/job.hpp"
+#include "feldspar/job/job.hpp"
 
 #include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 
-#include "feldspar/study/job_sections.hpp"
+#include "feldspar/job/job_sections.hpp"
 
 namespace feldspar {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "feldspar/model/spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
-#include "feldspar/study/job.hpp"
-#include "feldspar/study/toml_reader.hpp"
+#include "feldspar/job/job.hpp"
+#include "feldspar/job/toml_reader.hpp"
 
 namespace feldspar {
 

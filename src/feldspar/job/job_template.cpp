@@ -1,10 +1,10 @@
-#include "feldspar/study/job_template.hpp"
+#include "feldspar/job/job_template.hpp"
 
 #include <algorithm>
 #include <array>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/toml_reader.hpp"
+#include "feldspar/job/toml_reader.hpp"
 
 namespace feldspar {
 namespace {

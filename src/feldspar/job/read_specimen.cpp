@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "feldspar/geometry/polygon.hpp"
-#include "feldspar/study/job_sections.hpp"
+#include "feldspar/job/job_sections.hpp"
 
 namespace feldspar {
 namespace {

@@ -1,4 +1,4 @@
-#include "feldspar/study/presets.hpp"
+#include "feldspar/job/presets.hpp"
 
 #include <array>
 #include <map>
