@@ -24,6 +24,7 @@ struct PropertyStatistics {
     double minimum = 0.0;
     double maximum = 0.0;
     std::vector<std::uint64_t> seeds;
+    std::vector<double> values;   ///< of each of the seeds
 };
 
 /// One straight-line or Hoek-Brown fit on one packing.

@@ -21,14 +21,13 @@ using BySeed = std::map<std::uint64_t, double>;
 void add(PropertySummary& summary, const std::string& name, const BySeed& values) {
     if (values.empty()) return;
     PropertyStatistics s;
-    std::vector<double> numbers;
     for (const auto& [seed, value] : values) {
         s.seeds.push_back(seed);
-        numbers.push_back(value);
+        s.values.push_back(value);
     }
-    s.median = median(numbers);
-    s.minimum = *std::min_element(numbers.begin(), numbers.end());
-    s.maximum = *std::max_element(numbers.begin(), numbers.end());
+    s.median = median(s.values);
+    s.minimum = *std::min_element(s.values.begin(), s.values.end());
+    s.maximum = *std::max_element(s.values.begin(), s.values.end());
     summary.values[name] = std::move(s);
 }
 

@@ -1,0 +1,40 @@
+// Runs of a study on this machine, side by side.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "feldspar/lab/run_test.hpp"
+#include "feldspar/study/ledger.hpp"
+
+namespace feldspar {
+
+/// What the caller decides about the running itself; none of it changes a result.
+struct ExecuteControl {
+    int threads = 1;                          ///< of the whole program
+    int at_once = 0;                          ///< at most so many runs side by side; 0 = as suits their size
+    Keep keep = Keep::histories;
+    std::atomic<bool>* stop = nullptr;        ///< becomes true when the user interrupts
+    Provenance provenance;
+    std::function<void(const Run&, const TestProgress&)> progress;          ///< a run tells how far it is; may be empty
+    std::function<void(const Run&, const RunRecord&)> ended;                ///< done or failed; may be empty
+    std::function<void(const std::string&)> note;                           ///< something that the user should read; may be empty
+};
+
+/// How many of the runs were found in which state, and what became of the others.
+struct Execution {
+    int found_done = 0;
+    int done = 0;
+    int failed = 0;
+    int left = 0;        ///< not run: interrupted
+    double run_s = 0.0;  ///< summed over the runs of this call: packing, test, files
+    double wall_s = 0.0;
+};
+
+/// Runs what is not done yet, and waits for what another process has claimed. A failed run is recorded with its reason and does not stop
+/// the others. @throws OutputError when results cannot be written
+Execution execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control);
+
+}  // namespace feldspar

@@ -1,0 +1,57 @@
+// The ledger of studies: an SQLite file with one row a run. Several programs may work on one ledger at once: a run belongs to
+// who claimed it, and goes back to all when that process is no longer there.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "feldspar/study/run_record.hpp"
+#include "feldspar/study/study.hpp"
+
+namespace feldspar {
+
+class Ledger {
+public:
+    enum class Access { read, write };
+
+    /// Opens `directory`/ledger.sqlite; with write access makes it if it is not there. @throws InputError for a file that is not a
+    /// ledger, or that a later version has made; OutputError when it cannot be written.
+    Ledger(const std::filesystem::path& directory, Access access);
+    ~Ledger();
+    Ledger(Ledger&&) noexcept;
+
+    const std::filesystem::path& directory() const;
+    std::filesystem::path run_directory(const std::string& id) const;   ///< `directory`/runs/<id>
+
+    /// Writes down which runs the study consists of, with the labels of their points, so that the ledger can be read without the
+    /// study's file; replaces what was there of this study.
+    void enrol(const Study& study);
+
+    enum class Claim { ours, done, others };   ///< `others`: another live process is at it
+
+    /// Takes a run for this process unless it is done or another live process has it. A failed run may be taken again.
+    Claim claim(const Run& run);
+
+    /// Gives a claimed run back as if it had never been taken (interrupted).
+    void release(const std::string& id);
+
+    /// Records the end of a run. Never replaces a run that is done.
+    void record(const RunRecord& record);
+
+    /// Says that this process still works on its claims; to be called about every 20 s.
+    void heartbeat();
+
+    std::optional<RunRecord> find(const std::string& id) const;
+    /// In the order of `ids`; those that the ledger does not have are left out.
+    std::vector<RunRecord> find(std::span<const std::string> ids) const;
+
+private:
+    struct Database;
+    std::unique_ptr<Database> database_;
+};
+
+}  // namespace feldspar

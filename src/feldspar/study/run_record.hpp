@@ -1,0 +1,49 @@
+// What is kept of a run: one row of the ledger, and the file run.json in its directory, which holds the same.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "feldspar/lab/result.hpp"
+#include "feldspar/output/results.hpp"
+#include "feldspar/study/study.hpp"
+
+namespace feldspar {
+
+enum class RunState { running, done, failed };
+
+const char* name(RunState state);
+
+/// Numbers are SI, angles degrees, compression positive; not-a-number where a test does not define one.
+struct RunRecord {
+    std::string id;
+    RunState state = RunState::running;
+    std::string reason;                      ///< of a failure, in words
+    std::string test;                        ///< "uniaxial-compression", ...
+    double sigma3_Pa = 0.0;
+    std::uint64_t seed = 0;
+    std::map<std::string, double> numbers;   ///< by the names of number_columns()
+    std::map<std::string, std::string> texts;   ///< by the names of text_columns()
+    std::string job;                         ///< resolved: it can be run again
+};
+
+/// Names of the numbers of a record, in the ledger's order: properties, evidence, steps and times.
+const std::vector<std::string>& number_columns();
+
+/// grade, verdict, stop_reason, version, commit, machine, started, ...
+const std::vector<std::string>& text_columns();
+
+RunRecord record_of(const Run& run, const TestResult& result, const Provenance& provenance);
+RunRecord failed_record(const Run& run, const std::string& reason, const Provenance& provenance);
+
+/// As much of a result as summarise() reads.
+TestResult result_of(const RunRecord& record);
+
+/// run.json: every digit, so that reading gives the same bits.
+std::string to_json(const RunRecord& record);
+/// @throws InputError for a file that is not a record
+RunRecord read_record(const std::filesystem::path& file);
+
+}  // namespace feldspar
