@@ -9,16 +9,6 @@
 #include "interrupt.hpp"
 
 namespace feldspar {
-namespace {
-
-// From here on a test gets all threads: they work together as well as apart, and many tests of this size at once would fill the
-// memory (some 140 MB each).
-constexpr int large_body_count = 20000;
-
-// With fewer bodies than this a thread waits at the barriers of a step for longer than it works.
-constexpr int least_bodies_per_thread = 50;
-
-}  // namespace
 
 std::vector<PlannedRun> planned_runs(const Job& job) {
     std::vector<std::uint64_t> seeds = job.seeds;
@@ -90,15 +80,6 @@ std::string Specimens::packing_stem(const PlannedRun& run) { return packing_stem
 int body_count(const PlannedRun& run, const Specimen& specimen) {
     const bool inner = run.variant->model.kind == GrainKind::inner_particles;
     return static_cast<int>(inner ? specimen.filling.centres.size() : specimen.cells.cells.size());
-}
-
-int Sharing::most_at_once(int bodies) const {
-    if (at_once_ > 0) return std::min(at_once_, threads_);
-    return bodies < large_body_count ? threads_ : 1;
-}
-
-int Sharing::useful_threads(int bodies) const {
-    return at_once_ > 0 ? threads_ : std::clamp(bodies / least_bodies_per_thread, 1, threads_);
 }
 
 TestSetup setup_of(const PlannedRun& run, std::shared_ptr<const Specimen> specimen) {

@@ -65,23 +65,6 @@ private:
 /// Bodies that move by themselves in such a test: grains or their inner particles.
 int body_count(const PlannedRun& run, const Specimen& specimen);
 
-/// How many tests may run side by side, and on how many threads each.
-class Sharing {
-public:
-    /// @param threads  of the whole program
-    Sharing(const Job& job, int threads) : threads_(threads), at_once_(job.at_once) {}
-
-    /// Most tests at once, this one included, that go with a test of so many bodies.
-    int most_at_once(int bodies) const;
-
-    /// More threads than this make such a test no faster.
-    int useful_threads(int bodies) const;
-
-private:
-    int threads_;
-    int at_once_;  // what the user wants; 0 = as suits the size
-};
-
 /// What run_test() and preview_test() ask for.
 TestSetup setup_of(const PlannedRun& run, std::shared_ptr<const Specimen> specimen);
 

@@ -9,6 +9,7 @@
 #include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/base/thread_shares.hpp"
+#include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 
@@ -75,7 +76,7 @@ std::string variant_text(const Variant& variant) {
 // tests the steps and the time.
 class Check {
 public:
-    Check(const Job& job, int threads) : job_(job), specimens_(job), threads_(threads), sharing_(job, threads) {
+    Check(const Job& job, int threads) : job_(job), specimens_(job), threads_(threads), sharing_(job.at_once, threads) {
         control_.stop = &stop_requested();
     }
 

@@ -30,6 +30,25 @@ struct RunOptions : JobOptions {
 /// Runs all tests of a job and leaves a directory of results.
 ExitCode run_command(const RunOptions& options);
 
+/// What stands on the command line beside the study file.
+struct StudyOptions {
+    std::string study;
+    std::optional<std::string> results;   ///< directory of ledger and runs, instead of the study's own
+    std::optional<int> threads;
+    std::optional<int> at_once;           ///< runs side by side
+    bool runs = false;                    ///< table: a row a run instead of a row a point
+    std::string command_line;             ///< for provenance
+};
+
+/// Runs what is not done yet of a study, and prints its points.
+ExitCode study_command(const StudyOptions& options);
+
+/// Prints how many of the study's runs are done, running, failed, or still to do.
+ExitCode study_status_command(const StudyOptions& options);
+
+/// Prints the study's points, or its runs, as CSV.
+ExitCode study_table_command(const StudyOptions& options);
+
 /// Builds everything, prints counts, memory, stable step, expected steps and time, and stops.
 ExitCode check_command(const JobOptions& options);
 

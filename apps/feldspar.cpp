@@ -81,6 +81,11 @@ void add_job_options(CLI::App& command, JobOptions& options) {
     command.add_option("--test", options.tests, "only the job's tests of this kind; may be repeated")->type_name("KIND")->allow_extra_args(false);
 }
 
+void add_study_options(CLI::App& command, StudyOptions& options) {
+    command.add_option("study", options.study, "the study file")->type_name("STUDY.toml");
+    command.add_option("--results", options.results, "directory of the ledger and the runs (default: as the study says)")->type_name("DIR");
+}
+
 int run_program(int argc, char** argv) {
     CLI::App app("A laboratory for rock fracture with the flexible particle model.", "feldspar");
     app.footer(examples);
@@ -99,6 +104,21 @@ int run_program(int argc, char** argv) {
     JobOptions check;
     CLI::App* check_app = app.add_subcommand("check", "build everything, print counts, memory and expected time, and stop");
     add_job_options(*check_app, check);
+
+    StudyOptions study;
+    study.command_line = run.command_line;
+    CLI::App* study_app = app.add_subcommand("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted");
+    CLI::App* status_app = study_app->add_subcommand("status", "how much of the study is done");
+    CLI::App* table_app = study_app->add_subcommand("table", "print the study's points, or its runs, as CSV");
+    for (CLI::App* command : {study_app, status_app, table_app}) add_study_options(*command, study);
+    study_app->require_subcommand(0, 1);
+    study_app->add_option("--threads", study.threads, "number of threads of the whole program (default: one for each core)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 256));
+    study_app->add_option("--at-once", study.at_once, "at most so many runs side by side (default: as suits their size)")
+        ->type_name("K")
+        ->check(CLI::Range(1, 256));
+    table_app->add_flag("--runs", study.runs, "a row a run, in SI units, instead of a row a point");
 
     std::string kind;
     std::optional<std::string> file;
@@ -120,6 +140,10 @@ int run_program(int argc, char** argv) {
     return guarded([&] {
         if (*run_app) return run_command(run);
         if (*check_app) return check_command(check);
+        if (*study_app && study.study.empty()) throw InputError({}, "study: a study file is required", "feldspar study STUDY.toml");
+        if (*status_app) return study_status_command(study);
+        if (*table_app) return study_table_command(study);
+        if (*study_app) return study_command(study);
         if (presets) return presets_command();
         if (kind.empty())
             throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory");

@@ -28,8 +28,6 @@ void install_signal_handlers() {
     std::signal(SIGPIPE, SIG_IGN);
 }
 
-void request_stop() { stop.store(true); }
-
-const std::atomic<bool>& stop_requested() { return stop; }
+std::atomic<bool>& stop_requested() { return stop; }
 
 }  // namespace feldspar

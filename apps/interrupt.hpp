@@ -9,10 +9,7 @@ namespace feldspar {
 /// file-size limit into failed writes instead of sudden ends.
 void install_signal_handlers();
 
-/// As if the user had asked: everything that runs ends at its next record.
-void request_stop();
-
-/// True once the user has asked to stop.
-const std::atomic<bool>& stop_requested();
+/// True once the user has asked to stop, or what failed asks the rest to end.
+std::atomic<bool>& stop_requested();
 
 }  // namespace feldspar

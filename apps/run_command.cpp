@@ -18,9 +18,10 @@
 #include "feldspar/base/usable_cores.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/job/toml_reader.hpp"
+#include "feldspar/study/running_tests.hpp"
+#include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
-#include "running_tests.hpp"
 #include "tables.hpp"
 
 namespace feldspar {
@@ -58,7 +59,7 @@ void check_space(const std::optional<std::string>& out, const Job& job, const st
 class Campaign {
 public:
     Campaign(const Job& job, const RunOptions& options)
-        : job_(job), runs_(planned_runs(job)), specimens_(job), threads_(thread_count(job)), sharing_(job, threads_) {
+        : job_(job), runs_(planned_runs(job)), specimens_(job), threads_(thread_count(job)), sharing_(job.at_once, threads_) {
         RunDirectory::check(options.out, job.name);
         check_space(options.out, job, runs_);
         provenance_ = collect_provenance(options.command_line, threads_);
@@ -86,7 +87,7 @@ public:
     /// Runs everything. @throws what a test or a write throws, after the results so far have been written; of several tests that
     /// fail, what the first of them in the job's order threw.
     void run() {
-        RunningTests running(threads_);
+        RunningTests running(threads_, stop_requested());
         std::size_t next = 0;
         while (true) {
             while (may_start(running, next)) start(running, next++);

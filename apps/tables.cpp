@@ -12,37 +12,13 @@
 #include <vector>
 
 #include "campaign.hpp"
+#include "feldspar/base/text_table.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
 #include "progress.hpp"
 
 namespace feldspar {
 namespace {
-
-using Row = std::vector<std::string>;
-
-// Columns as wide as their widest cell; `left` columns from the first on are flush left, the others flush right.
-std::string aligned(const std::vector<Row>& rows, std::size_t left) {
-    std::vector<std::size_t> width(rows.front().size(), 0);
-    for (const Row& row : rows)
-        for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
-    std::string text;
-    const auto line = [&](const Row& row) {
-        std::string one;
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            if (c > 0) one += "  ";
-            one += c < left ? fmt::format("{:<{}}", row[c], width[c]) : fmt::format("{:>{}}", row[c], width[c]);
-        }
-        while (!one.empty() && one.back() == ' ') one.pop_back();
-        text += one + "\n";
-    };
-    line(rows.front());
-    std::size_t total = 2 * (width.size() - 1);
-    for (std::size_t w : width) total += w;
-    text += std::string(total, '-') + "\n";
-    for (std::size_t r = 1; r < rows.size(); ++r) line(rows[r]);
-    return text;
-}
 
 std::string number(double value) {
     if (!std::isfinite(value)) return "-";

@@ -1,16 +1,11 @@
 #include "feldspar/job/job.hpp"
 
 #include <cctype>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
 #include "feldspar/job/job_sections.hpp"
 
 namespace feldspar {
 namespace {
-
-constexpr std::size_t largest_file = 16u << 20;  // bytes; a job is a page, so anything beyond is a mistaken file
 
 bool fits_file_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.'; }
 
@@ -31,25 +26,6 @@ std::string read_name(const TableReader& root, const std::filesystem::path& file
             root.fail("name", shown(*root.find("name")) + " cannot name a directory",
                       "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
     return given;
-}
-
-std::string read_text(const std::filesystem::path& file) {
-    const std::string shown_name = file.string();
-    if (file.empty()) throw InputError({}, "no job file is named");
-    std::error_code error;
-    if (std::filesystem::is_directory(file, error)) throw InputError({shown_name, 0, 0, {}}, "is a directory, not a job file");
-    errno = 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream)
-        throw InputError({shown_name, 0, 0, {}},
-                         std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"), {},
-                         "'feldspar new uniaxial-compression' prints a job to start from");
-    std::string text(largest_file + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (stream.bad()) throw InputError({shown_name, 0, 0, {}}, "cannot be read to its end");
-    if (text.size() > largest_file) throw InputError({shown_name, 0, 0, {}}, "is larger than 16 MiB, which no job is");
-    return text;
 }
 
 // The disc of the Brazilian test: the same grains in its own outline.
@@ -76,8 +52,7 @@ void check_one_packing(const TableReader& root, const Job& job) {
 
 }  // namespace
 
-Job parse_job(const std::string& text, const std::string& name) {
-    const toml::table tree = parse_toml(text, name);
+Job read_tree(const toml::table& tree, const std::string& text, const std::string& name) {
     const TableReader root(
         tree, "", name, {"name", "specimen", "model", "material", "numerics", "variant", "test", "run", "laboratory"}, job_level);
     Job job;
@@ -107,6 +82,10 @@ Job parse_job(const std::string& text, const std::string& name) {
     return job;
 }
 
-Job read_job(const std::filesystem::path& file) { return parse_job(read_text(file), file.string()); }
+Job parse_job(const std::string& text, const std::string& name) { return read_tree(parse_toml(text, name), text, name); }
+
+Job read_job(const std::filesystem::path& file) {
+    return parse_job(read_toml_file(file, "job", "'feldspar new uniaxial-compression' prints a job to start from"), file.string());
+}
 
 }  // namespace feldspar

@@ -1,4 +1,5 @@
-// The sections of a job file, each read by one function. Internal to this room: others call read_job().
+// The sections of a job file, each read by one function. For this room and for study files, which lay pieces over a job: others call
+// read_job().
 #pragma once
 
 #include <filesystem>
@@ -11,6 +12,9 @@
 #include "feldspar/job/toml_reader.hpp"
 
 namespace feldspar {
+
+/// A whole job from its tree. @param text  as it was read, for provenance; @param name  stands in for the file in messages
+Job read_tree(const toml::table& tree, const std::string& text, const std::string& name);
 
 /// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles.
 SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, bool filled);
@@ -52,6 +56,9 @@ RunSettings read_run(const TableReader& root);
 
 /// [laboratory], in SI.
 std::map<std::string, double> read_laboratory(const TableReader& root);
+
+/// `tests` of a table: kinds of test, each once; none if the key is not there.
+std::vector<TestKind> read_kinds(const TableReader& table);
 
 /// A list of seeds: whole numbers, each once.
 std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_view key);

@@ -23,26 +23,6 @@ std::string read_variant_name(const TableReader& table) {
     return given;
 }
 
-std::vector<TestKind> read_kinds(const TableReader& table) {
-    std::vector<TestKind> kinds;
-    if (!table.has("tests")) return kinds;
-    const std::initializer_list<TestKind> all{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial,
-                                              TestKind::brazilian};
-    std::vector<std::string_view> words;
-    for (TestKind kind : all) words.emplace_back(name(kind));
-    for (const toml::node& node : table.array("tests")) {
-        const std::string word = table.text_of(node, "tests");
-        const auto found = std::find_if(all.begin(), all.end(), [&](TestKind kind) { return word == name(kind); });
-        if (found == all.end())
-            table.fail_at(node, "tests", "'" + word + "' is not a kind of test", listed(words), did_you_mean(word, words));
-        if (std::find(kinds.begin(), kinds.end(), *found) != kinds.end())
-            table.fail_at(node, "tests", "'" + word + "' is given twice", "each kind once");
-        kinds.push_back(*found);
-    }
-    if (kinds.empty()) table.fail("tests", "the list is empty", "one kind of test or more, or leave it out for all");
-    return kinds;
-}
-
 const toml::array& variant_list(const TableReader& root) {
     if (root.find("variant")->is_table())
         root.fail("variant", "is written as one table", "a list of tables, each headed [[variant]]");
@@ -92,6 +72,26 @@ void check_variant(const TableReader& table, const Variant& variant, const Job& 
 }
 
 }  // namespace
+
+std::vector<TestKind> read_kinds(const TableReader& table) {
+    std::vector<TestKind> kinds;
+    if (!table.has("tests")) return kinds;
+    const std::initializer_list<TestKind> all{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial,
+                                              TestKind::brazilian};
+    std::vector<std::string_view> words;
+    for (TestKind kind : all) words.emplace_back(name(kind));
+    for (const toml::node& node : table.array("tests")) {
+        const std::string word = table.text_of(node, "tests");
+        const auto found = std::find_if(all.begin(), all.end(), [&](TestKind kind) { return word == name(kind); });
+        if (found == all.end())
+            table.fail_at(node, "tests", "'" + word + "' is not a kind of test", listed(words), did_you_mean(word, words));
+        if (std::find(kinds.begin(), kinds.end(), *found) != kinds.end())
+            table.fail_at(node, "tests", "'" + word + "' is given twice", "each kind once");
+        kinds.push_back(*found);
+    }
+    if (kinds.empty()) table.fail("tests", "the list is empty", "one kind of test or more, or leave it out for all");
+    return kinds;
+}
 
 std::string variant_stem(const std::string& name) {
     std::string stem;

@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 
 namespace feldspar {
 namespace {
+
+constexpr std::size_t largest_file = 16u << 20;  // bytes; what a user writes is a page, so anything beyond is a mistaken file
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
@@ -78,6 +83,23 @@ std::string shown(const toml::node& node) {
     if (const auto* real = node.as_floating_point()) return format_exact(real->get());
     if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
     return type_words(node);
+}
+
+std::string read_toml_file(const std::filesystem::path& file, const std::string& what, const std::string& suggestion) {
+    const InputPlace place{file.string(), 0, 0, {}};
+    if (file.empty()) throw InputError({}, "no " + what + " file is named");
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) throw InputError(place, "is a directory, not a " + what + " file");
+    errno = 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream)
+        throw InputError(place, std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"), {}, suggestion);
+    std::string text(largest_file + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (stream.bad()) throw InputError(place, "cannot be read to its end");
+    if (text.size() > largest_file) throw InputError(place, "is larger than 16 MiB, which no " + what + " is");
+    return text;
 }
 
 toml::table parse_toml(const std::string& text, const std::string& file) {

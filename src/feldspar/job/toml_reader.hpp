@@ -3,6 +3,7 @@
 // upper ones first, and a complaint points to the table that gave it.
 #pragma once
 
+#include <filesystem>
 #include <initializer_list>
 #include <limits>
 #include <memory>
@@ -136,6 +137,10 @@ private:
     std::optional<toml::source_region> stands_in_;  // of a table that is placed elsewhere
     std::shared_ptr<const TableReader> under_;
 };
+
+/// The text of a file that a user has written. @param what  "job", "study"; @param suggestion  for a file that is not there
+/// @throws InputError if it cannot be read, or is larger than any such file
+std::string read_toml_file(const std::filesystem::path& file, const std::string& what, const std::string& suggestion = {});
 
 /// Parses TOML. @throws InputError at the place of a syntax error.
 toml::table parse_toml(const std::string& text, const std::string& file);

@@ -37,6 +37,9 @@ public:
     /// Only checks what create() would do; makes nothing. @throws InputError as create().
     static void check(const std::optional<std::filesystem::path>& wanted, const std::string& job_name);
 
+    /// A directory that create() has made before.
+    static RunDirectory open(std::filesystem::path path) { return RunDirectory(std::move(path)); }
+
     const std::filesystem::path& path() const { return path_; }
 
     /// Writes `name` through `fill(temporary path)`, then renames it into place. @throws OutputError; on failure the

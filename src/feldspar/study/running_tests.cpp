@@ -1,11 +1,9 @@
-#include "running_tests.hpp"
+#include "feldspar/study/running_tests.hpp"
 
-#include <atomic>
 #include <thread>
 #include <utility>
 
 #include "feldspar/base/thread_shares.hpp"
-#include "interrupt.hpp"
 
 namespace feldspar {
 
@@ -20,10 +18,10 @@ struct RunningTests::Test {
     std::jthread thread;                // last: it is joined before the rest goes away
 };
 
-RunningTests::RunningTests(int threads) : threads_(threads) {}
+RunningTests::RunningTests(int threads, std::atomic<bool>& stop) : threads_(threads), stop_(stop) {}
 
 RunningTests::~RunningTests() {
-    if (!tests_.empty()) request_stop();
+    if (!tests_.empty()) stop_ = true;
     tests_.clear();   // waits for them while what they share is still there
 }
 
@@ -49,7 +47,7 @@ void RunningTests::run(Test& test, const Work& work) {
     RunControl control;
     control.threads = test.threads;
     control.more_threads = &test.threads;
-    control.stop = &stop_requested();
+    control.stop = &stop_;
     control.progress = [&](const TestProgress& progress) {
         const std::lock_guard lock(mutex_);
         test.news = progress;

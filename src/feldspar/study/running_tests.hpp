@@ -2,6 +2,7 @@
 // starts them and hears of them here; it alone decides, prints and writes what only one thread may write.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -40,7 +41,8 @@ public:
     };
 
     /// @param threads  that the tests have together
-    explicit RunningTests(int threads);
+    /// @param stop     becomes true when the user interrupts: tests end at their next record
+    RunningTests(int threads, std::atomic<bool>& stop);
 
     /// Asks tests that are still running to stop, and waits for them.
     ~RunningTests();
@@ -66,6 +68,7 @@ private:
     void run(Test& test, const Work& work);
 
     int threads_;
+    std::atomic<bool>& stop_;
     std::vector<std::unique_ptr<Test>> tests_;
     std::mutex mutex_;                  // guards what the tests leave for events()
     std::condition_variable something_;

@@ -1,0 +1,175 @@
+#include "feldspar/study/execute.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <deque>
+#include <set>
+#include <thread>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/base/thread_shares.hpp"
+#include "feldspar/study/packings.hpp"
+#include "feldspar/study/run_files.hpp"
+#include "feldspar/study/running_tests.hpp"
+#include "feldspar/study/sharing.hpp"
+
+namespace feldspar {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto between_heartbeats = std::chrono::seconds(20);
+constexpr auto between_looks_at_others = std::chrono::milliseconds(500);
+
+// Bodies that move by themselves in the run, before its specimen is there.
+int expected_bodies(const Run& run) {
+    const SpecimenSpec& specimen = run.test().kind == TestKind::brazilian ? run.job.brazilian_specimen : run.job.specimen;
+    const bool filled = run.job.variants.front().model.kind == GrainKind::inner_particles;
+    return static_cast<int>(grain_count(specimen) * (filled ? specimen.particles_per_grain : 1.0));
+}
+
+class Execute {
+public:
+    Execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control)
+        : ledger_(ledger), control_(control), sharing_(control.at_once, control.threads),
+          packings_(static_cast<std::size_t>(2 * control.threads + 2), control.stop), running_(control.threads, *control.stop) {
+        std::set<std::string> seen;
+        for (const Run& run : runs)   // points may share runs
+            if (seen.insert(run.id).second) runs_.push_back(&run);
+        for (std::size_t i = 0; i < runs_.size(); ++i) waiting_.push_back(i);
+    }
+
+    Execution operator()() {
+        const Clock::time_point start = Clock::now();
+        while (true) {
+            while (may_start()) start_next();
+            running_.share_out_free_threads();
+            if (running_.count() == 0) {
+                if (stopped() || (waiting_.empty() && others_.empty())) break;
+                look_at_others();
+                continue;
+            }
+            listen();
+            beat();
+        }
+        execution_.left = static_cast<int>(waiting_.size() + others_.size()) + interrupted_;
+        execution_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+        if (lost_) std::rethrow_exception(lost_);
+        return execution_;
+    }
+
+private:
+    bool stopped() const { return *control_.stop || lost_ != nullptr; }
+
+    bool may_start() {
+        if (stopped() || waiting_.empty()) return false;
+        return running_.free_threads() > 0 && running_.count() < company_with(waiting_.front());
+    }
+
+    // Most runs at once that go with run i and with those that run.
+    int company_with(std::size_t i) const {
+        const int most = sharing_.most_at_once(expected_bodies(*runs_[i]));
+        return running_.count() == 0 ? most : std::min(most, company_);
+    }
+
+    void start_next() {
+        const std::size_t i = waiting_.front();
+        waiting_.pop_front();
+        const Run& run = *runs_[i];
+        switch (ledger_.claim(run)) {
+            case Ledger::Claim::done: ++execution_.found_done; return;
+            case Ledger::Claim::others: others_.push_back(i); return;
+            case Ledger::Claim::ours: break;
+        }
+        if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
+            ledger_.record(*record);
+            ++execution_.found_done;
+            return;
+        }
+        company_ = company_with(i);
+        const int bodies = expected_bodies(run);
+        const int places = std::min(company_ - running_.count(), static_cast<int>(waiting_.size()) + 1);
+        const int useful = sharing_.useful_threads(bodies);
+        running_.start(i, share_for_next(running_.free_threads(), places, useful), useful,
+                       [this, &run](const RunControl& run_control) { return run_one(run, run_control); });
+    }
+
+    // On the run's own thread.
+    TestResult run_one(const Run& run, const RunControl& run_control) {
+        const Clock::time_point start = Clock::now();
+        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control);
+        result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+        return result;
+    }
+
+    void listen() {
+        RunningTests::Events events = running_.events(true);
+        for (const auto& [i, state] : events.news)
+            if (control_.progress) control_.progress(*runs_[i], state);
+        for (RunningTests::Ended& ended : events.ended) take(std::move(ended));
+    }
+
+    void take(RunningTests::Ended ended) {
+        const Run& run = *runs_[ended.number];
+        try {
+            if (ended.error) std::rethrow_exception(ended.error);
+            if (ended.result->interrupted) throw Interrupted();
+            execution_.run_s += ended.result->wall_s;
+            finish_files(run, *ended.result, ledger_.run_directory(run.id), control_.keep, control_.provenance);
+            record(run, *finished_record(ledger_.run_directory(run.id), run));
+            ++execution_.done;
+        } catch (const Interrupted&) {
+            ledger_.release(run.id);
+            ++interrupted_;
+        } catch (const OutputError&) {
+            ledger_.release(run.id);
+            ++interrupted_;
+            if (!lost_) lost_ = std::current_exception();
+            *control_.stop = true;   // what still runs could not be written either
+        } catch (const std::exception& problem) {
+            record(run, failed_record(run, problem.what(), control_.provenance));
+            ++execution_.failed;
+        }
+    }
+
+    void record(const Run& run, const RunRecord& record) {
+        ledger_.record(record);
+        if (control_.ended) control_.ended(run, record);
+    }
+
+    void beat() {
+        if (Clock::now() < next_beat_) return;
+        ledger_.heartbeat();
+        next_beat_ = Clock::now() + between_heartbeats;
+    }
+
+    // Runs that another process had: done by now, still at it, or left behind.
+    void look_at_others() {
+        if (others_.empty()) return;
+        if (!told_ && control_.note) control_.note(fmt::format("waiting for {} runs that another process is at", others_.size()));
+        told_ = true;
+        std::this_thread::sleep_for(between_looks_at_others);
+        std::swap(waiting_, others_);
+    }
+
+    Ledger& ledger_;
+    const ExecuteControl& control_;
+    Sharing sharing_;
+    Packings packings_;
+    RunningTests running_;
+    std::vector<const Run*> runs_;
+    std::deque<std::size_t> waiting_, others_;
+    int company_ = 1;   // most runs at once that go with those that run
+    int interrupted_ = 0;
+    bool told_ = false;
+    std::exception_ptr lost_;
+    Clock::time_point next_beat_ = Clock::now() + between_heartbeats;
+    Execution execution_;
+};
+
+}  // namespace
+
+Execution execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control) { return Execute(runs, ledger, control)(); }
+
+}  // namespace feldspar

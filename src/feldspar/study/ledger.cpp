@@ -1,0 +1,316 @@
+#include "feldspar/study/ledger.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "feldspar/base/error.hpp"
+
+namespace feldspar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int schema_version = 1;            // PRAGMA user_version
+constexpr int busy_timeout_ms = 120'000;     // another program's transaction is over long before
+constexpr std::int64_t silent_s = 600;       // a process of another machine that has not been heard of for so long is gone
+
+std::int64_t now_s() {
+    return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::string host() {
+    char name[256] = {};
+    return ::gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
+}
+
+// When a process of this machine began, in clock ticks since the machine did; empty if there is none. With the number of the
+// process it is unique while the machine runs.
+std::string beginning_of(const std::string& pid) {
+    std::ifstream file("/proc/" + pid + "/stat");
+    std::string text((std::istreambuf_iterator<char>(file)), {});
+    const auto name_end = text.rfind(')');
+    if (name_end == std::string::npos) return {};
+    std::stringstream rest(text.substr(name_end + 1));
+    std::string word;
+    for (int field = 3; field <= 22; ++field) rest >> word;
+    return word;
+}
+
+// "machine pid beginning"
+std::string this_process() {
+    const std::string pid = std::to_string(::getpid());
+    return host() + " " + pid + " " + beginning_of(pid);
+}
+
+bool alive(const std::string& holder, std::int64_t last_heard_s) {
+    std::stringstream words(holder);
+    std::string machine, pid, beginning;
+    words >> machine >> pid >> beginning;
+    if (machine != host()) return now_s() - last_heard_s < silent_s;
+    return !beginning.empty() && beginning_of(pid) == beginning;
+}
+
+std::string columns(const char* type, const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += fmt::format(", {} {}", name, type);
+    return text;
+}
+
+std::string all_columns() {
+    return fmt::format("id, state, reason, test, sigma3_Pa, seed, {}, {}, job, holder, heard", fmt::join(number_columns(), ", "),
+                       fmt::join(text_columns(), ", "));
+}
+
+void bind(SQLite::Statement& statement, int at, double value) {
+    if (std::isfinite(value)) statement.bind(at, value);
+    else statement.bind(at);   // NULL
+}
+
+double number_in(const SQLite::Column& column) { return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble(); }
+
+}  // namespace
+
+struct Ledger::Database {
+    fs::path directory;
+    std::string me = this_process();
+    SQLite::Database file;
+
+    Database(const fs::path& directory_, int flags) : directory(directory_), file((directory_ / "ledger.sqlite").string(), flags, busy_timeout_ms) {}
+
+    void make() {
+        SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
+        file.exec(fmt::format("CREATE TABLE IF NOT EXISTS run (id TEXT PRIMARY KEY, state TEXT NOT NULL, reason TEXT, test TEXT NOT NULL, "
+                              "sigma3_Pa REAL, seed INTEGER{}{}, job TEXT, holder TEXT, heard INTEGER) WITHOUT ROWID",
+                              columns("REAL", number_columns()), columns("TEXT", text_columns())));
+        file.exec("CREATE TABLE IF NOT EXISTS study (name TEXT PRIMARY KEY, title TEXT, file TEXT, text TEXT)");
+        file.exec("CREATE TABLE IF NOT EXISTS member (study TEXT NOT NULL, run TEXT NOT NULL, point INTEGER NOT NULL, axis TEXT NOT NULL, "
+                  "label TEXT, number REAL, PRIMARY KEY (study, run, point, axis)) WITHOUT ROWID");
+        add_missing_columns();
+        file.exec(fmt::format("PRAGMA user_version = {}", schema_version));
+        transaction.commit();
+    }
+
+    // Columns that this version of the program knows and the one that made the ledger did not.
+    void add_missing_columns() {
+        std::vector<std::string> there;
+        SQLite::Statement info(file, "PRAGMA table_info(run)");
+        while (info.executeStep()) there.push_back(info.getColumn(1).getString());
+        const auto add = [&](const char* type, const std::vector<std::string>& names) {
+            for (const std::string& name : names)
+                if (std::find(there.begin(), there.end(), name) == there.end()) file.exec(fmt::format("ALTER TABLE run ADD COLUMN {} {}", name, type));
+        };
+        add("REAL", number_columns());
+        add("TEXT", text_columns());
+    }
+
+    void write(const RunRecord& record) {
+        const std::size_t count = 9 + number_columns().size() + text_columns().size();
+        SQLite::Statement insert(file, fmt::format("INSERT OR REPLACE INTO run ({}) VALUES ({})", all_columns(),
+                                                   fmt::join(std::vector<std::string>(count, "?"), ", ")));
+        int at = 0;
+        insert.bind(++at, record.id);
+        insert.bind(++at, name(record.state));
+        insert.bind(++at, record.reason);
+        insert.bind(++at, record.test);
+        bind(insert, ++at, record.sigma3_Pa);
+        insert.bind(++at, static_cast<std::int64_t>(record.seed));
+        for (const std::string& column : number_columns()) {
+            const auto found = record.numbers.find(column);
+            bind(insert, ++at, found == record.numbers.end() ? std::nan("") : found->second);
+        }
+        for (const std::string& column : text_columns()) {
+            const auto found = record.texts.find(column);
+            if (found == record.texts.end()) insert.bind(++at);
+            else insert.bind(++at, found->second);
+        }
+        insert.bind(++at, record.job);
+        insert.bind(++at, me);
+        insert.bind(++at, now_s());
+        insert.exec();
+    }
+
+    RunRecord read(SQLite::Statement& row) const {
+        RunRecord record;
+        int at = 0;
+        record.id = row.getColumn(at++).getString();
+        const std::string state = row.getColumn(at++).getString();
+        record.state = state == "done" ? RunState::done : state == "failed" ? RunState::failed : RunState::running;
+        record.reason = row.getColumn(at++).getString();
+        record.test = row.getColumn(at++).getString();
+        record.sigma3_Pa = number_in(row.getColumn(at++));
+        record.seed = static_cast<std::uint64_t>(row.getColumn(at++).getInt64());
+        for (const std::string& column : number_columns()) record.numbers[column] = number_in(row.getColumn(at++));
+        for (const std::string& column : text_columns()) {
+            const SQLite::Column text = row.getColumn(at++);
+            if (!text.isNull()) record.texts[column] = text.getString();
+        }
+        record.job = row.getColumn(at++).getString();
+        return record;
+    }
+};
+
+namespace {
+
+// SQLite's own words about a ledger, with its place.
+template <class Action>
+auto guarded(const fs::path& directory, Action action) {
+    try {
+        return action();
+    } catch (const SQLite::Exception& problem) {
+        throw OutputError(fmt::format("the ledger '{}': {}", (directory / "ledger.sqlite").string(), problem.what()));
+    }
+}
+
+}  // namespace
+
+Ledger::Ledger(const fs::path& directory, Access access) {
+    const fs::path file = directory / "ledger.sqlite";
+    std::error_code error;
+    if (access == Access::write) fs::create_directories(directory / "runs", error);
+    else if (!fs::exists(file, error))
+        throw InputError({}, fmt::format("there is no ledger in '{}': nothing of the study has been run", directory.string()));
+    if (error) throw OutputError(fmt::format("cannot make the directory '{}': {}", directory.string(), error.message()));
+    try {
+        const int flags = SQLite::OPEN_READWRITE | (access == Access::write ? SQLite::OPEN_CREATE : 0);
+        database_ = std::make_unique<Database>(directory, flags);
+        const int version = database_->file.execAndGet("PRAGMA user_version").getInt();
+        if (version > schema_version)
+            throw InputError({file.string(), 0, 0, {}}, "was made by a later version of this program", "the version that made it, or another `results`");
+        if (access == Access::write) {
+            database_->file.exec("PRAGMA journal_mode = WAL");     // readers and writers side by side
+            database_->file.exec("PRAGMA synchronous = NORMAL");   // a power cut may lose the last rows; run.json has them
+        }
+        if (access == Access::write || version < schema_version) database_->make();
+        else database_->add_missing_columns();
+    } catch (const SQLite::Exception& problem) {
+        if (problem.getErrorCode() == 26) throw InputError({file.string(), 0, 0, {}}, "is not a ledger");   // SQLITE_NOTADB
+        throw OutputError(fmt::format("the ledger '{}': {}", file.string(), problem.what()));
+    }
+}
+
+Ledger::~Ledger() = default;
+Ledger::Ledger(Ledger&&) noexcept = default;
+
+const fs::path& Ledger::directory() const { return database_->directory; }
+
+fs::path Ledger::run_directory(const std::string& id) const { return database_->directory / "runs" / id; }
+
+void Ledger::enrol(const Study& study) {
+    guarded(directory(), [&] {
+        SQLite::Database& file = database_->file;
+        SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
+        SQLite::Statement forget(file, "DELETE FROM member WHERE study = ?");
+        forget.bind(1, study.name);
+        forget.exec();
+        SQLite::Statement note(file, "INSERT OR REPLACE INTO study (name, title, file, text) VALUES (?, ?, ?, ?)");
+        note.bind(1, study.name);
+        note.bind(2, study.title);
+        note.bind(3, study.file.string());
+        note.bind(4, study.text);
+        note.exec();
+        SQLite::Statement insert(file, "INSERT OR REPLACE INTO member (study, run, point, axis, label, number) VALUES (?, ?, ?, ?, ?, ?)");
+        for (const Run& run : study.runs) {
+            const std::size_t rows = std::max<std::size_t>(1, study.axes.size());   // without axes one row that says so
+            for (std::size_t a = 0; a < rows; ++a) {
+                insert.bind(1, study.name);
+                insert.bind(2, run.id);
+                insert.bind(3, static_cast<std::int64_t>(run.point));
+                insert.bind(4, study.axes.empty() ? std::string{} : study.axes[a]);
+                if (study.axes.empty()) {
+                    insert.bind(5);
+                    insert.bind(6);
+                } else {
+                    insert.bind(5, study.points[run.point].values[a].label);
+                    bind(insert, 6, study.points[run.point].values[a].number);
+                }
+                insert.exec();
+                insert.reset();
+            }
+        }
+        transaction.commit();
+    });
+}
+
+Ledger::Claim Ledger::claim(const Run& run) {
+    return guarded(directory(), [&] {
+        SQLite::Database& file = database_->file;
+        SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
+        {
+            SQLite::Statement look(file, "SELECT state, holder, heard FROM run WHERE id = ?");
+            look.bind(1, run.id);
+            if (look.executeStep()) {
+                const std::string state = look.getColumn(0).getString();
+                if (state == "done") return Claim::done;
+                if (state == "running" && alive(look.getColumn(1).getString(), look.getColumn(2).getInt64())) return Claim::others;
+            }
+        }
+        RunRecord record;
+        record.id = run.id;
+        record.test = name(run.test().kind);
+        record.sigma3_Pa = run.test().sigma3_Pa;
+        record.seed = run.seed();
+        database_->write(record);
+        transaction.commit();
+        return Claim::ours;
+    });
+}
+
+void Ledger::release(const std::string& id) {
+    guarded(directory(), [&] {
+        SQLite::Statement forget(database_->file, "DELETE FROM run WHERE id = ? AND state = 'running' AND holder = ?");
+        forget.bind(1, id);
+        forget.bind(2, database_->me);
+        forget.exec();
+    });
+}
+
+void Ledger::record(const RunRecord& record) {
+    guarded(directory(), [&] {
+        SQLite::Transaction transaction(database_->file, SQLite::TransactionBehavior::IMMEDIATE);
+        {
+            SQLite::Statement look(database_->file, "SELECT 1 FROM run WHERE id = ? AND state = 'done'");
+            look.bind(1, record.id);
+            if (look.executeStep()) return;
+        }
+        database_->write(record);
+        transaction.commit();
+    });
+}
+
+void Ledger::heartbeat() {
+    guarded(directory(), [&] {
+        SQLite::Statement beat(database_->file, "UPDATE run SET heard = ? WHERE state = 'running' AND holder = ?");
+        beat.bind(1, now_s());
+        beat.bind(2, database_->me);
+        beat.exec();
+    });
+}
+
+std::optional<RunRecord> Ledger::find(const std::string& id) const {
+    const auto found = find(std::span(&id, 1));
+    return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
+std::vector<RunRecord> Ledger::find(std::span<const std::string> ids) const {
+    return guarded(directory(), [&] {
+        SQLite::Transaction whole(database_->file);   // one moment for all of them
+        SQLite::Statement look(database_->file, fmt::format("SELECT {} FROM run WHERE id = ?", all_columns()));
+        std::vector<RunRecord> records;
+        for (const std::string& id : ids) {
+            look.bind(1, id);
+            if (look.executeStep()) records.push_back(database_->read(look));
+            look.reset();
+        }
+        return records;
+    });
+}
+
+}  // namespace feldspar

@@ -1,0 +1,458 @@
+// A study file: the job, the axes, and all points that they make (docs/study.md). A point's job is the base job with pieces laid over it:
+// [specimen] and [[test]] are changed in place, [model], [material] and [numerics] are given as a variant, so that what goes before
+// what is decided in one place (job/read_physics.cpp).
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "feldspar/job/job_sections.hpp"
+#include "feldspar/study/study.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr std::size_t most_points = 100'000;
+
+const std::initializer_list<std::string_view> pieces{"specimen", "model", "material", "numerics", "test"};
+
+using Path = std::vector<std::string>;
+
+Path split(const std::string& dotted) {
+    Path path;
+    std::stringstream stream(dotted);
+    for (std::string key; std::getline(stream, key, '.');) path.push_back(key);
+    return path;
+}
+
+// A value of an axis: what it is called, the piece of a job that it stands for, and which runs it is for.
+struct Choice {
+    AxisValue value;
+    toml::table piece;
+    std::vector<std::uint64_t> seeds;   // empty = all
+    std::vector<TestKind> tests;        // empty = all
+};
+
+struct Axis {
+    std::string name;
+    std::string key;     // what `values` are values of; empty for [[axis.value]]
+    std::string times;   // the key whose value they multiply; empty if they stand as they are
+    std::vector<std::pair<std::string, double>> coupled;
+    std::vector<Choice> choices;
+};
+
+// The number that a value begins with, and what follows it.
+struct Measure {
+    double number = std::numeric_limits<double>::quiet_NaN();
+    std::string unit;
+};
+
+Measure measure_of(const toml::node& node) {
+    if (node.is_number()) return {*node.value<double>(), {}};
+    Measure measure;
+    if (!node.is_string()) return measure;
+    const std::string& text = node.as_string()->get();
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc{}) measure = {number, std::string(end, text.data() + text.size())};
+    return measure;
+}
+
+std::string label_of(const toml::node& node) {
+    if (node.is_string()) return node.as_string()->get();
+    std::stringstream text;
+    node.visit([&](const auto& value) {
+        if constexpr (toml::is_integer<decltype(value)> || toml::is_boolean<decltype(value)>) text << value;
+        else if constexpr (toml::is_floating_point<decltype(value)>) text << fmt::format("{:g}", value.get());
+    });
+    return text.str();
+}
+
+void insert(toml::table& table, const Path& path, std::size_t depth, const toml::node& value) {
+    if (depth + 1 == path.size()) {
+        table.insert_or_assign(path[depth], value);
+        return;
+    }
+    toml::node* inside = table.get(path[depth]);
+    if (inside == nullptr || !inside->is_table()) {
+        table.insert_or_assign(path[depth], toml::table{});
+        inside = table.get(path[depth]);
+    }
+    insert(*inside->as_table(), path, depth + 1, value);
+}
+
+void insert(toml::table& table, const std::string& dotted, const toml::node& value) { insert(table, split(dotted), 0, value); }
+
+// Lays a table over another, key by key. A grain size distribution replaces another as a whole.
+void lay_over(toml::table& under, const toml::table& over) {
+    for (const auto& [key, value] : over) {
+        toml::node* there = under.get(key.str());
+        const bool both = value.is_table() && there != nullptr && there->is_table();
+        if (both && !value.as_table()->contains("distribution")) lay_over(*there->as_table(), *value.as_table());
+        else under.insert_or_assign(key.str(), value);
+    }
+}
+
+// The base job as a tree, and one of its variants, if it has any.
+struct Base {
+    toml::table tree;
+    std::string text;
+    std::filesystem::path file;
+    Job job;
+};
+
+Base read_base(const TableReader& root, const std::filesystem::path& study) {
+    Base base;
+    base.file = root.text("job");
+    if (base.file.is_relative()) base.file = study.parent_path() / base.file;
+    try {
+        base.text = read_toml_file(base.file, "job");
+    } catch (const InputError& error) {
+        root.fail("job", "'" + base.file.string() + "' " + error.problem(), "a job file; a relative path counts from the study's folder");
+    }
+    base.tree = parse_toml(base.text, base.file.string());
+    base.job = read_tree(base.tree, base.text, base.file.string());
+    return base;
+}
+
+class StudyReader {
+public:
+    StudyReader(const std::string& text, const std::filesystem::path& file)
+        : tree_(parse_toml(text, file.string())),
+          root_(tree_, "", file.string(), {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}) {
+        root_.require({"job"});
+        study_.file = file;
+        study_.text = text;
+        base_ = read_base(root_, file);
+    }
+
+    Study read() {
+        read_names();
+        read_common();
+        if (base_.job.has_variants()) axes_.push_back(variant_axis());
+        if (root_.has("axis")) read_axes();
+        for (const Axis& axis : axes_) study_.axes.push_back(axis.name);
+        make_points();
+        index_runs(study_);
+        return std::move(study_);
+    }
+
+private:
+    void read_names() {
+        study_.name = read_name("name", variant_stem(study_.file.stem().string()));
+        study_.title = root_.text("title", study_.name);
+        study_.results = std::filesystem::path("results") / read_name("results", study_.name);
+        study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
+    }
+
+    std::string read_name(std::string_view key, const std::string& fallback) const {
+        const std::string name = root_.text(key, fallback);
+        const bool fits = name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
+            return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+        });
+        if (!fits) root_.fail(key, "'" + name + "' cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+        return name;
+    }
+
+    void read_common() {
+        seeds_ = root_.has("seeds") ? read_seed_list(root_, "seeds") : std::vector<std::uint64_t>{};
+        tests_ = read_kinds(root_);
+        for (TestKind kind : tests_) check_kind(root_, kind);
+        if (root_.has("set")) common_ = read_piece(root_, "set");
+    }
+
+    void check_kind(const TableReader& table, TestKind kind) const {
+        const auto& tests = base_.job.tests;
+        if (std::none_of(tests.begin(), tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
+            table.fail("tests", fmt::format("the job has no test of kind '{}'", name(kind)), "kinds that stand in a [[test]] of the job");
+    }
+
+    // A piece of a job; what is in it is judged with the whole job of a point.
+    toml::table read_piece(const TableReader& table, std::string_view key) const {
+        const toml::node& node = *table.find(key);
+        if (!node.is_table()) table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }");
+        (void)table.table(key, pieces);   // refuses other names
+        return *node.as_table();
+    }
+
+    Axis variant_axis() const {
+        Axis axis;
+        axis.name = "variant";
+        const toml::array& list = *base_.tree.get("variant")->as_array();
+        for (std::size_t v = 0; v < base_.job.variants.size(); ++v) {
+            const Variant& variant = base_.job.variants[v];
+            Choice choice;
+            choice.value = {variant.name, std::numeric_limits<double>::quiet_NaN()};
+            for (const char* piece : {"model", "material", "numerics"})
+                if (const toml::node* node = list[v].as_table()->get(piece)) choice.piece.insert_or_assign(piece, *node);
+            choice.seeds = variant.seeds;
+            choice.tests = variant.tests;
+            axis.choices.push_back(std::move(choice));
+        }
+        return axis;
+    }
+
+    void read_axes() {
+        if (root_.find("axis")->is_table()) root_.fail("axis", "is written as one table", "a list of tables, each headed [[axis]]");
+        int number = 0;
+        for (const toml::node& node : root_.array("axis")) {
+            if (!node.is_table()) root_.fail_at(node, "axis", shown(node) + " is not an axis", "a table headed [[axis]]");
+            const TableReader table(*node.as_table(), fmt::format("axis[{}]", ++number), root_.file(),
+                                    {"name", "key", "values", "times", "coupled", "value"});
+            Axis axis = table.has("value") ? read_named_values(table) : read_key_values(table);
+            if (std::any_of(axes_.begin(), axes_.end(), [&](const Axis& other) { return other.name == axis.name; }))
+                table.fail("name", "'" + axis.name + "' is the name of another axis", "each axis a name of its own");
+            check_labels(table, axis);
+            axes_.push_back(std::move(axis));
+        }
+    }
+
+    static void check_labels(const TableReader& table, const Axis& axis) {
+        std::set<std::string> seen;
+        for (const Choice& choice : axis.choices)
+            if (!seen.insert(choice.value.label).second)
+                table.fail(axis.key.empty() ? "value" : "values", "'" + choice.value.label + "' stands there twice", "each value once");
+    }
+
+    Axis read_key_values(const TableReader& table) const {
+        table.require({"name", "key", "values"});
+        Axis axis;
+        axis.name = table.text("name");
+        axis.key = read_key(table, "key", table.text("key"));
+        if (table.has("times")) axis.times = read_key(table, "times", table.text("times"));
+        const toml::array& values = table.array("values");
+        if (values.empty()) table.fail("values", "the list is empty", "one value or more");
+        for (const toml::node& node : values) {
+            Choice choice;
+            choice.value = {label_of(node), measure_of(node).number};
+            if (!axis.times.empty() && !node.is_number())
+                table.fail_at(node, "values", shown(node) + " is not a factor", "plain numbers, which multiply the value of `times`");
+            insert(choice.piece, axis.key, node);
+            axis.choices.push_back(std::move(choice));
+        }
+        if (table.has("coupled")) read_coupled(table, axis);
+        return axis;
+    }
+
+    std::string read_key(const TableReader& table, std::string_view key, const std::string& dotted) const {
+        const Path path = split(dotted);
+        if (path.size() < 2 || std::find(pieces.begin(), pieces.end(), path.front()) == pieces.end() ||
+            std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
+            table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(pieces), "a dotted key such as \"material.contact.tau\"");
+        return dotted;
+    }
+
+    // { material.contact.Gfs = 31.5 } as dotted keys and factors
+    void read_coupled(const TableReader& table, Axis& axis) const {
+        const toml::node& node = *table.find("coupled");
+        const std::string allowed = "keys and factors, such as { material.contact.Gfs = 31.5 }";
+        if (!node.is_table()) table.fail("coupled", shown(node) + " is not a table", allowed);
+        const std::function<void(const toml::table&, const std::string&)> walk = [&](const toml::table& inside, const std::string& path) {
+            for (const auto& [key, value] : inside) {
+                const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+                if (value.is_table()) {
+                    walk(*value.as_table(), full);
+                } else {
+                    if (!value.is_number()) table.fail_at(value, "coupled", shown(value) + " is not a factor", allowed);
+                    axis.coupled.emplace_back(read_key(table, "coupled", full), *value.value<double>());
+                }
+            }
+        };
+        walk(*node.as_table(), {});
+    }
+
+    Axis read_named_values(const TableReader& table) const {
+        table.require({"name"});
+        table.refuse({"key", "values", "times", "coupled"}, "[[axis.value]]", "name, and a list of [[axis.value]]");
+        Axis axis;
+        axis.name = table.text("name");
+        if (table.find("value")->is_table()) table.fail("value", "is written as one table", "a list of tables, each headed [[axis.value]]");
+        for (const toml::node& node : table.array("value")) {
+            if (!node.is_table()) table.fail_at(node, "value", shown(node) + " is not a value of the axis", "a table headed [[axis.value]]");
+            const TableReader value(*node.as_table(), "axis.value", root_.file(), {"label", "set", "seeds", "tests"});
+            value.require({"label"});
+            Choice choice;
+            choice.value = {value.text("label"), std::numeric_limits<double>::quiet_NaN()};
+            if (value.has("set")) choice.piece = read_piece(value, "set");
+            if (value.has("seeds")) choice.seeds = read_seed_list(value, "seeds");
+            choice.tests = read_kinds(value);
+            for (TestKind kind : choice.tests) check_kind(value, kind);
+            axis.choices.push_back(std::move(choice));
+        }
+        if (axis.choices.empty()) table.fail("value", "the list is empty", "one [[axis.value]] or more");
+        return axis;
+    }
+
+    void make_points() {
+        std::size_t count = 1;
+        for (const Axis& axis : axes_) {
+            count *= axis.choices.size();
+            if (count > most_points)
+                throw InputError({root_.file(), 0, 0, "axis"}, "the axes make more than 100,000 points", "fewer values");
+        }
+        for (std::size_t p = 0; p < count; ++p) {
+            std::vector<const Choice*> chosen(axes_.size());
+            std::size_t rest = p;
+            for (std::size_t a = axes_.size(); a-- > 0;) {
+                chosen[a] = &axes_[a].choices[rest % axes_[a].choices.size()];
+                rest /= axes_[a].choices.size();
+            }
+            make_point(chosen);
+        }
+    }
+
+    void make_point(const std::vector<const Choice*>& chosen) {
+        Point point;
+        for (const Choice* choice : chosen) point.values.push_back(choice->value);
+        try {
+            toml::table piece = common_;
+            for (std::size_t a = 0; a < axes_.size(); ++a)
+                if (axes_[a].times.empty()) add(piece, axes_[a], *chosen[a]);
+            for (std::size_t a = 0; a < axes_.size(); ++a)
+                if (!axes_[a].times.empty()) add_multiple(piece, axes_[a], *chosen[a]);
+            point.job = job_with(piece);
+        } catch (const InputError& error) {
+            throw in_point(error, point);
+        }
+        point.job.name = study_.name;
+        narrow(point.job, chosen, point);
+        study_.points.push_back(std::move(point));
+    }
+
+    static void add(toml::table& piece, const Axis& axis, const Choice& choice) {
+        lay_over(piece, choice.piece);
+        if (axis.coupled.empty()) return;
+        const toml::node_view<const toml::node> node = toml::at_path(choice.piece, axis.key);
+        couple(piece, axis, measure_of(*node.node()));
+    }
+
+    static void couple(toml::table& piece, const Axis& axis, const Measure& measure) {
+        for (const auto& [key, factor] : axis.coupled) {
+            if (std::isnan(measure.number))
+                throw InputError({{}, 0, 0, key}, "cannot follow " + axis.key + ", which is not a number", "no `coupled` beside words");
+            set(piece, key, factor * measure.number, measure.unit);
+        }
+    }
+
+    static void set(toml::table& piece, const std::string& key, double number, const std::string& unit) {
+        if (unit.empty()) insert(piece, key, toml::value<double>(number));
+        else insert(piece, key, toml::value<std::string>(format_exact(number) + (unit.front() == ' ' ? "" : " ") + unit));
+    }
+
+    // The axis' values multiply what another key has at this point, presets and defaults included.
+    void add_multiple(toml::table& piece, const Axis& axis, const Choice& choice) const {
+        const toml::table resolved = parse_toml(resolved_toml(job_with(piece)), "resolved job");
+        const toml::node_view<const toml::node> node = toml::at_path(resolved, axis.times);
+        if (!node) throw InputError({{}, 0, 0, axis.times}, "the job has no such key, which `times` names", "a key of the resolved job");
+        Measure measure = measure_of(*node.node());
+        if (std::isnan(measure.number)) throw InputError({{}, 0, 0, axis.times}, "is not a number, which `times` could multiply");
+        measure.number *= choice.value.number;
+        set(piece, axis.key, measure.number, measure.unit);
+        couple(piece, axis, measure);
+    }
+
+    // The base job with the piece laid over it; with a single variant without a name.
+    Job job_with(const toml::table& piece) const {
+        toml::table tree = base_.tree;
+        toml::table variant{{"name", "point"}};
+        for (const auto& [key, value] : piece) {
+            const std::string_view name = key.str();
+            if (name == "specimen") lay_over(*tree.get("specimen")->as_table(), *value.as_table());
+            else if (name == "test") for (toml::node& test : *tree.get("test")->as_array()) lay_over(*test.as_table(), *value.as_table());
+            else variant.insert_or_assign(name, value);
+        }
+        tree.insert_or_assign("variant", toml::array{variant});
+        Job job = read_tree(tree, base_.text, base_.file.string());
+        job.variants.front().name.clear();
+        job.variants.front().stem.clear();
+        return job;
+    }
+
+    // Leaves the point's seeds and tests.
+    void narrow(Job& job, const std::vector<const Choice*>& chosen, const Point& point) const {
+        if (!seeds_.empty()) {
+            job.seeds = seeds_;
+            for (TestSpec& test : job.tests) test.seeds.clear();
+        }
+        const auto keep_tests = [&](const std::vector<TestKind>& kinds) {
+            if (!kinds.empty())
+                std::erase_if(job.tests, [&](const TestSpec& test) { return std::find(kinds.begin(), kinds.end(), test.kind) == kinds.end(); });
+        };
+        keep_tests(tests_);
+        for (const Choice* choice : chosen) {
+            keep_tests(choice->tests);
+            if (choice->seeds.empty()) continue;
+            const auto dropped = [&](std::uint64_t seed) { return std::find(choice->seeds.begin(), choice->seeds.end(), seed) == choice->seeds.end(); };
+            std::erase_if(job.seeds, dropped);
+            std::vector<TestSpec> left;   // without tests whose own seeds are all dropped
+            for (TestSpec& test : job.tests) {
+                const bool own = !test.seeds.empty();
+                std::erase_if(test.seeds, dropped);
+                if (!own || !test.seeds.empty()) left.push_back(std::move(test));
+            }
+            job.tests = std::move(left);
+        }
+        if (job.tests.empty() || job.seeds.empty())
+            throw InputError({root_.file(), 0, 0, "axis"}, "nothing is left to run" + at(point), "seeds and tests that the study has");
+    }
+
+    std::string at(const Point& point) const {
+        std::vector<std::string> words;
+        for (std::size_t a = 0; a < point.values.size(); ++a) words.push_back(axes_[a].name + " = " + point.values[a].label);
+        return words.empty() ? "" : fmt::format(", with {}", fmt::join(words, ", "));
+    }
+
+    // A mistake that shows only in a point's job: where its key stands in the study, if it does.
+    InputError in_point(const InputError& error, const Point& point) const {
+        std::string key = error.place().key;
+        if (key.starts_with("variant[1].")) key.erase(0, 11);
+        if (key.starts_with("test[")) key = "test." + key.substr(std::min(key.size(), key.find('.') + 1));
+        InputPlace place{root_.file(), 0, 0, key};
+        const auto look = [&](const toml::node* node) {
+            if (node == nullptr || place.line != 0) return;
+            place.line = static_cast<int>(node->source().begin.line);
+            place.column = static_cast<int>(node->source().begin.column);
+        };
+        if (const toml::node* list = tree_.get("axis"); list != nullptr && list->is_array())
+            for (const toml::node& axis : *list->as_array()) {
+                if (axis.as_table()->at_path("key").value_or(std::string{}) == key) look(axis.as_table()->get("values"));
+                look(axis.as_table()->at_path("coupled." + key).node());
+                if (const toml::node* values = axis.as_table()->get("value"); values != nullptr && values->is_array())
+                    for (const toml::node& value : *values->as_array())
+                        if (value.as_table()->at_path("label").value_or(std::string{}) == label_on(point, axis)) look(value.as_table()->at_path("set." + key).node());
+            }
+        look(tree_.at_path("set." + key).node());
+        return InputError(place, error.problem() + at(point), error.allowed(), error.suggestion());
+    }
+
+    // The label of the point's value on the axis that this node describes.
+    std::string label_on(const Point& point, const toml::node& axis) const {
+        const std::string name = axis.as_table()->at_path("name").value_or(std::string{});
+        for (std::size_t a = 0; a < axes_.size(); ++a)
+            if (axes_[a].name == name) return point.values[a].label;
+        return {};
+    }
+
+    toml::table tree_;
+    TableReader root_;
+    Study study_;
+    Base base_;
+    toml::table common_;
+    std::vector<std::uint64_t> seeds_;   // empty = the job's
+    std::vector<TestKind> tests_;        // empty = the job's
+    std::vector<Axis> axes_;
+};
+
+}  // namespace
+
+Study parse_study(const std::string& text, const std::filesystem::path& name) { return StudyReader(text, name).read(); }
+
+Study read_study(const std::filesystem::path& file) { return parse_study(read_toml_file(file, "study"), file); }
+
+}  // namespace feldspar

@@ -1,0 +1,62 @@
+#include "feldspar/study/run_files.hpp"
+
+#include <system_error>
+
+#include "feldspar/base/error.hpp"
+
+namespace feldspar {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path record_file = "run.json";
+
+void remove_directory(const fs::path& directory) {
+    std::error_code error;
+    fs::remove_all(directory, error);
+    if (error) throw OutputError("cannot remove what an earlier attempt left in '" + directory.string() + "': " + error.message());
+}
+
+}  // namespace
+
+TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path, Keep keep, const Provenance& provenance,
+                        const RunControl& control) {
+    TestResult result;
+    {
+        const auto specimen = packings.get(run, control.threads);
+        const Variant& variant = run.job.variants.front();
+        TestSpec test = run.test();
+        if (keep != Keep::all) test.snapshots = 0;
+        result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test}, control);
+    }
+    if (result.interrupted) return result;
+    if (!fs::exists(path / record_file)) remove_directory(path);
+    const RunDirectory directory = RunDirectory::create(path, run.job.name);
+    directory.write_text("job.toml", resolved_toml(run.job));
+    if (keep != Keep::numbers) write_history_csv(directory, result, provenance);
+    if (keep == Keep::all) write_vtu(directory, result, control.threads);
+    return result;
+}
+
+void finish_files(const Run& run, const TestResult& result, const fs::path& path, Keep keep, const Provenance& provenance) {
+    const RunDirectory directory = RunDirectory::open(path);
+    if (keep == Keep::all) {
+        const std::span<const TestResult> one(&result, 1);
+        const PropertySummary properties = summarise(one);
+        write_hdf5(directory, result, run.job, provenance);
+        write_summary(directory, run.job, one, properties, provenance, true);
+        write_report(directory, run.job, one, properties, provenance, true);
+    }
+    directory.write_text(record_file.string(), to_json(record_of(run, result, provenance)));
+}
+
+std::optional<RunRecord> finished_record(const fs::path& directory, const Run& run) {
+    std::error_code error;
+    if (!fs::exists(directory / record_file, error)) return std::nullopt;
+    RunRecord record = read_record(directory / record_file);
+    if (record.id != run.id) throw InputError({(directory / record_file).string(), 0, 0, "id"}, "is not the record of run " + run.id);
+    if (record.state != RunState::done) return std::nullopt;
+    return record;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,24 @@
+// A run and what it leaves in its directory. run.json is written last: a directory without it is not finished.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "feldspar/lab/run_test.hpp"
+#include "feldspar/study/packings.hpp"
+#include "feldspar/study/run_record.hpp"
+
+namespace feldspar {
+
+/// Makes the specimen, runs the test and writes job.toml and what `keep` asks for, but for what finish_files() writes. May run on any thread.
+/// What an earlier attempt left unfinished in the directory is replaced. Of an interrupted test nothing is left.
+TestResult run_to_files(const Run& run, Packings& packings, const std::filesystem::path& directory, Keep keep, const Provenance& provenance,
+                        const RunControl& control);
+
+/// Writes the rest, run.json at the end. On the main thread only: the HDF5 library is not made for several.
+void finish_files(const Run& run, const TestResult& result, const std::filesystem::path& directory, Keep keep, const Provenance& provenance);
+
+/// The record of a run that is done, from run.json; none if the directory is not that of a finished run.
+std::optional<RunRecord> finished_record(const std::filesystem::path& directory, const Run& run);
+
+}  // namespace feldspar

@@ -1,0 +1,122 @@
+// Running a study: every run once, failures recorded, interruptions taken up again.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "feldspar/study/execute.hpp"
+#include "feldspar/study/point_results.hpp"
+#include "feldspar/study/study_table.hpp"
+#include "small_study.hpp"
+
+namespace feldspar {
+namespace {
+
+class ExecuteStudy : public ::testing::Test {
+protected:
+    Study read(const std::string& text) const { return parse_study("job = \"job.toml\"\ntests = [\"direct-tension\"]\n" + text, folder_ / "study.toml"); }
+
+    Execution run(const Study& study, Ledger& ledger, int threads = 1) {
+        ExecuteControl control;
+        control.threads = threads;
+        control.keep = study.keep;
+        control.stop = &stop_;
+        control.provenance = collect_provenance("test", threads);
+        control.ended = [this](const Run& run, const RunRecord&) { ended_.push_back(run.id); };
+        return execute(study.runs, ledger, control);
+    }
+
+    StudyFolder folder_;
+    std::filesystem::path place_ = folder_ / "results";
+    std::atomic<bool> stop_{false};
+    std::vector<std::string> ended_;
+};
+
+constexpr const char* two_frictions = "[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.5]\n";
+
+TEST_F(ExecuteStudy, DoesEveryRunOnceAndLeavesItsFiles) {
+    const Study study = read(two_frictions);
+    Ledger ledger(place_, Ledger::Access::write);
+    const Execution first = run(study, ledger);
+    EXPECT_EQ(first.done, 4);
+    EXPECT_EQ(first.failed + first.left + first.found_done, 0);
+    for (const Run& one : study.runs) {
+        EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / "run.json"));
+        EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / "job.toml"));
+        EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / ("history-direct-tension-s" + std::to_string(one.seed()) + ".csv")));
+    }
+    const Execution second = run(study, ledger);
+    EXPECT_EQ(second.done, 0);
+    EXPECT_EQ(second.found_done, 4);
+
+    const auto points = point_results(study, ledger);
+    ASSERT_EQ(points.size(), 2u);
+    EXPECT_EQ(points[0].missing, 0);
+    EXPECT_EQ(points[0].properties.values.at("DTS_Pa").seeds, (std::vector<std::uint64_t>{1, 2}));
+    EXPECT_NE(points_csv(study, points).find("DTS_MPa,DTS_MPa_low"), std::string::npos);
+    EXPECT_NE(runs_csv(study, ledger).find(study.runs[0].id), std::string::npos);
+}
+
+TEST_F(ExecuteStudy, GivesTheSameBitsSideBySide) {
+    const Study study = read(two_frictions);
+    Ledger alone(folder_ / "alone", Ledger::Access::write), together(folder_ / "together", Ledger::Access::write);
+    (void)run(study, alone, 1);
+    (void)run(study, together, 3);
+    for (const Run& one : study.runs)
+        EXPECT_EQ(alone.find(one.id)->numbers.at("strength_Pa"), together.find(one.id)->numbers.at("strength_Pa"));
+}
+
+TEST_F(ExecuteStudy, PointsThatAreTheSameShareTheirRuns) {
+    const Study study = read("[[axis]]\nname = \"mu\"\n[[axis.value]]\nlabel = \"a\"\n[[axis.value]]\nlabel = \"b\"\nset = { material.contact.mu = 0.40 }\n");
+    Ledger ledger(place_, Ledger::Access::write);
+    EXPECT_EQ(run(study, ledger).done, 2);   // Table 7 has mu = 0.4
+    EXPECT_EQ(point_results(study, ledger)[1].missing, 0);
+}
+
+TEST_F(ExecuteStudy, AFailureIsRecordedAndDoesNotStopTheOthers) {
+    const Study study = read("seeds = [1]\n[[axis]]\nname = \"mass\"\nkey = \"numerics.mass_factor\"\nvalues = [0.001, 1]\n");
+    Ledger ledger(place_, Ledger::Access::write);
+    const Execution execution = run(study, ledger);
+    EXPECT_EQ(execution.failed, 1);
+    EXPECT_EQ(execution.done, 1);
+    const auto record = ledger.find(study.runs[0].id);
+    ASSERT_TRUE(record);
+    EXPECT_EQ(record->state, RunState::failed);
+    EXPECT_NE(record->reason.find("mass_factor"), std::string::npos) << record->reason;
+    EXPECT_EQ(point_results(study, ledger)[0].failed.size(), 1u);
+    EXPECT_EQ(run(study, ledger).failed, 1);   // tried again
+}
+
+TEST_F(ExecuteStudy, AnInterruptedStudyGoesOn) {
+    const Study study = read(two_frictions);
+    Ledger ledger(place_, Ledger::Access::write);
+    ExecuteControl control;
+    control.stop = &stop_;
+    control.keep = Keep::numbers;
+    control.ended = [&](const Run&, const RunRecord&) { stop_ = true; };
+    const Execution first = execute(study.runs, ledger, control);
+    EXPECT_EQ(first.done, 1);
+    EXPECT_EQ(first.left, 3);
+    stop_ = false;
+    const Execution second = run(study, ledger);
+    EXPECT_EQ(second.found_done, 1);
+    EXPECT_EQ(second.done, 3);
+    EXPECT_EQ(second.left, 0);
+}
+
+TEST_F(ExecuteStudy, ARunThatEndedUnrecordedIsFoundAndHalfOfOneIsDoneAgain) {
+    const Study study = read("seeds = [1]\n" + std::string(two_frictions));
+    Ledger made(place_, Ledger::Access::write);
+    (void)run(study, made);
+    std::filesystem::remove(place_ / "ledger.sqlite");
+    std::filesystem::remove(place_ / "ledger.sqlite-wal");
+    std::filesystem::remove(place_ / "ledger.sqlite-shm");
+    std::filesystem::remove(made.run_directory(study.runs[1].id) / "run.json");
+    Ledger ledger(place_, Ledger::Access::write);
+    const Execution again = run(study, ledger);
+    EXPECT_EQ(again.found_done, 1);
+    EXPECT_EQ(again.done, 1);
+    EXPECT_EQ(ledger.find(study.runs[0].id)->state, RunState::done);
+}
+
+}  // namespace
+}  // namespace feldspar

@@ -1,0 +1,152 @@
+// The ledger: who may take a run, what is kept of it, and what it survives.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/study/ledger.hpp"
+#include "small_study.hpp"
+
+namespace feldspar {
+namespace {
+
+class LedgerOfAStudy : public ::testing::Test {
+protected:
+    StudyFolder folder_;
+    Study study_ = parse_study("job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.5]\n", folder_ / "study.toml");
+    std::filesystem::path place_ = folder_ / "results";
+
+    RunRecord done(const Run& run, double strength_Pa) const {
+        TestResult result;
+        result.properties.peak_stress_Pa = strength_Pa;
+        result.properties.nu = std::numeric_limits<double>::quiet_NaN();
+        result.properties.peak_reached = true;
+        result.evidence.grade = 'B';
+        result.evidence.verdict = "quoted 'verdict', with ∑ in it";
+        return record_of(run, result, collect_provenance("test", 1));
+    }
+
+    SQLite::Database raw() const { return SQLite::Database((place_ / "ledger.sqlite").string(), SQLite::OPEN_READWRITE); }
+};
+
+TEST_F(LedgerOfAStudy, KeepsEveryBitOfARecord) {
+    const RunRecord record = done(study_.runs[0], 0.1 + 0.2);
+    {
+        Ledger ledger(place_, Ledger::Access::write);
+        ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+        ledger.record(record);
+    }
+    const Ledger again(place_, Ledger::Access::read);
+    const auto found = again.find(study_.runs[0].id);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->state, RunState::done);
+    EXPECT_EQ(found->numbers.at("strength_Pa"), 0.1 + 0.2);
+    EXPECT_TRUE(std::isnan(found->numbers.at("nu")));
+    EXPECT_EQ(found->texts.at("verdict"), record.texts.at("verdict"));
+    EXPECT_EQ(found->job, resolved_toml(study_.runs[0].job));
+    EXPECT_FALSE(again.find(study_.runs[1].id));
+
+    const TestResult result = result_of(*found);
+    EXPECT_EQ(result.properties.peak_stress_Pa, 0.1 + 0.2);
+    EXPECT_TRUE(result.properties.peak_reached);
+    EXPECT_EQ(result.evidence.grade, 'B');
+    EXPECT_EQ(result.seed, 1u);
+}
+
+TEST_F(LedgerOfAStudy, ARecordIsTheSameAsAFile) {
+    const RunRecord record = done(study_.runs[0], 1.0 / 3.0);
+    folder_.write("run.json", to_json(record));
+    const RunRecord again = read_record(folder_ / "run.json");
+    EXPECT_EQ(to_json(again), to_json(record));
+    EXPECT_EQ(again.numbers.at("strength_Pa"), 1.0 / 3.0);
+    folder_.write("half.json", to_json(record).substr(0, 100));
+    EXPECT_THROW((void)read_record(folder_ / "half.json"), InputError);
+}
+
+TEST_F(LedgerOfAStudy, ARunIsTakenOnceAndNeverReplaced) {
+    Ledger ledger(place_, Ledger::Access::write);
+    Ledger other(place_, Ledger::Access::write);   // of the same process: alive
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+    EXPECT_EQ(other.claim(study_.runs[0]), Ledger::Claim::others);
+    ledger.release(study_.runs[0].id);
+    EXPECT_EQ(other.claim(study_.runs[0]), Ledger::Claim::ours);
+    other.record(done(study_.runs[0], 1e6));
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::done);
+    ledger.record(done(study_.runs[0], 2e6));
+    ledger.record(failed_record(study_.runs[0], "late", {}));
+    EXPECT_EQ(ledger.find(study_.runs[0].id)->numbers.at("strength_Pa"), 1e6);
+    ledger.release(study_.runs[0].id);
+    EXPECT_TRUE(ledger.find(study_.runs[0].id));
+}
+
+TEST_F(LedgerOfAStudy, AFailedRunHasAReasonAndMayBeTakenAgain) {
+    Ledger ledger(place_, Ledger::Access::write);
+    ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+    ledger.record(failed_record(study_.runs[0], "a force is not a number", {}));
+    EXPECT_EQ(ledger.find(study_.runs[0].id)->reason, "a force is not a number");
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+    ledger.record(done(study_.runs[0], 3e6));
+    EXPECT_EQ(ledger.find(study_.runs[0].id)->reason, "");
+}
+
+TEST_F(LedgerOfAStudy, WhatADeadProcessHadIsFree) {
+    { const Ledger made(place_, Ledger::Access::write); }
+    const pid_t child = fork();
+    if (child == 0) {
+        Ledger ledger(place_, Ledger::Access::write);
+        _exit(ledger.claim(study_.runs[0]) == Ledger::Claim::ours ? 0 : 1);   // without a word
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_EQ(status, 0);
+    Ledger ledger(place_, Ledger::Access::write);
+    EXPECT_EQ(ledger.find(study_.runs[0].id)->state, RunState::running);
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+}
+
+TEST_F(LedgerOfAStudy, WhatASilentMachineHadIsFreeAfterAWhile) {
+    Ledger ledger(place_, Ledger::Access::write);
+    ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+    raw().exec("UPDATE run SET holder = 'elsewhere 1 2'");
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);
+    raw().exec("UPDATE run SET heard = heard - 3600");
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+}
+
+TEST_F(LedgerOfAStudy, SaysWhichRunsAStudyConsistsOf) {
+    Ledger ledger(place_, Ledger::Access::write);
+    ledger.enrol(study_);
+    ledger.enrol(study_);
+    EXPECT_EQ(raw().execAndGet("SELECT count(*) FROM member WHERE study = 'study'").getInt(), 8);
+    EXPECT_EQ(raw().execAndGet("SELECT count(*) FROM member WHERE axis = 'mu' AND number = 0.5").getInt(), 4);
+}
+
+TEST_F(LedgerOfAStudy, LearnsColumnsThatAnEarlierVersionDidNotKnow) {
+    {
+        Ledger ledger(place_, Ledger::Access::write);
+        (void)ledger.claim(study_.runs[0]);
+        ledger.record(done(study_.runs[0], 4e6));
+        raw().exec("ALTER TABLE run DROP COLUMN energy_residual");
+    }
+    Ledger ledger(place_, Ledger::Access::write);
+    EXPECT_EQ(ledger.find(study_.runs[0].id)->numbers.at("strength_Pa"), 4e6);
+    EXPECT_TRUE(std::isnan(ledger.find(study_.runs[0].id)->numbers.at("energy_residual")));
+}
+
+TEST_F(LedgerOfAStudy, RefusesWhatItCannotRead) {
+    EXPECT_THROW(Ledger(place_, Ledger::Access::read), InputError);   // nothing there
+    std::filesystem::create_directories(place_);
+    folder_.write("results/ledger.sqlite", std::string(4096, 'x'));
+    EXPECT_THROW(Ledger(place_, Ledger::Access::write), InputError);
+    std::filesystem::remove(place_ / "ledger.sqlite");
+    { const Ledger made(place_, Ledger::Access::write); }
+    raw().exec("PRAGMA user_version = 99");
+    EXPECT_THROW(Ledger(place_, Ledger::Access::read), InputError);
+}
+
+}  // namespace
+}  // namespace feldspar

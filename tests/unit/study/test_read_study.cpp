@@ -1,0 +1,233 @@
+// Study files: which points and runs they make, and what is said of mistakes in them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/study/study.hpp"
+#include "small_study.hpp"
+
+namespace feldspar {
+namespace {
+
+class ReadStudy : public ::testing::Test {
+protected:
+    Study read(const std::string& text) const { return parse_study("job = \"job.toml\"\n" + text, folder_ / "study.toml"); }
+
+    // What is said of a mistake.
+    InputError mistake(const std::string& text) const {
+        try {
+            (void)read(text);
+        } catch (const InputError& error) {
+            return error;
+        }
+        ADD_FAILURE() << "no error for\n" << text;
+        return InputError({}, "");
+    }
+
+    static const ContactMaterial& contact(const Study& study, std::size_t point) { return study.points[point].job.variants.front().contact; }
+
+    StudyFolder folder_;
+};
+
+TEST_F(ReadStudy, WithoutAxesIsTheJobItself) {
+    const Study study = read("");
+    EXPECT_EQ(study.name, "study");
+    EXPECT_EQ(study.results, std::filesystem::path("results/study"));
+    ASSERT_EQ(study.points.size(), 1u);
+    ASSERT_EQ(study.runs.size(), 4u);   // packing by packing
+    EXPECT_EQ(study.runs[0].seed(), 1u);
+    EXPECT_EQ(study.runs[0].test().kind, TestKind::uniaxial_compression);
+    EXPECT_EQ(study.runs[1].test().kind, TestKind::direct_tension);
+    EXPECT_EQ(study.runs[2].seed(), 2u);
+}
+
+TEST_F(ReadStudy, AxesMakeAllCombinationsTheLastFirst) {
+    const Study study = read(R"(
+seeds = [7]
+tests = ["direct-tension"]
+[[axis]]
+name = "mu"
+key = "material.contact.mu"
+values = [0.2, 0.5]
+[[axis]]
+name = "Gfn"
+key = "material.contact.Gfn"
+values = ["20 N/m", "40 N/m", "80 J/m2"]
+coupled = { material.contact.Gfs = 31.5 }
+)");
+    ASSERT_EQ(study.points.size(), 6u);
+    EXPECT_EQ(study.runs.size(), 6u);
+    EXPECT_EQ(study.points[1].values[0].label, "0.2");
+    EXPECT_EQ(study.points[1].values[1].label, "40 N/m");
+    EXPECT_DOUBLE_EQ(study.points[1].values[1].number, 40.0);
+    EXPECT_DOUBLE_EQ(contact(study, 1).mu, 0.2);
+    EXPECT_DOUBLE_EQ(contact(study, 1).Gfs_J_m2, 31.5 * 40.0);
+    EXPECT_DOUBLE_EQ(contact(study, 5).mu, 0.5);
+    EXPECT_DOUBLE_EQ(contact(study, 5).Gfs_J_m2, 31.5 * 80.0);
+}
+
+TEST_F(ReadStudy, MultiplesFollowTheirKeyPresetsAndOtherAxesIncluded) {
+    const Study study = read(R"(
+[[axis]]
+name = "tau/sigma_nt"
+key = "material.contact.tau"
+times = "material.contact.sigma_nt"
+values = [2, 3]
+[[axis]]
+name = "Kn factor"
+key = "material.contact.Kn"
+times = "material.contact.Kn"
+values = [0.5]
+[[axis]]
+name = "rock"
+[[axis.value]]
+label = "table 7"
+[[axis.value]]
+label = "rigid, table 2"
+set = { model.kind = "rigid", material.elastic_preset = "augig-rigid", material.strength_preset = "augig-table2-bilinear" }
+)");
+    ASSERT_EQ(study.points.size(), 4u);
+    EXPECT_DOUBLE_EQ(contact(study, 0).tau_Pa, 17e6);
+    EXPECT_DOUBLE_EQ(contact(study, 1).tau_Pa, 23e6);
+    EXPECT_DOUBLE_EQ(contact(study, 2).tau_Pa, 25.5e6);
+    EXPECT_DOUBLE_EQ(contact(study, 0).Kn_Pa_m, 0.5 * 18e13);
+    EXPECT_DOUBLE_EQ(contact(study, 1).Kn_Pa_m, 0.5 * 1.08e13);
+    EXPECT_EQ(study.points[1].job.variants.front().model.kind, GrainKind::rigid);
+}
+
+TEST_F(ReadStudy, PiecesReachSpecimenNumericsAndTests) {
+    const Study study = read(R"(
+[set]
+specimen.width = "15 mm"
+numerics.accuracy = "2 %"
+test.stop_fraction = 0.9
+[[axis]]
+name = "grains"
+[[axis.value]]
+label = "fine"
+set = { specimen.grains.diameter = { distribution = "uniform", minimum = "1 mm", maximum = "2 mm" } }
+[[axis.value]]
+label = "sieve"
+set = { specimen.grains.diameter = { distribution = "sieve", curve = [["1 mm", 0.0], ["2 mm", 1.0]] } }
+)");
+    const Job& job = study.points[0].job;
+    EXPECT_DOUBLE_EQ(job.specimen.outline.width_m, 0.015);
+    EXPECT_DOUBLE_EQ(job.specimen.grain_sizes.maximum_m, 0.002);
+    EXPECT_DOUBLE_EQ(job.variants.front().numerics.accuracy, 0.02);
+    EXPECT_DOUBLE_EQ(job.tests[1].stop_fraction, 0.9);
+    EXPECT_EQ(study.points[1].job.specimen.grain_sizes.kind, GrainSizeKind::sieve);
+}
+
+TEST_F(ReadStudy, ValuesMayHaveTheirOwnSeedsAndTests) {
+    const Study study = read(R"(
+seeds = [1, 2, 3]
+[[axis]]
+name = "grains"
+[[axis.value]]
+label = "flexible"
+[[axis.value]]
+label = "costly"
+seeds = [2]
+tests = ["direct-tension"]
+set = { numerics.accuracy = "1 %" }
+)");
+    EXPECT_EQ(study.runs.size(), 7u);
+    std::size_t costly = 0;
+    for (const Run& run : study.runs) {
+        if (run.point != 1) continue;
+        ++costly;
+        EXPECT_EQ(run.seed(), 2u);
+        EXPECT_EQ(run.test().kind, TestKind::direct_tension);
+    }
+    EXPECT_EQ(costly, 1u);
+}
+
+TEST_F(ReadStudy, VariantsOfTheJobAreAnAxis) {
+    folder_.write("variants.toml", small_job + R"(
+[[variant]]
+name = "soft"
+[variant.material.contact]
+mu = 0.1
+[[variant]]
+name = "rigid"
+tests = ["direct-tension"]
+seeds = [1]
+[variant.model]
+kind = "rigid"
+[variant.material]
+elastic_preset = "augig-rigid"
+)");
+    const Study study = parse_study("job = \"variants.toml\"\n", folder_ / "study.toml");
+    ASSERT_EQ(study.axes, std::vector<std::string>{"variant"});
+    ASSERT_EQ(study.points.size(), 2u);
+    EXPECT_DOUBLE_EQ(contact(study, 0).mu, 0.1);
+    EXPECT_EQ(study.runs.size(), 5u);
+    // and the same runs as those of the job without a study
+    std::set<std::string> here, there;
+    for (const Run& run : study.runs) here.insert(run.id);
+    for (const Run& run : study_of(read_job(folder_ / "variants.toml"), "x", "y").runs) there.insert(run.id);
+    EXPECT_EQ(here, there);
+}
+
+TEST_F(ReadStudy, ARunIsKnownByWhatChangesItsResult) {
+    const std::string id = read("seeds = [1]\n").runs.front().id;
+    EXPECT_EQ(id.size(), 32u);
+    const auto with = [&](const std::string& text) { return read("seeds = [1]\n" + text).runs.front().id; };
+    EXPECT_EQ(with("name = \"other\"\nkeep = \"all\"\n"), id);
+    EXPECT_EQ(with("[set]\ntest.snapshots = 2\n"), id);
+    EXPECT_EQ(with("[set]\nmaterial.contact.sigma_nt = \"8500 kPa\"\n"), id);   // what the preset says, in other words
+    EXPECT_EQ(with("[set]\nmodel.plane = \"stress\"\n"), id);                   // a default
+    EXPECT_NE(with("[set]\nmaterial.contact.mu = 0.41\n"), id);
+    EXPECT_NE(with("[set]\nnumerics.accuracy = \"4 %\"\n"), id);
+    EXPECT_NE(with("[set]\nspecimen.width = \"13 mm\"\n"), id);
+    EXPECT_NE(read("seeds = [2]\n").runs.front().id, id);
+    EXPECT_NE(read("seeds = [1]\n").runs.back().id, id);   // another test
+}
+
+TEST_F(ReadStudy, TheResolvedJobOfARunMakesTheSameRun) {
+    const Study study = read("seeds = [1]\n[set]\nmodel.kind = \"rigid\"\nmaterial.elastic_preset = \"augig-rigid\"\n");
+    for (const Run& run : study.runs) {
+        const Job again = parse_job(resolved_toml(run.job), "again.toml");
+        EXPECT_EQ(make_run(again, again.variants.front(), again.tests.front(), again.seeds.front()).id, run.id);
+    }
+}
+
+TEST_F(ReadStudy, MistakesAreSaidWithPlaceAndSuggestion) {
+    const InputError unknown = mistake("[[axis]]\nname = \"mu\"\nkey = \"material.contact.muu\"\nvalues = [1, 2]\n");
+    EXPECT_EQ(unknown.place().key, "material.contact.muu");
+    EXPECT_EQ(unknown.place().line, 5);
+    EXPECT_NE(unknown.suggestion().find("mu"), std::string::npos);
+    EXPECT_NE(unknown.problem().find("with mu = 1"), std::string::npos);
+
+    const InputError bad = mistake("[set]\nmaterial.contact.tau = \"25 MPa/m\"\n");
+    EXPECT_EQ(bad.place().line, 3);
+    EXPECT_NE(bad.allowed().find("stress"), std::string::npos);
+
+    EXPECT_NE(mistake("axes = 1\n").suggestion().find("axis"), std::string::npos);
+    EXPECT_NE(mistake("[set]\nlaboratory.UCS = \"1 MPa\"\n").allowed().find("material"), std::string::npos);
+    EXPECT_EQ(mistake("tests = [\"brazilian\"]\n").place().line, 2);
+    EXPECT_EQ(mistake("seeds = [1, 1]\n").place().line, 2);
+    EXPECT_EQ(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\nvalues = []\n").place().key, "axis[1].values");
+    EXPECT_NE(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\nvalues = [1, 1]\n").problem().find("twice"), std::string::npos);
+    EXPECT_NE(mistake("[[axis]]\nname = \"a\"\nkey = \"mu\"\nvalues = [1]\n").allowed().find("dotted"), std::string::npos);
+    EXPECT_EQ(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\ntimes = \"material.contact.nothing\"\nvalues = [1]\n").place().key,
+              "material.contact.nothing");
+    EXPECT_NE(mistake("results = \"../away\"\n").allowed().find("letters"), std::string::npos);
+    EXPECT_NE(mistake("[[axis]]\nname = \"a\"\n[[axis.value]]\nlabel = \"x\"\nseeds = [9]\n").problem().find("nothing is left to run"), std::string::npos);
+}
+
+TEST(ReadStudyFile, WithoutItsJobSaysWhereItLooked) {
+    const StudyFolder folder;
+    try {
+        (void)parse_study("job = \"nowhere.toml\"\n", folder / "study.toml");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(error.problem().find((folder / "nowhere.toml").string()), std::string::npos);
+        EXPECT_EQ(error.place().line, 1);
+    }
+}
+
+}  // namespace
+}  // namespace feldspar
