@@ -108,9 +108,11 @@ void Progress::making(const std::string& what, const SpecimenProgress& progress)
 }
 
 void Progress::report(int number, int count, const std::string& label, const TestProgress& progress) {
-    Running& test = running_[number];
     const auto now = Clock::now();
-    const bool news = test.stage != progress.stage;
+    const auto [found, fresh] = running_.try_emplace(number);
+    Running& test = found->second;
+    if (fresh && !log_stages_) test.last_plain_line = now;
+    const bool news = log_stages_ && test.stage != progress.stage;
     test.stage = progress.stage;
     if (terminal_) {
         test.line = short_line(number, count, label, progress);

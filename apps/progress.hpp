@@ -27,6 +27,9 @@ public:
     /// A specimen tells how far it is.
     void making(const std::string& what, const SpecimenProgress& progress);
 
+    /// Of many short tests: a log says nothing of one until it has run for ten seconds.
+    void keep_log_short() { log_stages_ = false; }
+
     /// Test `number` of `count` reports; its `label` is "biaxial at 4 MPa, seed 1".
     void report(int number, int count, const std::string& label, const TestProgress& progress);
 
@@ -49,6 +52,7 @@ private:
     void rewrite(const std::vector<std::string>& lines);
 
     bool terminal_ = false;
+    bool log_stages_ = true;
     std::size_t lines_shown_ = 0;
     std::map<int, Running> running_;  // by the test's number
     Clock::time_point last_rewrite_;

@@ -39,6 +39,7 @@ public:
             if (numbers_[run.id] == 0) numbers_[run.id] = ++number;
         for (const RunRecord& record : ledger.find(ids)) ended_ += record.state == RunState::done;
         first_ = ended_;
+        progress_.keep_log_short();
     }
 
     int runs() const { return static_cast<int>(numbers_.size()); }
@@ -120,16 +121,17 @@ ExitCode study_command(const StudyOptions& options) {
 
 ExitCode study_status_command(const StudyOptions& options) {
     const Study study = study_with_options(options);
-    const Ledger ledger(study.results, Ledger::Access::read);
     std::map<RunState, std::vector<RunRecord>> by_state;
     std::vector<std::string> ids;
     std::map<std::string, const Run*> runs;
     for (const Run& run : study.runs)
         if (runs.emplace(run.id, &run).second) ids.push_back(run.id);
-    for (RunRecord& record : ledger.find(ids)) by_state[record.state].push_back(std::move(record));
+    if (std::filesystem::exists(study.results / "ledger.sqlite"))
+        for (RunRecord& record : Ledger(study.results, Ledger::Access::read).find(ids)) by_state[record.state].push_back(std::move(record));
     const auto count = [&](RunState state) { return by_state[state].size(); };
-    fmt::print("{}: {} runs, {} done, {} running, {} failed, {} to do\n", study.name, ids.size(), count(RunState::done), count(RunState::running),
-               count(RunState::failed), ids.size() - count(RunState::done) - count(RunState::running) - count(RunState::failed));
+    fmt::print("{}: {} points, {} runs: {} done, {} running, {} failed, {} to do\n", study.name, study.points.size(), ids.size(),
+               count(RunState::done), count(RunState::running), count(RunState::failed),
+               ids.size() - count(RunState::done) - count(RunState::running) - count(RunState::failed));
     double spent_s = 0.0;
     for (const RunRecord& record : by_state[RunState::done]) spent_s += record.numbers.at("wall_s");
     fmt::print("Time of the runs that are done: {}\n", duration_text(spent_s));

@@ -1,0 +1,118 @@
+// Studies run by the program: killed, interrupted, and two at once on one ledger.
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <regex>
+
+#include "program.hpp"
+
+namespace feldspar::testing_program {
+namespace {
+
+const std::string two_axes = R"(job = "job.toml"
+seeds = [1, 2, 3, 4]
+[[axis]]
+name = "mu"
+key = "material.contact.mu"
+values = [0.2, 0.3, 0.4]
+[[axis]]
+name = "sigma_nt"
+key = "material.contact.sigma_nt"
+values = ["8 MPa", "9 MPa"]
+)";
+constexpr int runs_of_two_axes = 24;
+
+void write_study(const Workplace& place) {
+    write_text(place / "job.toml", small_job());
+    write_text(place / "study.toml", two_axes);
+}
+
+/// The numbers of every run that is done, but for those that tell of time.
+std::map<std::string, std::string> finished(const Workplace& place) {
+    std::map<std::string, std::string> runs;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(place / "results/study/runs", error)) {
+        if (!fs::exists(entry.path() / "run.json")) continue;
+        nlohmann::json record = nlohmann::json::parse(read_text(entry.path() / "run.json"));
+        for (const char* time : {"wall_s", "ms_per_step", "threads"}) record["numbers"].erase(time);
+        runs[entry.path().filename()] = record["numbers"].dump();
+    }
+    return runs;
+}
+
+/// What the program counted: "N runs done now".
+int done_now(const Outcome& outcome) {
+    std::smatch match;
+    return std::regex_search(outcome.out, match, std::regex("(\\d+) runs done now")) ? std::stoi(match[1]) : -1;
+}
+
+TEST(Studies, KilledInTheMiddleOneFinishesWithExactlyTheMissingRuns) {
+    const Workplace killed, whole;
+    write_study(killed);
+    write_study(whole);
+    Program program(killed.path(), {"study", "study.toml", "--threads", "2"});
+    ASSERT_TRUE(program.wait_until([&] { return finished(killed).size() >= 5; })) << program.err_so_far();
+    program.send(SIGKILL);
+    (void)program.finish();
+    const std::size_t before = finished(killed).size();
+    ASSERT_LT(before, static_cast<std::size_t>(runs_of_two_axes));
+
+    const Outcome again = run_program(killed.path(), {"study", "study.toml", "--threads", "2"});
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(done_now(again), runs_of_two_axes - static_cast<int>(before)) << again.out;
+    EXPECT_EQ(run_program(whole.path(), {"study", "study.toml", "--threads", "1"}).code, 0);
+    EXPECT_EQ(finished(killed), finished(whole));   // to the last bit
+    EXPECT_EQ(finished(whole).size(), static_cast<std::size_t>(runs_of_two_axes));
+    expect_no_half_files(killed / "results");
+}
+
+TEST(Studies, TwoAtOnceShareALedger) {
+    const Workplace place;
+    write_study(place);
+    Program first(place.path(), {"study", "study.toml", "--threads", "1"}), second(place.path(), {"study", "study.toml", "--threads", "1"});
+    const Outcome one = first.finish(), other = second.finish();
+    EXPECT_EQ(one.code, 0) << one.err;
+    EXPECT_EQ(other.code, 0) << other.err;
+    EXPECT_EQ(done_now(one) + done_now(other), runs_of_two_axes) << one.out << other.out;   // none twice
+    const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
+    EXPECT_NE(status.out.find("24 runs: 24 done, 0 running, 0 failed, 0 to do"), std::string::npos) << status.out;
+}
+
+TEST(Studies, CtrlCLeavesTheRestToTheNextTime) {
+    const Workplace place;
+    write_study(place);
+    Program program(place.path(), {"study", "study.toml", "--threads", "1"});
+    ASSERT_TRUE(program.wait_until([&] { return !finished(place).empty(); })) << program.err_so_far();
+    program.send(SIGINT);
+    const Outcome outcome = program.finish();
+    EXPECT_EQ(outcome.code, 130) << outcome.err;
+    EXPECT_NE(outcome.err.find("the same command goes on"), std::string::npos) << outcome.err;
+    const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
+    EXPECT_NE(status.out.find(" 0 running, 0 failed"), std::string::npos) << status.out;
+}
+
+TEST(Studies, TablesAndStatusWithoutALedger) {
+    const Workplace place;
+    write_study(place);
+    const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
+    EXPECT_EQ(status.code, 0);
+    EXPECT_NE(status.out.find("24 to do"), std::string::npos) << status.out;
+    const Outcome table = run_program(place.path(), {"study", "table", "study.toml"});
+    EXPECT_EQ(table.code, 2);
+    EXPECT_NE(table.err.find("nothing of the study has been run"), std::string::npos) << table.err;
+    EXPECT_FALSE(fs::exists(place / "results"));
+}
+
+TEST(Studies, AMistakeLeavesNoFile) {
+    const Workplace place;
+    write_study(place);
+    write_text(place / "study.toml", replaced(two_axes, "sigma_nt\"\nvalues", "sigma_tn\"\nvalues"));
+    const Outcome outcome = run_program(place.path(), {"study", "study.toml"});
+    EXPECT_EQ(outcome.code, 2);
+    EXPECT_NE(outcome.err.find("study.toml:10"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("did you mean"), std::string::npos) << outcome.err;
+    EXPECT_FALSE(fs::exists(place / "results"));
+}
+
+}  // namespace
+}  // namespace feldspar::testing_program
