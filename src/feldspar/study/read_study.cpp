@@ -1,35 +1,22 @@
-// A study file: the job, the axes, and all points that they make (docs/study.md). A point's job is the base job with pieces laid over it:
-// [specimen] and [[test]] are changed in place, [model], [material] and [numerics] are given as a variant, so that what goes before
-// what is decided in one place (job/read_physics.cpp).
+// A study file: the job, the axes, and all points that they make (docs/study.md). A point's job is the base job with pieces laid over it.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <optional>
 #include <set>
 #include <sstream>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/study/base_job.hpp"
 #include "feldspar/study/study.hpp"
 
 namespace feldspar {
 namespace {
 
 constexpr std::size_t most_points = 100'000;
-
-const std::initializer_list<std::string_view> pieces{"specimen", "model", "material", "numerics", "test"};
-
-using Path = std::vector<std::string>;
-
-Path split(const std::string& dotted) {
-    Path path;
-    std::stringstream stream(dotted);
-    for (std::string key; std::getline(stream, key, '.');) path.push_back(key);
-    return path;
-}
 
 // A value of an axis: what it is called, the piece of a job that it stands for, and which runs it is for.
 struct Choice {
@@ -47,23 +34,6 @@ struct Axis {
     std::vector<Choice> choices;
 };
 
-// The number that a value begins with, and what follows it.
-struct Measure {
-    double number = std::numeric_limits<double>::quiet_NaN();
-    std::string unit;
-};
-
-Measure measure_of(const toml::node& node) {
-    if (node.is_number()) return {*node.value<double>(), {}};
-    Measure measure;
-    if (!node.is_string()) return measure;
-    const std::string& text = node.as_string()->get();
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error == std::errc{}) measure = {number, std::string(end, text.data() + text.size())};
-    return measure;
-}
-
 std::string label_of(const toml::node& node) {
     if (node.is_string()) return node.as_string()->get();
     std::stringstream text;
@@ -74,68 +44,20 @@ std::string label_of(const toml::node& node) {
     return text.str();
 }
 
-void insert(toml::table& table, const Path& path, std::size_t depth, const toml::node& value) {
-    if (depth + 1 == path.size()) {
-        table.insert_or_assign(path[depth], value);
-        return;
-    }
-    toml::node* inside = table.get(path[depth]);
-    if (inside == nullptr || !inside->is_table()) {
-        table.insert_or_assign(path[depth], toml::table{});
-        inside = table.get(path[depth]);
-    }
-    insert(*inside->as_table(), path, depth + 1, value);
-}
-
-void insert(toml::table& table, const std::string& dotted, const toml::node& value) { insert(table, split(dotted), 0, value); }
-
-// Lays a table over another, key by key. A grain size distribution replaces another as a whole.
-void lay_over(toml::table& under, const toml::table& over) {
-    for (const auto& [key, value] : over) {
-        toml::node* there = under.get(key.str());
-        const bool both = value.is_table() && there != nullptr && there->is_table();
-        if (both && !value.as_table()->contains("distribution")) lay_over(*there->as_table(), *value.as_table());
-        else under.insert_or_assign(key.str(), value);
-    }
-}
-
-// The base job as a tree, and one of its variants, if it has any.
-struct Base {
-    toml::table tree;
-    std::string text;
-    std::filesystem::path file;
-    Job job;
-};
-
-Base read_base(const TableReader& root, const std::filesystem::path& study) {
-    Base base;
-    base.file = root.text("job");
-    if (base.file.is_relative()) base.file = study.parent_path() / base.file;
-    try {
-        base.text = read_toml_file(base.file, "job");
-    } catch (const InputError& error) {
-        root.fail("job", "'" + base.file.string() + "' " + error.problem(), "a job file; a relative path counts from the study's folder");
-    }
-    base.tree = parse_toml(base.text, base.file.string());
-    base.job = read_tree(base.tree, base.text, base.file.string());
-    return base;
-}
-
 class StudyReader {
 public:
     StudyReader(const std::string& text, const std::filesystem::path& file)
         : tree_(parse_toml(text, file.string())),
-          root_(tree_, "", file.string(), {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}) {
-        root_.require({"job"});
+          root_(required(TableReader(tree_, "", file.string(), {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}))),
+          base_(root_, file) {
         study_.file = file;
         study_.text = text;
-        base_ = read_base(root_, file);
     }
 
     Study read() {
         read_names();
         read_common();
-        if (base_.job.has_variants()) axes_.push_back(variant_axis());
+        if (base_.job().has_variants()) axes_.push_back(variant_axis());
         if (root_.has("axis")) read_axes();
         for (const Axis& axis : axes_) study_.axes.push_back(axis.name);
         make_points();
@@ -144,6 +66,11 @@ public:
     }
 
 private:
+    static TableReader required(const TableReader& root) {
+        root.require({"job"});
+        return root;
+    }
+
     void read_names() {
         study_.name = read_name("name", variant_stem(study_.file.stem().string()));
         study_.title = root_.text("title", study_.name);
@@ -168,7 +95,7 @@ private:
     }
 
     void check_kind(const TableReader& table, TestKind kind) const {
-        const auto& tests = base_.job.tests;
+        const auto& tests = base_.job().tests;
         if (std::none_of(tests.begin(), tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
             table.fail("tests", fmt::format("the job has no test of kind '{}'", name(kind)), "kinds that stand in a [[test]] of the job");
     }
@@ -177,16 +104,16 @@ private:
     toml::table read_piece(const TableReader& table, std::string_view key) const {
         const toml::node& node = *table.find(key);
         if (!node.is_table()) table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }");
-        (void)table.table(key, pieces);   // refuses other names
+        (void)table.table(key, job_pieces);   // refuses other names
         return *node.as_table();
     }
 
     Axis variant_axis() const {
         Axis axis;
         axis.name = "variant";
-        const toml::array& list = *base_.tree.get("variant")->as_array();
-        for (std::size_t v = 0; v < base_.job.variants.size(); ++v) {
-            const Variant& variant = base_.job.variants[v];
+        const toml::array& list = *base_.tree().get("variant")->as_array();
+        for (std::size_t v = 0; v < base_.job().variants.size(); ++v) {
+            const Variant& variant = base_.job().variants[v];
             Choice choice;
             choice.value = {variant.name, std::numeric_limits<double>::quiet_NaN()};
             for (const char* piece : {"model", "material", "numerics"})
@@ -224,8 +151,8 @@ private:
         table.require({"name", "key", "values"});
         Axis axis;
         axis.name = table.text("name");
-        axis.key = read_key(table, "key", table.text("key"));
-        if (table.has("times")) axis.times = read_key(table, "times", table.text("times"));
+        axis.key = read_job_key(table, "key", table.text("key"));
+        if (table.has("times")) axis.times = read_job_key(table, "times", table.text("times"));
         const toml::array& values = table.array("values");
         if (values.empty()) table.fail("values", "the list is empty", "one value or more");
         for (const toml::node& node : values) {
@@ -240,14 +167,6 @@ private:
         return axis;
     }
 
-    std::string read_key(const TableReader& table, std::string_view key, const std::string& dotted) const {
-        const Path path = split(dotted);
-        if (path.size() < 2 || std::find(pieces.begin(), pieces.end(), path.front()) == pieces.end() ||
-            std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
-            table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(pieces), "a dotted key such as \"material.contact.tau\"");
-        return dotted;
-    }
-
     // { material.contact.Gfs = 31.5 } as dotted keys and factors
     void read_coupled(const TableReader& table, Axis& axis) const {
         const toml::node& node = *table.find("coupled");
@@ -260,7 +179,7 @@ private:
                     walk(*value.as_table(), full);
                 } else {
                     if (!value.is_number()) table.fail_at(value, "coupled", shown(value) + " is not a factor", allowed);
-                    axis.coupled.emplace_back(read_key(table, "coupled", full), *value.value<double>());
+                    axis.coupled.emplace_back(read_job_key(table, "coupled", full), *value.value<double>());
                 }
             }
         };
@@ -316,7 +235,7 @@ private:
                 if (axes_[a].times.empty()) add(piece, axes_[a], *chosen[a]);
             for (std::size_t a = 0; a < axes_.size(); ++a)
                 if (!axes_[a].times.empty()) add_multiple(piece, axes_[a], *chosen[a]);
-            point.job = job_with(piece);
+            point.job = base_.with(piece);
         } catch (const InputError& error) {
             throw in_point(error, point);
         }
@@ -336,42 +255,16 @@ private:
         for (const auto& [key, factor] : axis.coupled) {
             if (std::isnan(measure.number))
                 throw InputError({{}, 0, 0, key}, "cannot follow " + axis.key + ", which is not a number", "no `coupled` beside words");
-            set(piece, key, factor * measure.number, measure.unit);
+            insert(piece, key, Measure{factor * measure.number, measure.unit});
         }
-    }
-
-    static void set(toml::table& piece, const std::string& key, double number, const std::string& unit) {
-        if (unit.empty()) insert(piece, key, toml::value<double>(number));
-        else insert(piece, key, toml::value<std::string>(format_exact(number) + (unit.front() == ' ' ? "" : " ") + unit));
     }
 
     // The axis' values multiply what another key has at this point, presets and defaults included.
     void add_multiple(toml::table& piece, const Axis& axis, const Choice& choice) const {
-        const toml::table resolved = parse_toml(resolved_toml(job_with(piece)), "resolved job");
-        const toml::node_view<const toml::node> node = toml::at_path(resolved, axis.times);
-        if (!node) throw InputError({{}, 0, 0, axis.times}, "the job has no such key, which `times` names", "a key of the resolved job");
-        Measure measure = measure_of(*node.node());
-        if (std::isnan(measure.number)) throw InputError({{}, 0, 0, axis.times}, "is not a number, which `times` could multiply");
+        Measure measure = base_.value_in(piece, axis.times);
         measure.number *= choice.value.number;
-        set(piece, axis.key, measure.number, measure.unit);
+        insert(piece, axis.key, measure);
         couple(piece, axis, measure);
-    }
-
-    // The base job with the piece laid over it; with a single variant without a name.
-    Job job_with(const toml::table& piece) const {
-        toml::table tree = base_.tree;
-        toml::table variant{{"name", "point"}};
-        for (const auto& [key, value] : piece) {
-            const std::string_view name = key.str();
-            if (name == "specimen") lay_over(*tree.get("specimen")->as_table(), *value.as_table());
-            else if (name == "test") for (toml::node& test : *tree.get("test")->as_array()) lay_over(*test.as_table(), *value.as_table());
-            else variant.insert_or_assign(name, value);
-        }
-        tree.insert_or_assign("variant", toml::array{variant});
-        Job job = read_tree(tree, base_.text, base_.file.string());
-        job.variants.front().name.clear();
-        job.variants.front().stem.clear();
-        return job;
     }
 
     // Leaves the point's seeds and tests.
@@ -442,7 +335,7 @@ private:
     toml::table tree_;
     TableReader root_;
     Study study_;
-    Base base_;
+    BaseJob base_;
     toml::table common_;
     std::vector<std::uint64_t> seeds_;   // empty = the job's
     std::vector<TestKind> tests_;        // empty = the job's

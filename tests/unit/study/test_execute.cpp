@@ -21,7 +21,7 @@ protected:
         control.keep = study.keep;
         control.stop = &stop_;
         control.provenance = collect_provenance("test", threads);
-        control.ended = [this](const Run& run, const RunRecord&) { ended_.push_back(run.id); };
+        control.ended = [this](const feldspar::Run& run, const RunRecord&) { ended_.push_back(run.id); };
         return execute(study.runs, ledger, control);
     }
 
@@ -39,7 +39,7 @@ TEST_F(ExecuteStudy, DoesEveryRunOnceAndLeavesItsFiles) {
     const Execution first = run(study, ledger);
     EXPECT_EQ(first.done, 4);
     EXPECT_EQ(first.failed + first.left + first.found_done, 0);
-    for (const Run& one : study.runs) {
+    for (const auto& one : study.runs) {
         EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / "run.json"));
         EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / "job.toml"));
         EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / ("history-direct-tension-s" + std::to_string(one.seed()) + ".csv")));
@@ -61,7 +61,7 @@ TEST_F(ExecuteStudy, GivesTheSameBitsSideBySide) {
     Ledger alone(folder_ / "alone", Ledger::Access::write), together(folder_ / "together", Ledger::Access::write);
     (void)run(study, alone, 1);
     (void)run(study, together, 3);
-    for (const Run& one : study.runs)
+    for (const auto& one : study.runs)
         EXPECT_EQ(alone.find(one.id)->numbers.at("strength_Pa"), together.find(one.id)->numbers.at("strength_Pa"));
 }
 
@@ -92,7 +92,7 @@ TEST_F(ExecuteStudy, AnInterruptedStudyGoesOn) {
     ExecuteControl control;
     control.stop = &stop_;
     control.keep = Keep::numbers;
-    control.ended = [&](const Run&, const RunRecord&) { stop_ = true; };
+    control.ended = [&](const feldspar::Run&, const RunRecord&) { stop_ = true; };
     const Execution first = execute(study.runs, ledger, control);
     EXPECT_EQ(first.done, 1);
     EXPECT_EQ(first.left, 3);

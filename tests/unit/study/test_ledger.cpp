@@ -20,7 +20,7 @@ protected:
     Study study_ = parse_study("job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.5]\n", folder_ / "study.toml");
     std::filesystem::path place_ = folder_ / "results";
 
-    RunRecord done(const Run& run, double strength_Pa) const {
+    RunRecord done(const feldspar::Run& run, double strength_Pa) const {
         TestResult result;
         result.properties.peak_stress_Pa = strength_Pa;
         result.properties.nu = std::numeric_limits<double>::quiet_NaN();

@@ -135,7 +135,7 @@ set = { numerics.accuracy = "1 %" }
 )");
     EXPECT_EQ(study.runs.size(), 7u);
     std::size_t costly = 0;
-    for (const Run& run : study.runs) {
+    for (const auto& run : study.runs) {
         if (run.point != 1) continue;
         ++costly;
         EXPECT_EQ(run.seed(), 2u);
@@ -166,8 +166,8 @@ elastic_preset = "augig-rigid"
     EXPECT_EQ(study.runs.size(), 5u);
     // and the same runs as those of the job without a study
     std::set<std::string> here, there;
-    for (const Run& run : study.runs) here.insert(run.id);
-    for (const Run& run : study_of(read_job(folder_ / "variants.toml"), "x", "y").runs) there.insert(run.id);
+    for (const auto& run : study.runs) here.insert(run.id);
+    for (const auto& run : study_of(read_job(folder_ / "variants.toml"), "x", "y").runs) there.insert(run.id);
     EXPECT_EQ(here, there);
 }
 
@@ -188,7 +188,7 @@ TEST_F(ReadStudy, ARunIsKnownByWhatChangesItsResult) {
 
 TEST_F(ReadStudy, TheResolvedJobOfARunMakesTheSameRun) {
     const Study study = read("seeds = [1]\n[set]\nmodel.kind = \"rigid\"\nmaterial.elastic_preset = \"augig-rigid\"\n");
-    for (const Run& run : study.runs) {
+    for (const auto& run : study.runs) {
         const Job again = parse_job(resolved_toml(run.job), "again.toml");
         EXPECT_EQ(make_run(again, again.variants.front(), again.tests.front(), again.seeds.front()).id, run.id);
     }

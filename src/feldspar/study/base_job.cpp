@@ -1,0 +1,110 @@
+#include "feldspar/study/base_job.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "feldspar/job/job_sections.hpp"
+
+namespace feldspar {
+namespace {
+
+std::vector<std::string> split(const std::string& dotted) {
+    std::vector<std::string> path;
+    std::stringstream stream(dotted);
+    for (std::string key; std::getline(stream, key, '.');) path.push_back(key);
+    return path;
+}
+
+}  // namespace
+
+Measure measure_of(const toml::node& node) {
+    if (node.is_number()) return {*node.value<double>(), {}};
+    Measure measure{std::numeric_limits<double>::quiet_NaN(), {}};
+    if (!node.is_string()) return measure;
+    const std::string& text = node.as_string()->get();
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error == std::errc{}) measure = {number, std::string(end, text.data() + text.size())};
+    return measure;
+}
+
+void insert(toml::table& piece, const std::string& key, const toml::node& value) {
+    const std::vector<std::string> path = split(key);
+    toml::table* table = &piece;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+        toml::node* inside = table->get(path[i]);
+        if (inside == nullptr || !inside->is_table()) {
+            table->insert_or_assign(path[i], toml::table{});
+            inside = table->get(path[i]);
+        }
+        table = inside->as_table();
+    }
+    table->insert_or_assign(path.back(), value);
+}
+
+void insert(toml::table& piece, const std::string& key, const Measure& measure) {
+    if (measure.unit.empty()) insert(piece, key, toml::value<double>(measure.number));
+    else insert(piece, key, toml::value<std::string>(format_exact(measure.number) + (measure.unit.front() == ' ' ? "" : " ") + measure.unit));
+}
+
+void lay_over(toml::table& under, const toml::table& over) {
+    for (const auto& [key, value] : over) {
+        toml::node* there = under.get(key.str());
+        const bool both = value.is_table() && there != nullptr && there->is_table();
+        if (both && !value.as_table()->contains("distribution")) lay_over(*there->as_table(), *value.as_table());
+        else under.insert_or_assign(key.str(), value);
+    }
+}
+
+std::string read_job_key(const TableReader& table, std::string_view key, const std::string& dotted) {
+    const std::vector<std::string> path = split(dotted);
+    if (path.size() < 2 || std::find(job_pieces.begin(), job_pieces.end(), path.front()) == job_pieces.end() ||
+        std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
+        table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(job_pieces), "a dotted key such as \"material.contact.tau\"");
+    return dotted;
+}
+
+BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : file_(root.text("job")) {
+    if (file_.is_relative()) file_ = file.parent_path() / file_;
+    try {
+        text_ = read_toml_file(file_, "job");
+    } catch (const InputError& error) {
+        root.fail("job", "'" + file_.string() + "' " + error.problem(), "a job file; a relative path counts from this file's folder");
+    }
+    tree_ = parse_toml(text_, file_.string());
+    job_ = read_tree(tree_, text_, file_.string());
+}
+
+Job BaseJob::with(const toml::table& piece) const {
+    toml::table tree = tree_;
+    toml::table variant{{"name", "point"}};
+    for (const auto& [key, value] : piece) {
+        const std::string_view name = key.str();
+        if (name == "specimen") {
+            lay_over(*tree.get("specimen")->as_table(), *value.as_table());
+        } else if (name == "test") {
+            for (toml::node& test : *tree.get("test")->as_array()) lay_over(*test.as_table(), *value.as_table());
+        } else {
+            variant.insert_or_assign(name, value);
+        }
+    }
+    tree.insert_or_assign("variant", toml::array{variant});
+    Job job = read_tree(tree, text_, file_.string());
+    job.variants.front().name.clear();
+    job.variants.front().stem.clear();
+    return job;
+}
+
+Measure BaseJob::value_in(const toml::table& piece, const std::string& key) const {
+    const toml::table resolved = parse_toml(resolved_toml(with(piece)), "resolved job");
+    const toml::node_view<const toml::node> node = toml::at_path(resolved, key);
+    if (!node) throw InputError({{}, 0, 0, key}, "the job has no such key, which `times` names", "a key of the resolved job");
+    const Measure measure = measure_of(*node.node());
+    if (std::isnan(measure.number)) throw InputError({{}, 0, 0, key}, "is not a number, which `times` could multiply");
+    return measure;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,58 @@
+// A job over which pieces are laid: single keys or whole tables of another job.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "feldspar/job/toml_reader.hpp"
+#include "feldspar/study/study.hpp"
+
+namespace feldspar {
+
+/// The tables of a job that a piece may hold.
+inline constexpr std::array<std::string_view, 5> job_pieces{"specimen", "model", "material", "numerics", "test"};
+
+/// A number and what follows it: 66.1 and " N/m"; nothing follows a plain number. Of a word the number is not-a-number.
+struct Measure {
+    double number = 0.0;
+    std::string unit;
+};
+
+Measure measure_of(const toml::node& node);
+
+/// Puts a value where a dotted key ("material.contact.tau") says, making tables on the way.
+void insert(toml::table& piece, const std::string& key, const toml::node& value);
+void insert(toml::table& piece, const std::string& key, const Measure& measure);
+
+/// Lays a table over another, key by key. A grain size distribution replaces another as a whole.
+void lay_over(toml::table& under, const toml::table& over);
+
+/// The dotted key, checked to be of a job's pieces. @param key  of the table, for messages
+std::string read_job_key(const TableReader& table, std::string_view key, const std::string& dotted);
+
+/// [specimen] and [[test]] are changed in place; [model], [material] and [numerics] are given as a variant, so that what goes before what
+/// is decided in one place (job/read_physics.cpp).
+class BaseJob {
+public:
+    /// Reads the job that the key `job` of a file names; a relative path counts from that file's folder. @throws InputError
+    BaseJob(const TableReader& root, const std::filesystem::path& file);
+
+    const Job& job() const { return job_; }
+    const toml::table& tree() const { return tree_; }
+
+    /// The job with a piece laid over it; with a single variant without a name. @throws InputError
+    Job with(const toml::table& piece) const;
+
+    /// What a key has in the resolved job with this piece, presets and defaults included. @throws InputError unless it is a number
+    Measure value_in(const toml::table& piece, const std::string& key) const;
+
+private:
+    toml::table tree_;
+    std::string text_;
+    std::filesystem::path file_;
+    Job job_;
+};
+
+}  // namespace feldspar
