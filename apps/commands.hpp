@@ -49,6 +49,20 @@ ExitCode study_status_command(const StudyOptions& options);
 /// Prints the study's points, or its runs, as CSV.
 ExitCode study_table_command(const StudyOptions& options);
 
+/// What stands on the command line beside the calibration file.
+struct CalibrateOptions {
+    std::string calibration;
+    std::optional<std::string> results;   ///< directory of ledger and runs, instead of the file's own
+    std::optional<int> budget;            ///< runs, instead of the file's own
+    std::optional<int> threads;
+    std::optional<int> at_once;           ///< runs side by side
+    bool insist = false;                  ///< run even if the targets contradict each other
+    std::string command_line;             ///< for provenance
+};
+
+/// Finds the values of a job's keys with which the model shows a laboratory's numbers, and confirms them.
+ExitCode calibrate_command(const CalibrateOptions& options);
+
 /// Builds everything, prints counts, memory, stable step, expected steps and time, and stops.
 ExitCode check_command(const JobOptions& options);
 

@@ -120,6 +120,20 @@ int run_program(int argc, char** argv) {
         ->check(CLI::Range(1, 256));
     table_app->add_flag("--runs", study.runs, "a row a run, in SI units, instead of a row a point");
 
+    CalibrateOptions calibrate;
+    calibrate.command_line = run.command_line;
+    CLI::App* calibrate_app = app.add_subcommand("calibrate", "laboratory numbers in, contact parameters out; goes on where it was interrupted");
+    calibrate_app->add_option("calibration", calibrate.calibration, "the file with targets and unknowns")->required()->type_name("TARGETS.toml");
+    calibrate_app->add_option("--results", calibrate.results, "directory of the ledger and the runs (default: as the file says)")->type_name("DIR");
+    calibrate_app->add_option("--budget", calibrate.budget, "at most so many runs (default: as the file says)")->type_name("N")->check(CLI::Range(20, 100'000));
+    calibrate_app->add_option("--threads", calibrate.threads, "number of threads of the whole program (default: one for each core)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 256));
+    calibrate_app->add_option("--at-once", calibrate.at_once, "at most so many runs side by side (default: as suits their size)")
+        ->type_name("K")
+        ->check(CLI::Range(1, 256));
+    calibrate_app->add_flag("--insist", calibrate.insist, "run even if the targets contradict each other");
+
     std::string kind;
     std::optional<std::string> file;
     CLI::App* new_app = app.add_subcommand("new", "print a commented job to start from");
@@ -144,6 +158,7 @@ int run_program(int argc, char** argv) {
         if (*status_app) return study_status_command(study);
         if (*table_app) return study_table_command(study);
         if (*study_app) return study_command(study);
+        if (*calibrate_app) return calibrate_command(calibrate);
         if (presets) return presets_command();
         if (kind.empty())
             throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory");

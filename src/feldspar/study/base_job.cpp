@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <sstream>
 
@@ -65,6 +66,26 @@ std::string read_job_key(const TableReader& table, std::string_view key, const s
         std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
         table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(job_pieces), "a dotted key such as \"material.contact.tau\"");
     return dotted;
+}
+
+std::vector<std::pair<std::string, double>> read_coupled(const TableReader& table) {
+    const toml::node& node = *table.find("coupled");
+    const std::string allowed = "keys and factors, such as { material.contact.Gfs = 31.5 }";
+    if (!node.is_table()) table.fail("coupled", shown(node) + " is not a table", allowed);
+    std::vector<std::pair<std::string, double>> factors;
+    const std::function<void(const toml::table&, const std::string&)> walk = [&](const toml::table& inside, const std::string& path) {
+        for (const auto& [key, value] : inside) {
+            const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+            if (value.is_table()) {
+                walk(*value.as_table(), full);
+            } else {
+                if (!value.is_number()) table.fail_at(value, "coupled", shown(value) + " is not a factor", allowed);
+                factors.emplace_back(read_job_key(table, "coupled", full), *value.value<double>());
+            }
+        }
+    };
+    walk(*node.as_table(), {});
+    return factors;
 }
 
 BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : file_(root.text("job")) {

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/study/study.hpp"
@@ -31,6 +33,9 @@ void lay_over(toml::table& under, const toml::table& over);
 
 /// The dotted key, checked to be of a job's pieces. @param key  of the table, for messages
 std::string read_job_key(const TableReader& table, std::string_view key, const std::string& dotted);
+
+/// `coupled` of a table, such as { material.contact.Gfs = 31.5 }: dotted keys and the factors by which they follow another one.
+std::vector<std::pair<std::string, double>> read_coupled(const TableReader& table);
 
 /// [specimen] and [[test]] are changed in place; [model], [material] and [numerics] are given as a variant, so that what goes before what
 /// is decided in one place (job/read_physics.cpp).

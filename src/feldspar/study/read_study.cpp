@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <set>
 #include <sstream>
@@ -163,27 +162,8 @@ private:
             insert(choice.piece, axis.key, node);
             axis.choices.push_back(std::move(choice));
         }
-        if (table.has("coupled")) read_coupled(table, axis);
+        if (table.has("coupled")) axis.coupled = read_coupled(table);
         return axis;
-    }
-
-    // { material.contact.Gfs = 31.5 } as dotted keys and factors
-    void read_coupled(const TableReader& table, Axis& axis) const {
-        const toml::node& node = *table.find("coupled");
-        const std::string allowed = "keys and factors, such as { material.contact.Gfs = 31.5 }";
-        if (!node.is_table()) table.fail("coupled", shown(node) + " is not a table", allowed);
-        const std::function<void(const toml::table&, const std::string&)> walk = [&](const toml::table& inside, const std::string& path) {
-            for (const auto& [key, value] : inside) {
-                const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
-                if (value.is_table()) {
-                    walk(*value.as_table(), full);
-                } else {
-                    if (!value.is_number()) table.fail_at(value, "coupled", shown(value) + " is not a factor", allowed);
-                    axis.coupled.emplace_back(read_job_key(table, "coupled", full), *value.value<double>());
-                }
-            }
-        };
-        walk(*node.as_table(), {});
     }
 
     Axis read_named_values(const TableReader& table) const {

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "feldspar/calibration/calibrate.hpp"
+#include "feldspar/calibration/calibration_files.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+
+namespace feldspar {
+
+ExitCode calibrate_command(const CalibrateOptions& options) {
+    install_signal_handlers();
+    Calibration calibration = read_calibration(options.calibration);
+    if (options.results) calibration.results = *options.results;
+    if (options.budget) calibration.budget = *options.budget;
+    const std::vector<std::string> contradicting = contradictions(calibration.targets);
+    for (const std::string& sentence : contradicting) fmt::print(stderr, "{}\n", sentence);
+    if (!contradicting.empty() && !options.insist)
+        throw InputError({options.calibration, 0, 0, "targets"}, "the targets contradict each other, so no run was made", "targets of one rock, or --insist to see how near one can come");
+
+    Ledger ledger(calibration.results, Ledger::Access::write);
+    Job job;
+    job.threads = options.threads.value_or(0);
+    Progress progress;
+    progress.keep_log_short();
+    CalibrateControl control;
+    control.note = [&](const std::string& line) { progress.note(line); };
+    control.execute.threads = thread_count(job);
+    control.execute.at_once = options.at_once.value_or(0);
+    control.execute.keep = Keep::numbers;
+    control.execute.stop = &stop_requested();
+    control.execute.provenance = collect_provenance(options.command_line, control.execute.threads);
+    progress.note(fmt::format("{}: {} targets, {} unknowns, at most {} runs; results in {}", calibration.name, calibration.targets.size(),
+                              calibration.unknowns.size(), calibration.budget, calibration.results.string()));
+    const CalibrationResult result = calibrate(calibration, ledger, control);
+    if (!result.complete) {
+        fmt::print(stderr, "interrupted after {} runs, which are kept; the same command goes on\n", result.runs);
+        return ExitCode::interrupted;
+    }
+    const RunDirectory directory = RunDirectory::open(calibration.results);
+    directory.write_text("calibration.json", calibration_json(calibration, result, control.execute.provenance));
+    directory.write_text("calibrated.toml", calibrated_job(calibration, result));
+    fmt::print("\n{}\nJob with the best set: {}\n", calibration_text(result), (calibration.results / "calibrated.toml").string());
+    return ExitCode::success;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,398 @@
+#include "feldspar/calibration/calibrate.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/calibration/insight.hpp"
+#include "feldspar/calibration/search.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr std::size_t first_points_per_unknown = 4;   // of the space-filling set
+constexpr std::size_t points_per_round = 4;           // whatever the number of threads: the way must be the same on every machine
+constexpr std::size_t most_elastic_rounds = 4;
+constexpr double elastic_stress_share = 0.04;         // of the strength: where the short tests end
+constexpr double usual_UCS_over_E = 1.0 / 210.0;      // when no strength is a target
+constexpr double good_share = 0.5;                    // of a tolerance: how near the prediction, and how small the doubt about it, is to be
+constexpr double test_share = 0.3;                    // a test is worth a run where the doubt it removes is this share of a tolerance
+
+struct Request {
+    std::vector<double> values;         // of all unknowns
+    std::uint64_t seed = 0;
+    std::vector<std::size_t> quantities;   // which are to be seen
+};
+
+// Runs requests and hands what they show to whoever asked.
+class Laboratory {
+public:
+    Laboratory(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control) : calibration_(calibration), ledger_(ledger), control_(control) {}
+
+    using Seen = std::function<void(std::size_t request, std::size_t quantity, double value)>;
+
+    /// Of all these requests; short tests end at the given strain. @throws Interrupted
+    void see(const std::vector<Request>& requests, const std::vector<Quantity>& quantities, std::optional<double> short_strain, const Seen& seen) {
+        std::vector<Run> runs;
+        std::vector<std::vector<std::pair<std::size_t, std::size_t>>> asked;   // of each run: request and quantity
+        for (std::size_t r = 0; r < requests.size(); ++r) {
+            Job job = calibration_.job_with(requests[r].values);
+            std::map<std::pair<TestKind, double>, std::size_t> of_test;
+            for (const std::size_t q : requests[r].quantities) {
+                const std::pair test{quantities[q].test, quantities[q].sigma3_Pa};
+                if (!of_test.contains(test)) {
+                    of_test[test] = runs.size();
+                    runs.push_back(run_of(job, quantities[q], requests[r].seed, short_strain));
+                    asked.emplace_back();
+                }
+                asked[of_test[test]].emplace_back(r, q);
+            }
+        }
+        const Execution execution = execute(runs, ledger_, control_.execute);
+        for (const Run& run : runs) used_.insert(run.id);
+        if (execution.left > 0) throw Interrupted();
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+            const auto record = ledger_.find(runs[i].id);
+            if (!record || record->state != RunState::done) continue;   // a run that fails teaches nothing
+            for (const auto& [r, q] : asked[i]) seen(r, q, record->numbers.at(column_of(quantities[q], short_strain.has_value())));
+        }
+    }
+
+    int used() const { return static_cast<int>(used_.size()); }
+    int left() const { return calibration_.budget - used(); }
+
+private:
+    static std::string column_of(const Quantity& quantity, bool is_short) {
+        if (!is_short) return quantity.column;
+        return quantity.name == "E" ? "E_initial_Pa" : "nu_initial";
+    }
+
+    Run run_of(const Job& job, const Quantity& quantity, std::uint64_t seed, std::optional<double> short_strain) const {
+        for (const TestSpec& test : job.tests) {
+            if (test.kind != quantity.test || (test.kind == TestKind::biaxial && test.sigma3_Pa != quantity.sigma3_Pa)) continue;
+            TestSpec wanted = test;
+            if (short_strain) wanted.maximum_strain = *short_strain;
+            return make_run(job, job.variants.front(), wanted, seed);
+        }
+        throw InputError({}, fmt::format("the job has no test for {}", quantity.name));   // was checked when the file was read
+    }
+
+    const Calibration& calibration_;
+    Ledger& ledger_;
+    const CalibrateControl& control_;
+    std::set<std::string> used_;
+};
+
+class Calibrate {
+public:
+    Calibrate(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control)
+        : calibration_(calibration), control_(control), laboratory_(calibration, ledger, control), quantities_(quantities_for(calibration)) {
+        for (std::size_t u = 0; u < calibration.unknowns.size(); ++u) (calibration.unknowns[u].elastic ? elastic_ : strength_).push_back(u);
+        middle_.assign(calibration.unknowns.size(), 0.5);
+        best_ = middle_;
+    }
+
+    CalibrationResult operator()() {
+        CalibrationResult result;
+        try {
+            if (!elastic_.empty()) find_elastic();
+            if (!strength_.empty()) find_strength();
+            result = confirm();
+            result.complete = true;
+        } catch (const Interrupted&) {
+            result.complete = false;
+        }
+        result.runs = laboratory_.used();
+        return result;
+    }
+
+private:
+    void note(const std::string& text) const {
+        if (control_.note) control_.note(text);
+    }
+
+    std::vector<double> values_at(const std::vector<double>& x) const {
+        std::vector<double> values;
+        for (std::size_t u = 0; u < x.size(); ++u) values.push_back(calibration_.unknowns[u].value_at(x[u]));
+        return values;
+    }
+
+    // All unknowns: those of the part as given, the others as found so far.
+    std::vector<double> whole(const std::vector<std::size_t>& part, const std::vector<double>& x) const {
+        std::vector<double> all = best_;
+        for (std::size_t i = 0; i < part.size(); ++i) all[part[i]] = x[i];
+        return all;
+    }
+
+    std::uint64_t next_seed() { return calibration_.seeds[turn_++ % calibration_.seeds.size()]; }
+
+    int confirmation_runs() const {
+        std::set<std::pair<TestKind, double>> tests;
+        for (const Quantity& q : quantities_) tests.insert({q.test, q.sigma3_Pa});
+        return static_cast<int>(tests.size() * calibration_.confirm_seeds.size());
+    }
+
+    // ---- elastic constants, by tests that end before the first damage
+
+    double short_strain() const {
+        double UCS_over_E = usual_UCS_over_E;
+        double E = std::nan(""), UCS = std::nan("");
+        for (const Target& t : calibration_.targets) {
+            if (t.name == "E") E = t.value;
+            if (t.name == "UCS") UCS = t.value;
+        }
+        if (std::isfinite(UCS / E)) UCS_over_E = UCS / E;
+        return elastic_stress_share * UCS_over_E;
+    }
+
+    void find_elastic() {
+        std::vector<Target> targets;
+        for (const Target& t : calibration_.targets)
+            if (t.name == "E" || t.name == "nu") targets.push_back(t);
+        std::vector<Quantity> quantities;
+        for (const Quantity& q : quantities_)
+            if (q.name == "E" || q.name == "nu") quantities.push_back(q);
+        elastic_learner_.emplace(quantities, targets);
+        note(fmt::format("elastic constants: {} unknowns, short tests", elastic_.size()));
+        see_elastic(evenly(elastic_.size(), 2 + first_points_per_unknown * elastic_.size()));
+        for (std::size_t round = 0; round < most_elastic_rounds; ++round) {
+            learn(*elastic_learner_);
+            const std::vector<double> x = best_point(*elastic_learner_, elastic_.size());
+            put_best(elastic_, x);
+            if (settled(*elastic_learner_, x)) break;
+            see_elastic(promising_points(*elastic_learner_, elastic_.size(), 3, round));
+        }
+        learn(*elastic_learner_);
+        put_best(elastic_, best_point(*elastic_learner_, elastic_.size()));
+        tell(*elastic_learner_, elastic_);
+    }
+
+    void see_elastic(const std::vector<std::vector<double>>& points) {
+        std::vector<Request> requests;
+        std::vector<std::size_t> all;
+        for (std::size_t q = 0; q < elastic_learner_->quantities().size(); ++q) all.push_back(q);
+        for (const auto& x : points) requests.push_back({values_at(whole(elastic_, x)), next_seed(), all});
+        laboratory_.see(requests, elastic_learner_->quantities(), short_strain(),
+                        [&](std::size_t r, std::size_t q, double value) { elastic_learner_->observe(q, points[r], requests[r].seed, value); });
+    }
+
+    // E and nu at half of the strength are not those before damage: aims the elastic constants so that the former meet the targets.
+    void correct_elastic() {
+        if (!elastic_learner_ || !strength_learner_) return;
+        std::vector<double> x_elastic;
+        for (const std::size_t u : elastic_) x_elastic.push_back(best_[u]);
+        const std::vector<Belief> before = elastic_learner_->beliefs(x_elastic);
+        const std::vector<Belief> at_half = strength_learner_->beliefs(best_point(*strength_learner_, strength_.size()));
+        std::vector<Target> aims = elastic_learner_->targets();
+        for (Target& aim : aims)
+            for (std::size_t q = 0; q < quantities_.size(); ++q)
+                if (quantities_[q].name == aim.name) {
+                    const double now = before[index_of(elastic_learner_->quantities(), aim.name)].mean;
+                    if (quantities_[q].logarithmic) aim.value *= now / at_half[q].mean;
+                    else aim.value += now - at_half[q].mean;
+                }
+        Learner aimed = *elastic_learner_;
+        aimed.aim_at(aims);
+        const std::vector<double> x = best_point(aimed, elastic_.size());
+        const std::vector<Belief> after = aimed.beliefs(x);
+        for (std::size_t q = 0; q < quantities_.size(); ++q) {
+            const std::size_t e = index_of(elastic_learner_->quantities(), quantities_[q].name);
+            if (e == elastic_learner_->quantities().size()) continue;
+            strength_learner_->correct(q, quantities_[q].logarithmic ? after[e].mean / before[e].mean : after[e].mean - before[e].mean);
+        }
+        put_best(elastic_, x);
+        note(fmt::format("elastic constants, for E and nu at half of the strength: {}", set_text(elastic_)));
+    }
+
+    static std::size_t index_of(const std::vector<Quantity>& quantities, const std::string& name) {
+        std::size_t q = 0;
+        while (q < quantities.size() && quantities[q].name != name) ++q;
+        return q;
+    }
+
+    // ---- strengths
+
+    void find_strength() {
+        strength_learner_.emplace(quantities_, calibration_.targets);
+        Learner& learner = *strength_learner_;
+        std::vector<std::size_t> all;
+        for (std::size_t q = 0; q < quantities_.size(); ++q) all.push_back(q);
+        const std::size_t tests = static_cast<std::size_t>(confirmation_runs()) / calibration_.confirm_seeds.size();
+        const int for_learning = laboratory_.left() - confirmation_runs();
+        const std::size_t affordable = static_cast<std::size_t>(std::max(0, for_learning / 2)) / tests;
+        const std::size_t first = std::min(affordable, first_points_per_unknown * strength_.size() + 2);
+        if (first < 3) throw InputError({calibration_.file.string(), 0, 0, "budget"},
+                                        fmt::format("{} runs are too few: {} confirm the answer, and a first look takes {} more", calibration_.budget, confirmation_runs(), 6 * tests),
+                                        "more runs, or fewer confirm_seeds");
+        note(fmt::format("strengths: {} unknowns, {} points spread over their ranges, {} tests each", strength_.size(), first, tests));
+        const auto points = evenly(strength_.size(), first);
+        see_strength(points, std::vector<std::vector<std::size_t>>(points.size(), all));
+        learn(learner);
+        correct_elastic();
+
+        for (std::size_t round = 0;; ++round) {
+            learn(learner);
+            const std::vector<double> x = best_point(learner, strength_.size());
+            put_best(strength_, x);
+            tell(learner, strength_);
+            const int affordable_runs = laboratory_.left() - confirmation_runs();
+            if (settled(learner, x) || affordable_runs <= 0) break;
+            std::vector<std::vector<double>> next = promising_points(learner, strength_.size(), points_per_round - 1, round);
+            next.push_back(x);   // what would be the answer
+            std::vector<std::vector<std::size_t>> wanted;
+            int runs = 0;
+            for (const auto& point : next) {
+                wanted.push_back(worth_seeing(learner, point));
+                runs += run_count(wanted.back());
+            }
+            while (runs > affordable_runs && !next.empty()) {
+                runs -= run_count(wanted.back());
+                next.pop_back();
+                wanted.pop_back();
+            }
+            if (next.empty()) break;
+            see_strength(next, wanted);
+            if (round % 5 == 4) {
+                learn(learner);
+                correct_elastic();
+            }
+        }
+    }
+
+    int run_count(const std::vector<std::size_t>& wanted) const {
+        std::set<std::pair<TestKind, double>> tests;
+        for (const std::size_t q : wanted) tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa});
+        return static_cast<int>(tests.size());
+    }
+
+    // Quantities whose doubt matters at this point, and those that come with the same tests; at least the most doubtful one.
+    std::vector<std::size_t> worth_seeing(const Learner& learner, const std::vector<double>& x) const {
+        const std::vector<double> doubts = learner.doubts(x);
+        const double largest = *std::max_element(doubts.begin(), doubts.end());
+        std::set<std::pair<TestKind, double>> tests;
+        for (std::size_t q = 0; q < quantities_.size(); ++q)
+            if (doubts[q] >= std::min(test_share, largest)) tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa});
+        std::vector<std::size_t> wanted;
+        for (std::size_t q = 0; q < quantities_.size(); ++q)
+            if (tests.contains({quantities_[q].test, quantities_[q].sigma3_Pa})) wanted.push_back(q);
+        return wanted;
+    }
+
+    void see_strength(const std::vector<std::vector<double>>& points, const std::vector<std::vector<std::size_t>>& wanted) {
+        std::vector<Request> requests;
+        for (std::size_t p = 0; p < points.size(); ++p) requests.push_back({values_at(whole(strength_, points[p])), next_seed(), wanted[p]});
+        laboratory_.see(requests, quantities_, std::nullopt,
+                        [&](std::size_t r, std::size_t q, double value) { strength_learner_->observe(q, points[r], requests[r].seed, value); });
+    }
+
+    // ---- both
+
+    void learn(Learner& learner) const {
+        if (!learner.learn()) throw NumericalError("calibration: a test failed at every point of the ranges; its runs say why");
+    }
+
+    void put_best(const std::vector<std::size_t>& part, const std::vector<double>& x) {
+        for (std::size_t i = 0; i < part.size(); ++i) best_[part[i]] = x[i];
+    }
+
+    // Every target is predicted well within its tolerance, and no more runs would make that much surer.
+    static bool settled(const Learner& learner, const std::vector<double>& x) {
+        const Prediction prediction = learner.at(x);
+        for (std::size_t t = 0; t < learner.targets().size(); ++t)
+            if (!(std::abs(prediction.values[t] - learner.targets()[t].value) <= good_share * learner.targets()[t].tolerance)) return false;
+        const std::vector<double> doubts = learner.doubts(x), lasting = learner.lasting_doubts(x);
+        for (std::size_t q = 0; q < doubts.size(); ++q)
+            if (doubts[q] > std::max(good_share, 1.3 * lasting[q])) return false;
+        return true;
+    }
+
+    std::string set_text(const std::vector<std::size_t>& part) const {
+        std::vector<std::string> words;
+        for (const std::size_t u : part) {
+            const Unknown& unknown = calibration_.unknowns[u];
+            words.push_back(fmt::format("{} = {:.4g} {}", unknown.name, unknown.value_at(best_[u]), unknown.unit));
+            while (words.back().back() == ' ') words.back().pop_back();
+        }
+        return fmt::format("{}", fmt::join(words, ", "));
+    }
+
+    void tell(const Learner& learner, const std::vector<std::size_t>& part) const {
+        std::vector<double> x;
+        for (const std::size_t u : part) x.push_back(best_[u]);
+        const Prediction prediction = learner.at(x);
+        double worst = 0.0;
+        std::string which;
+        for (std::size_t t = 0; t < learner.targets().size(); ++t) {
+            const double off = std::abs(prediction.values[t] - learner.targets()[t].value) / learner.targets()[t].tolerance;
+            if (off < worst) continue;
+            worst = off;
+            which = learner.targets()[t].label();
+        }
+        note(fmt::format("{} runs; best so far {}; farthest from its target: {}, {:.2g} times its tolerance", laboratory_.used(), set_text(part), which, worst));
+    }
+
+    CalibrationResult confirm() {
+        note(fmt::format("confirming on {} fresh packings: {}", calibration_.confirm_seeds.size(), set_text(all_unknowns())));
+        std::vector<std::size_t> all;
+        for (std::size_t q = 0; q < quantities_.size(); ++q) all.push_back(q);
+        std::vector<Request> requests;
+        for (const std::uint64_t seed : calibration_.confirm_seeds) requests.push_back({values_at(best_), seed, all});
+        std::vector<std::vector<double>> seen(quantities_.size(), std::vector<double>(requests.size(), std::nan("")));
+        laboratory_.see(requests, quantities_, std::nullopt, [&](std::size_t r, std::size_t q, double value) { seen[q][r] = value; });
+
+        CalibrationResult result;
+        const Learner* learner = strength_learner_ ? &*strength_learner_ : &*elastic_learner_;
+        const std::vector<std::size_t>& part = strength_learner_ ? strength_ : elastic_;
+        std::vector<double> x;
+        for (const std::size_t u : part) x.push_back(best_[u]);
+        const Prediction prediction = learner->at(x);
+        for (std::size_t t = 0; t < learner->targets().size(); ++t) {
+            TargetOutcome outcome;
+            outcome.target = learner->targets()[t];
+            outcome.predicted = prediction.values[t];
+            outcome.deviation = prediction.deviations[t];
+            outcome.confirmed = confirmed_interval(outcome.target, quantities_, seen);
+            outcome.met = std::abs(outcome.confirmed.mean - outcome.target.value) <= outcome.target.tolerance;
+            result.targets.push_back(outcome);
+        }
+        for (std::size_t u = 0; u < calibration_.unknowns.size(); ++u) {
+            UnknownOutcome outcome;
+            outcome.unknown = calibration_.unknowns[u];
+            outcome.best = outcome.unknown.value_at(best_[u]);
+            outcome.at_an_end = best_[u] < 0.01 || best_[u] > 0.99;
+            result.unknowns.push_back(outcome);
+        }
+        result.sensitivity.assign(result.targets.size(), std::vector<double>(calibration_.unknowns.size(), 0.0));
+        if (elastic_learner_) look_into(*elastic_learner_, calibration_, elastic_, best_, result);
+        if (strength_learner_) look_into(*strength_learner_, calibration_, strength_, best_, result);
+        result.job = calibration_.job_with(values_at(best_));
+        return result;
+    }
+
+    std::vector<std::size_t> all_unknowns() const {
+        std::vector<std::size_t> all;
+        for (std::size_t u = 0; u < calibration_.unknowns.size(); ++u) all.push_back(u);
+        return all;
+    }
+
+    const Calibration& calibration_;
+    const CalibrateControl& control_;
+    Laboratory laboratory_;
+    std::vector<Quantity> quantities_;
+    std::vector<std::size_t> elastic_, strength_;   // unknowns
+    std::vector<double> middle_, best_;             // of all unknowns, 0 ... 1
+    std::optional<Learner> elastic_learner_, strength_learner_;
+    std::size_t turn_ = 0;                          // of the packings
+};
+
+}  // namespace
+
+CalibrationResult calibrate(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control) { return Calibrate(calibration, ledger, control)(); }
+
+}  // namespace feldspar

@@ -1,0 +1,53 @@
+// Laboratory numbers in, contact parameters out (docs/calibration.md).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "feldspar/calibration/calibration.hpp"
+#include "feldspar/calibration/learner.hpp"
+#include "feldspar/study/execute.hpp"
+#include "feldspar/study/statistics.hpp"
+
+namespace feldspar {
+
+/// What became of a target.
+struct TargetOutcome {
+    Target target;
+    double predicted = 0.0;       ///< at the best set, by what was learned
+    double deviation = 0.0;       ///< standard deviation of that
+    MeanInterval confirmed;       ///< on fresh packings; for values that follow from several strengths by the jackknife
+    bool met = false;             ///< confirmed within the tolerance
+    double lowest = 0.0, highest = 0.0;   ///< what the ranges allow while all other targets are met; not-a-number if they never are
+};
+
+/// What became of an unknown.
+struct UnknownOutcome {
+    Unknown unknown;
+    double best = 0.0;
+    double low = 0.0, high = 0.0;   ///< the middle 90 % of the sets that meet the targets as well as can be known
+    double determined = 0.0;        ///< 0: any value of the range does; 1: a single one
+    bool at_an_end = false;         ///< of its range: a wider one may serve better
+};
+
+struct CalibrationResult {
+    std::vector<UnknownOutcome> unknowns;
+    std::vector<TargetOutcome> targets;
+    std::vector<std::vector<double>> sensitivity;   ///< [target][unknown]: relative change of the one over relative change of the other, at the best set
+    std::vector<std::string> findings;              ///< in words: what cannot be told apart, what cannot be had together, what lies at an end
+    Job job;                                        ///< the base job with the best set: ready to run
+    int runs = 0;                                   ///< used, confirmation included, those that were done before too
+    bool complete = false;                          ///< false: interrupted
+};
+
+struct CalibrateControl {
+    ExecuteControl execute;
+    std::function<void(const std::string&)> note;   ///< what it does now, in words
+};
+
+/// Learns, chooses and confirms. Everything it decides follows from the file and the runs, so that a second call goes the same way
+/// over the runs in the ledger, and on from where the first one was interrupted.
+CalibrationResult calibrate(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control);
+
+}  // namespace feldspar

@@ -1,0 +1,80 @@
+// What is to be calibrated: a laboratory's numbers, and the keys of a job that may be chosen so that the model shows them (docs/calibration.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "feldspar/study/base_job.hpp"
+#include "feldspar/study/study.hpp"
+
+namespace feldspar {
+
+/// What is read off one run.
+struct Quantity {
+    std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "sigma1 at 10 MPa", ...
+    TestKind test = TestKind::uniaxial_compression;
+    double sigma3_Pa = 0.0;  ///< of biaxial tests
+    std::string column;      ///< of the ledger
+    bool logarithmic = true; ///< learned as its logarithm; else as it is
+};
+
+/// A number that the laboratory has measured: the mean over packings is to show it.
+struct Target {
+    std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "UCS_over_BTS", "UCS_over_DTS", "BTS_over_DTS", "cohesion", "friction_angle",
+                             ///< "hoek_brown_mi", "sigma_ci", "sigma1"
+    double sigma3_Pa = 0.0;  ///< of "sigma1"
+    double value = 0.0;      ///< SI, degrees
+    double tolerance = 0.0;  ///< in the same unit: as good as met within it
+
+    std::string label() const;   ///< "sigma1 at 10 MPa"
+};
+
+/// A key of the job that calibration chooses.
+struct Unknown {
+    std::string name;
+    std::string key;
+    std::string times;       ///< the value multiplies that of this key; empty if it stands as it is
+    std::vector<std::pair<std::string, double>> coupled;
+    double low = 0.0, high = 0.0;   ///< in `unit`
+    std::string unit;        ///< "GPa/m"; empty for plain numbers
+    bool logarithmic = true;
+    bool elastic = false;    ///< E and nu follow from these alone: found first, by short tests below the first damage
+
+    double value_at(double x) const;   ///< 0 ... 1 -> low ... high, rounded to six digits so that it reads well
+    double x_of(double value) const;
+};
+
+struct Calibration {
+    std::filesystem::path file;
+    std::string text;
+    std::string name;
+    std::filesystem::path results;
+    BaseJob base;
+    std::vector<Target> targets;
+    std::vector<Unknown> unknowns;
+    std::vector<std::uint64_t> seeds;           ///< packings on which it learns
+    std::vector<std::uint64_t> confirm_seeds;   ///< packings that it never learns from
+    int budget = 300;                           ///< runs, confirmation included
+    std::vector<double> sigma3_Pa;              ///< of the biaxial tests from which cohesion, friction angle and mi are read
+
+    /// The job with these values of the unknowns, one each in their order.
+    Job job_with(const std::vector<double>& values) const;
+};
+
+/// Reads and checks the file. @throws InputError naming file, line, key, value and what is allowed
+Calibration read_calibration(const std::filesystem::path& file);
+Calibration parse_calibration(const std::string& text, const std::filesystem::path& name);
+
+/// What the targets need to be known of runs, each once.
+std::vector<Quantity> quantities_for(const Calibration& calibration);
+
+/// A target's value by the means of the quantities, in the order of quantities_for(); not-a-number where they do not make sense.
+double value_of(const Target& target, const std::vector<Quantity>& quantities, const std::vector<double>& means);
+
+/// Sentences on targets that no rock can show together, by closed form; none if there is nothing to say.
+std::vector<std::string> contradictions(const std::vector<Target>& targets);
+
+}  // namespace feldspar

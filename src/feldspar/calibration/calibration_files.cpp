@@ -1,0 +1,88 @@
+#include "feldspar/calibration/calibration_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "feldspar/base/text_table.hpp"
+
+namespace feldspar {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+bool is_stress(const Target& target) {
+    for (const char* name : {"UCS", "DTS", "BTS", "cohesion", "sigma_ci", "sigma1"})
+        if (target.name == name) return true;
+    return false;
+}
+
+std::string with_unit(double value, const std::string& unit) { return unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit); }
+
+std::string range_text(double low, double high, const std::string& unit) {
+    return std::isfinite(low) && std::isfinite(high) ? fmt::format("{:.4g} ... {}", low, with_unit(high, unit)) : "-";
+}
+
+}  // namespace
+
+std::string target_text(const Target& target, double value) {
+    if (!std::isfinite(value)) return "-";
+    if (target.name == "E") return fmt::format("{:.4g} GPa", value / 1e9);
+    if (is_stress(target)) return fmt::format("{:.4g} MPa", value / 1e6);
+    if (target.name == "friction_angle") return fmt::format("{:.4g} deg", value);
+    return fmt::format("{:.4g}", value);
+}
+
+std::string calibration_text(const CalibrationResult& result) {
+    std::vector<Row> unknowns{{"unknown", "best", "as good (90 %)", "range"}};
+    for (const UnknownOutcome& u : result.unknowns)
+        unknowns.push_back({u.unknown.name, with_unit(u.best, u.unknown.unit), range_text(u.low, u.high, u.unknown.unit), range_text(u.unknown.low, u.unknown.high, u.unknown.unit)});
+    std::vector<Row> targets{{"target", "wanted", "tolerance", "predicted", "confirmed", "95 % interval", "packings", ""}};
+    for (const TargetOutcome& t : result.targets)
+        targets.push_back({t.target.label(), target_text(t.target, t.target.value), "± " + target_text(t.target, t.target.tolerance),
+                           target_text(t.target, t.predicted) + " ± " + target_text(t.target, t.deviation), target_text(t.target, t.confirmed.mean),
+                           "± " + target_text(t.target, t.confirmed.half_width()), std::to_string(t.confirmed.count), t.met ? "met" : "not met"});
+    std::string text = aligned(unknowns, 1) + "\n" + aligned(targets, 1);
+    if (!result.findings.empty()) text += "\n";
+    for (const std::string& finding : result.findings) text += finding + "\n";
+    return text + fmt::format("\n{} runs were used, confirmation included.\n", result.runs);
+}
+
+std::string calibration_json(const Calibration& calibration, const CalibrationResult& result, const Provenance& provenance) {
+    Json json{{"name", calibration.name}, {"complete", result.complete}, {"runs", result.runs}, {"budget", calibration.budget}};
+    json["unknowns"] = Json::array();
+    for (const UnknownOutcome& u : result.unknowns)
+        json["unknowns"].push_back({{"name", u.unknown.name}, {"key", u.unknown.key}, {"times", u.unknown.times}, {"unit", u.unknown.unit}, {"best", number(u.best)},
+                                    {"as_good_low", number(u.low)}, {"as_good_high", number(u.high)}, {"determined", number(u.determined)},
+                                    {"range_low", u.unknown.low}, {"range_high", u.unknown.high}, {"at_an_end", u.at_an_end}});
+    json["targets"] = Json::array();
+    for (std::size_t t = 0; t < result.targets.size(); ++t) {
+        const TargetOutcome& outcome = result.targets[t];
+        Json sensitivity = Json::object();
+        for (std::size_t u = 0; u < result.unknowns.size(); ++u) sensitivity[result.unknowns[u].unknown.name] = number(result.sensitivity[t][u]);
+        json["targets"].push_back({{"name", outcome.target.label()}, {"wanted", outcome.target.value}, {"tolerance", outcome.target.tolerance},
+                                   {"predicted", number(outcome.predicted)}, {"predicted_deviation", number(outcome.deviation)},
+                                   {"confirmed", number(outcome.confirmed.mean)}, {"confirmed_low", number(outcome.confirmed.low)},
+                                   {"confirmed_high", number(outcome.confirmed.high)}, {"packings", outcome.confirmed.count}, {"met", outcome.met},
+                                   {"reachable_low", number(outcome.lowest)}, {"reachable_high", number(outcome.highest)}, {"sensitivity", sensitivity}});
+    }
+    json["findings"] = result.findings;
+    json["seeds"] = calibration.seeds;
+    json["confirm_seeds"] = calibration.confirm_seeds;
+    json["provenance"] = {{"version", provenance.version}, {"commit", provenance.commit}, {"machine", provenance.machine}, {"started", provenance.started},
+                          {"command_line", provenance.command_line}};
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string calibrated_job(const Calibration& calibration, const CalibrationResult& result) {
+    std::string head = fmt::format("# Calibrated by {} from {}; {} runs.\n", calibration.name, calibration.file.filename().string(), result.runs);
+    for (const TargetOutcome& t : result.targets)
+        head += fmt::format("#   {}: wanted {}, confirmed {} on {} fresh packings\n", t.target.label(), target_text(t.target, t.target.value),
+                            target_text(t.target, t.confirmed.mean), t.confirmed.count);
+    return head + "\n" + resolved_toml(result.job);
+}
+
+}  // namespace feldspar

@@ -1,0 +1,62 @@
+// A smooth function of a few parameters, learned from runs on random packings: Gaussian process regression with a straight-line trend,
+// an effect of each packing, and noise.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cstdint>
+#include <vector>
+
+namespace feldspar {
+
+/// What was seen at one set of parameters on one packing.
+struct Observation {
+    std::vector<double> x;     ///< parameters, each from 0 to 1
+    std::uint64_t seed = 0;    ///< of the packing
+    double y = 0.0;
+};
+
+/// What is believed of the mean over all packings.
+struct Belief {
+    double mean = 0.0;
+    double variance = 0.0;   ///< of that mean, by what was not seen
+};
+
+/// y = trend(x) + f(x) + effect of the packing + noise; f by a Matern kernel of order 5/2 with a length for each parameter. Scales, lengths and
+/// variances are the most probable ones (marginal likelihood and weak priors). The same packings at all parameters make differences between
+/// parameters sure before their level is: that is what the packing's effect is for.
+class GaussianProcess {
+public:
+    /// @param observations  at least one
+    /// @param before        learned from fewer of them: where the search for the scales begins; may be null
+    explicit GaussianProcess(std::vector<Observation> observations, const GaussianProcess* before = nullptr);
+
+    /// Of the mean over packings at x.
+    Belief at(const std::vector<double>& x) const;
+
+    double packing_variance() const { return variance_of_packings_; }   ///< of y, from one packing to another at the same x
+    double noise_variance() const { return variance_of_noise_; }        ///< of y, beyond parameters and packing
+    const std::vector<double>& lengths() const { return lengths_; }     ///< over which f changes, in units of x
+    std::size_t count() const { return observations_.size(); }
+
+    /// Adds what is believed at x as if it had been seen: for the choice of several points at once.
+    void believe(const std::vector<double>& x);
+
+private:
+    struct Scales;
+    Eigen::MatrixXd covariance(const Scales& scales) const;
+    double kernel(const Scales& scales, const std::vector<double>& a, const std::vector<double>& b) const;
+    double minus_log_posterior(const Scales& scales) const;
+    Scales scales_from(const std::vector<double>& logarithms) const;
+    void fit(const GaussianProcess* before);
+    void solve(const Scales& scales);
+
+    std::vector<Observation> observations_;
+    double centre_ = 0.0, unit_ = 1.0;   // y = centre + unit * standardised
+    std::vector<double> logarithms_;     // of the scales
+    std::vector<double> lengths_;
+    double variance_of_packings_ = 0.0, variance_of_noise_ = 0.0;
+    Eigen::LLT<Eigen::MatrixXd> factor_;
+    Eigen::VectorXd weights_;
+};
+
+}  // namespace feldspar

@@ -1,0 +1,235 @@
+#include "feldspar/calibration/insight.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "feldspar/calibration/search.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t everywhere = 4096;       // sets that are looked at
+constexpr double evenly_spread = 0.2887;       // standard deviation of a parameter that may be anything: 1 / sqrt(12)
+constexpr double not_determined = 0.5;         // of that: beyond it the data do not say much of a combination
+constexpr double takes_part = 0.35;            // of a direction: an unknown with less has no say in it
+
+double mean(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()); }
+
+// Sets of the unknowns with the weight of what is believed of them: how well all targets are met, doubt included.
+struct WeighedSets {
+    std::vector<std::vector<double>> x;
+    std::vector<std::vector<double>> values;       // of the targets
+    std::vector<std::vector<double>> deviations;
+    std::vector<double> weights;                   // sum 1
+};
+
+WeighedSets weigh(const Learner& learner, const std::vector<double>& best) {
+    WeighedSets sets;
+    sets.x = evenly(best.size(), everywhere, 1);
+    const std::size_t wide = sets.x.size();
+    // the same again nearer to the best, so that a small region of good sets is not missed; each stands for the volume that it fills
+    std::vector<double> volumes(wide, 1.0);
+    double half = 0.5;
+    for (int zoom = 0; zoom < 3; ++zoom) {
+        half *= 0.5;
+        for (const std::vector<double>& even : evenly(best.size(), everywhere / 4, 1 + everywhere * static_cast<std::size_t>(zoom + 2))) {
+            std::vector<double> x(best.size());
+            bool inside = true;
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                x[i] = best[i] + half * (2.0 * even[i] - 1.0);
+                inside = inside && x[i] >= 0.0 && x[i] <= 1.0;
+            }
+            if (!inside) continue;
+            sets.x.push_back(x);
+            volumes.push_back(4.0 * std::pow(2.0 * half, static_cast<double>(best.size())));
+        }
+    }
+    std::vector<double> logarithms;
+    for (std::size_t i = 0; i < sets.x.size(); ++i) {
+        const Prediction prediction = learner.at(sets.x[i]);
+        double badness = 0.0;
+        for (std::size_t t = 0; t < learner.targets().size(); ++t) {
+            const double off = prediction.values[t] - learner.targets()[t].value;
+            // the tolerance as two standard deviations: nearly all good sets lie within it
+            const double allowed = 0.25 * learner.targets()[t].tolerance * learner.targets()[t].tolerance + prediction.deviations[t] * prediction.deviations[t];
+            badness += off * off / allowed;
+        }
+        logarithms.push_back(std::isfinite(badness) ? -0.5 * badness + std::log(volumes[i]) : -1e300);
+        sets.values.push_back(prediction.values);
+        sets.deviations.push_back(prediction.deviations);
+    }
+    const double largest = *std::max_element(logarithms.begin(), logarithms.end());
+    double sum = 0.0;
+    for (const double logarithm : logarithms) sum += std::exp(logarithm - largest);
+    for (const double logarithm : logarithms) sets.weights.push_back(std::exp(logarithm - largest) / sum);
+    return sets;
+}
+
+double quantile(const WeighedSets& sets, std::size_t i, double share) {
+    std::vector<std::pair<double, double>> ordered;
+    for (std::size_t s = 0; s < sets.x.size(); ++s) ordered.emplace_back(sets.x[s][i], sets.weights[s]);
+    std::sort(ordered.begin(), ordered.end());
+    double sum = 0.0;
+    for (const auto& [x, weight] : ordered)
+        if ((sum += weight) >= share) return x;
+    return ordered.back().first;
+}
+
+std::string change(const Unknown& unknown, double dx) {
+    if (unknown.logarithmic) {
+        const double factor = std::pow(unknown.high / unknown.low, dx);
+        return fmt::format("{} x {:.2g}", unknown.name, factor);
+    }
+    return fmt::format("{} {:+.2g}", unknown.name, (unknown.high - unknown.low) * dx);
+}
+
+// Directions in which the good sets spread nearly as far as the ranges do.
+void find_inseparable(const WeighedSets& sets, const Calibration& calibration, const std::vector<std::size_t>& part, CalibrationResult& result) {
+    const auto n = static_cast<Eigen::Index>(part.size());
+    Eigen::VectorXd centre = Eigen::VectorXd::Zero(n);
+    Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(n, n);
+    for (std::size_t s = 0; s < sets.x.size(); ++s) centre += sets.weights[s] * Eigen::Map<const Eigen::VectorXd>(sets.x[s].data(), n);
+    for (std::size_t s = 0; s < sets.x.size(); ++s) {
+        const Eigen::VectorXd off = Eigen::Map<const Eigen::VectorXd>(sets.x[s].data(), n) - centre;
+        spread += sets.weights[s] * off * off.transpose();
+    }
+    for (Eigen::Index i = 0; i < n; ++i)
+        result.unknowns[part[static_cast<std::size_t>(i)]].determined = std::clamp(1.0 - std::sqrt(spread(i, i)) / evenly_spread, 0.0, 1.0);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(spread);
+    for (Eigen::Index k = n; k-- > 0;) {
+        const double deviation = std::sqrt(std::max(0.0, solver.eigenvalues()[k]));
+        if (deviation < not_determined * evenly_spread) break;
+        Eigen::VectorXd direction = solver.eigenvectors().col(k);
+        Eigen::Index strongest = 0;
+        direction.cwiseAbs().maxCoeff(&strongest);
+        if (direction[strongest] < 0.0) direction = -direction;
+        std::vector<std::string> names, changes;
+        for (Eigen::Index i = 0; i < n; ++i) {
+            if (std::abs(direction[i]) < takes_part) continue;
+            const Unknown& unknown = calibration.unknowns[part[static_cast<std::size_t>(i)]];
+            names.push_back(unknown.name);
+            changes.push_back(change(unknown, deviation * direction[i]));
+        }
+        if (names.size() == 1)
+            result.findings.push_back(fmt::format("The targets say little of {}: {} changes none of them by more than its tolerance.", names.front(), changes.front()));
+        else
+            result.findings.push_back(fmt::format("The targets cannot tell {} apart: {} together change none of them by more than its tolerance.", fmt::join(names, ", "), fmt::join(changes, ", ")));
+    }
+}
+
+// How far each target can go while the others are met, and what cannot be had together.
+void find_conflicts(const WeighedSets& sets, const Learner& learner, CalibrationResult& result) {
+    const auto& targets = learner.targets();
+    const auto off = [&](std::size_t s, std::size_t t) {   // beyond the tolerance even if the doubt is taken in its favour, in tolerances
+        const double distance = std::abs(sets.values[s][t] - targets[t].value) - sets.deviations[s][t];
+        return std::isfinite(distance) ? distance / targets[t].tolerance : 1e9;
+    };
+    const auto outcome_of = [&](std::size_t t) -> TargetOutcome* {
+        for (TargetOutcome& outcome : result.targets)
+            if (outcome.target.label() == targets[t].label()) return &outcome;
+        return nullptr;
+    };
+    std::vector<bool> reachable(targets.size(), false);
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+        double lowest = nan, highest = nan, least = 1e9;
+        for (std::size_t s = 0; s < sets.x.size(); ++s) {
+            least = std::min(least, off(s, t));
+            bool others = true;
+            for (std::size_t o = 0; o < targets.size() && others; ++o) others = o == t || off(s, o) <= 1.0;
+            if (!others) continue;
+            lowest = std::fmin(lowest, sets.values[s][t]);
+            highest = std::fmax(highest, sets.values[s][t]);
+        }
+        reachable[t] = least <= 1.0;
+        if (TargetOutcome* outcome = outcome_of(t)) {
+            outcome->lowest = lowest;
+            outcome->highest = highest;
+        }
+        if (!reachable[t]) result.findings.push_back(fmt::format("{} cannot be reached anywhere in the ranges, whatever the other targets.", targets[t].label()));
+    }
+    for (std::size_t t = 0; t < targets.size(); ++t)
+        for (std::size_t o = 0; o < t; ++o) {
+            double least = 1e9;
+            for (std::size_t s = 0; s < sets.x.size(); ++s) least = std::min(least, std::max(off(s, t), off(s, o)));
+            if (least > 1.0 && reachable[t] && reachable[o])
+                result.findings.push_back(fmt::format("{} and {} cannot be met together in these ranges: at best one of them is {:.2g} tolerances off.", targets[o].label(), targets[t].label(), least));
+        }
+    double least = 1e9;
+    for (std::size_t s = 0; s < sets.x.size(); ++s) {
+        double worst = 0.0;
+        for (std::size_t t = 0; t < targets.size(); ++t) worst = std::max(worst, off(s, t));
+        least = std::min(least, worst);
+    }
+    if (least > 1.0)
+        result.findings.push_back(fmt::format("No set in the ranges meets all targets together: at best the farthest of them is {:.2g} tolerances off, doubt taken in its favour.", least));
+}
+
+}  // namespace
+
+MeanInterval confirmed_interval(const Target& target, const std::vector<Quantity>& quantities, const std::vector<std::vector<double>>& seen) {
+    std::vector<std::vector<double>> packings;   // with every run that the target needs
+    for (std::size_t p = 0; p < seen.front().size(); ++p) {
+        std::vector<double> one;
+        for (const auto& values : seen) one.push_back(values[p]);
+        if (std::isfinite(value_of(target, quantities, one))) packings.push_back(std::move(one));
+    }
+    const auto value_without = [&](std::size_t left_out) {
+        std::vector<double> means(quantities.size());
+        for (std::size_t q = 0; q < quantities.size(); ++q) {
+            std::vector<double> values;
+            for (std::size_t p = 0; p < packings.size(); ++p)
+                if (p != left_out) values.push_back(packings[p][q]);
+            means[q] = mean(values);
+        }
+        return value_of(target, quantities, means);
+    };
+    if (packings.empty()) return mean_interval({});
+    const double whole = value_without(packings.size());
+    if (packings.size() == 1) return mean_interval(std::span(&whole, 1));
+    std::vector<double> pseudo;   // n whole - (n - 1) without: of a plain mean the values themselves
+    const auto n = static_cast<double>(packings.size());
+    for (std::size_t p = 0; p < packings.size(); ++p) pseudo.push_back(n * whole - (n - 1.0) * value_without(p));
+    MeanInterval interval = mean_interval(pseudo);
+    const double half = interval.half_width();
+    interval.mean = whole;
+    interval.low = whole - half;
+    interval.high = whole + half;
+    return interval;
+}
+
+void look_into(const Learner& learner, const Calibration& calibration, const std::vector<std::size_t>& part, const std::vector<double>& best_of_all,
+               CalibrationResult& result) {
+    std::vector<double> best;
+    for (const std::size_t u : part) best.push_back(best_of_all[u]);
+    constexpr double step = 0.02;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        std::vector<double> up = best, down = best;
+        up[i] = std::min(1.0, best[i] + step);
+        down[i] = std::max(0.0, best[i] - step);
+        const Unknown& unknown = calibration.unknowns[part[i]];
+        const double relative = std::log(unknown.value_at(up[i]) / unknown.value_at(down[i]));
+        const Prediction above = learner.at(up), below = learner.at(down);
+        for (std::size_t t = 0; t < learner.targets().size(); ++t)
+            for (std::size_t r = 0; r < result.targets.size(); ++r)
+                if (result.targets[r].target.label() == learner.targets()[t].label() && (unknown.elastic || learner.targets()[t].name != "E"))
+                    result.sensitivity[r][part[i]] = std::log(above.values[t] / below.values[t]) / relative;
+    }
+    const WeighedSets sets = weigh(learner, best);
+    find_inseparable(sets, calibration, part, result);
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        result.unknowns[part[i]].low = calibration.unknowns[part[i]].value_at(quantile(sets, i, 0.05));
+        result.unknowns[part[i]].high = calibration.unknowns[part[i]].value_at(quantile(sets, i, 0.95));
+        if (result.unknowns[part[i]].at_an_end)
+            result.findings.push_back(fmt::format("{} lies at an end of its range: a wider one may serve better.", calibration.unknowns[part[i]].name));
+    }
+    find_conflicts(sets, learner, result);
+}
+
+}  // namespace feldspar

@@ -1,0 +1,69 @@
+// What has been learned so far of every quantity, and what that says of the targets at any parameters.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "feldspar/calibration/calibration.hpp"
+#include "feldspar/calibration/gaussian_process.hpp"
+
+namespace feldspar {
+
+/// Means over packings at some parameters, and how far to trust them.
+struct Prediction {
+    std::vector<double> values;      ///< of each target, in its unit
+    std::vector<double> deviations;  ///< standard deviation of what is believed, the same unit
+    double misfit = 0.0;             ///< sum over targets of ((value - target) / tolerance)^2
+};
+
+/// One surrogate for each quantity; targets follow from them.
+class Learner {
+public:
+    Learner(std::vector<Quantity> quantities, std::vector<Target> targets) : quantities_(std::move(quantities)), targets_(std::move(targets)), seen_(quantities_.size()), processes_(quantities_.size()) {}
+
+    const std::vector<Quantity>& quantities() const { return quantities_; }
+    const std::vector<Target>& targets() const { return targets_; }
+
+    /// A quantity seen on one packing. What is not a positive number of a logarithmic quantity teaches nothing.
+    void observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, double value);
+
+    /// Multiplies (or, of a quantity that is not logarithmic, adds to) all that was seen of a quantity: when what it follows from besides x has changed.
+    void correct(std::size_t quantity, double by);
+
+    /// Other values of the same targets.
+    void aim_at(std::vector<Target> targets) { targets_ = std::move(targets); }
+
+    /// Learns from everything seen so far. @return false if some quantity was never seen
+    bool learn();
+
+    Prediction at(const std::vector<double>& x) const;
+
+    /// How well the belief in each quantity is, at x: mean and standard deviation of its value (arithmetic mean over packings).
+    std::vector<Belief> beliefs(const std::vector<double>& x) const;
+
+    /// The targets by given means of the quantities.
+    std::vector<double> targets_by(const std::vector<double>& means) const;
+    double misfit(const std::vector<double>& values) const;
+
+    /// For each quantity: the largest share of a target's tolerance that the doubt about it makes, at x.
+    std::vector<double> doubts(const std::vector<double>& x) const;
+
+    /// The part of doubts() that stays however often these packings are used: the scatter of so many packings.
+    std::vector<double> lasting_doubts(const std::vector<double>& x) const;
+
+    /// From now on as if x had been seen, in the tests of these quantities.
+    void believe(const std::vector<double>& x);
+
+    const GaussianProcess& process(std::size_t quantity) const { return *processes_[quantity]; }
+    std::size_t packings(std::size_t quantity) const;
+
+private:
+    std::vector<double> shares(const std::vector<double>& x, const std::vector<double>& deviations) const;
+
+    std::vector<Quantity> quantities_;
+    std::vector<Target> targets_;
+    std::vector<std::vector<Observation>> seen_;
+    std::vector<std::optional<GaussianProcess>> processes_;
+};
+
+}  // namespace feldspar

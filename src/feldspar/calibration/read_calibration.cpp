@@ -1,0 +1,311 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "feldspar/calibration/calibration.hpp"
+#include "feldspar/job/job_sections.hpp"
+
+namespace feldspar {
+namespace {
+
+// How a target is written and judged unless its tolerance is given.
+struct TargetKind {
+    const char* name;
+    std::optional<Dimension> dimension;   // none: a plain number
+    double tolerance;                     // a fraction of the value; of nu and the angle the value itself
+    bool absolute = false;
+};
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+const std::vector<TargetKind> target_kinds{
+    {"E", Dimension::stress, 0.02},
+    {"nu", std::nullopt, 0.01, true},
+    {"UCS", Dimension::stress, 0.03},
+    {"DTS", Dimension::stress, 0.02},
+    {"BTS", Dimension::stress, 0.10},
+    {"UCS_over_BTS", std::nullopt, 0.10},
+    {"UCS_over_DTS", std::nullopt, 0.04},
+    {"BTS_over_DTS", std::nullopt, 0.10},
+    {"cohesion", Dimension::stress, 0.05},
+    {"friction_angle", Dimension::angle, 2.0, true},
+    {"hoek_brown_mi", std::nullopt, 0.10},
+    {"sigma_ci", Dimension::stress, 0.10},
+    {"sigma1", Dimension::stress, 0.03},
+};
+
+// Of a default range: what the rock's numbers say of a contact's.
+struct RangeRule {
+    const char* key;
+    double low, high;
+    bool elastic = false;
+    bool logarithmic = true;
+};
+
+class CalibrationReader {
+public:
+    CalibrationReader(const std::string& text, const std::filesystem::path& file)
+        : tree_(parse_toml(text, file.string())),
+          root_(required(TableReader(tree_, "", file.string(),
+                                     {"name", "job", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"}))),
+          result_{file, text, {}, {}, BaseJob(root_, file), {}, {}, {}, {}, 300, {}} {}
+
+    Calibration read() {
+        result_.name = root_.text("name", variant_stem(result_.file.stem().string()));
+        result_.results = std::filesystem::path("results") / root_.text("results", result_.name);
+        if (result_.base.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
+        read_seeds();
+        read_targets();
+        read_unknowns();
+        check_determined();
+        return std::move(result_);
+    }
+
+private:
+    static TableReader required(const TableReader& root) {
+        root.require({"job", "targets", "unknown"});
+        return root;
+    }
+
+    void read_seeds() {
+        result_.seeds = root_.has("seeds") ? read_seed_list(root_, "seeds") : result_.base.job().seeds;
+        if (root_.has("confirm_seeds")) result_.confirm_seeds = read_seed_list(root_, "confirm_seeds");
+        else
+            for (std::uint64_t seed = 1001; seed <= 1010; ++seed) result_.confirm_seeds.push_back(seed);
+        for (const std::uint64_t seed : result_.confirm_seeds)
+            if (std::find(result_.seeds.begin(), result_.seeds.end(), seed) != result_.seeds.end())
+                root_.fail(root_.has("confirm_seeds") ? "confirm_seeds" : "seeds", fmt::format("the packing {} is also one that calibration learns from", seed),
+                           "fresh packings, which confirm what was learned");
+        result_.budget = static_cast<int>(root_.integer("budget", 20, 100'000, 300));
+    }
+
+    void read_targets() {
+        std::vector<std::string_view> names;
+        for (const TargetKind& kind : target_kinds) names.emplace_back(kind.name);
+        const TableReader table = root_.table("targets", names);
+        for (const TargetKind& kind : target_kinds) {
+            if (!table.has(kind.name)) continue;
+            const toml::node& node = *table.find(kind.name);
+            if (std::string(kind.name) == "sigma1") {
+                for (const toml::node& item : table.array(kind.name)) {
+                    if (!item.is_table()) table.fail_at(item, kind.name, shown(item) + " is not a strength under confinement", "{ sigma3 = \"10 MPa\", value = \"190 MPa\" }");
+                    const TableReader one(*item.as_table(), "targets.sigma1", root_.file(), {"sigma3", "value", "tolerance", "standard_deviation"});
+                    one.require({"sigma3", "value"});
+                    Target target = read_target(one, kind);
+                    target.sigma3_Pa = one.quantity("sigma3", Dimension::stress, positive);
+                    result_.targets.push_back(target);
+                }
+            } else if (node.is_table()) {
+                const TableReader one = table.table(kind.name, {"value", "tolerance", "standard_deviation"});
+                one.require({"value"});
+                result_.targets.push_back(read_target(one, kind));
+            } else {
+                Target target{kind.name, 0.0, read_value(table, kind.name, kind), 0.0};
+                target.tolerance = kind.absolute ? kind.tolerance : kind.tolerance * target.value;
+                result_.targets.push_back(target);
+            }
+        }
+        if (result_.targets.empty()) root_.fail("targets", "there is no target", listed(names));
+        std::vector<double>& sigma3 = result_.sigma3_Pa;
+        for (const TestSpec& test : result_.base.job().tests)
+            if (test.kind == TestKind::biaxial) sigma3.push_back(test.sigma3_Pa);
+        for (const Target& target : result_.targets) {
+            const bool envelope = target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
+            if (envelope && sigma3.empty())
+                table.fail(target.name, "is read from confined tests, and the job has none", "a biaxial [[test]] in the job, with the laboratory's range of sigma3");
+            if (target.name == "sigma1" && std::find(sigma3.begin(), sigma3.end(), target.sigma3_Pa) == sigma3.end())
+                table.fail("sigma1", fmt::format("the job has no biaxial test at {:g} MPa", target.sigma3_Pa / 1e6), "a sigma3 of the job's biaxial tests");
+        }
+        for (const Quantity& quantity : quantities_for(result_))
+            if (std::none_of(result_.base.job().tests.begin(), result_.base.job().tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
+                root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name), fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
+    }
+
+    double read_value(const TableReader& table, std::string_view key, const TargetKind& kind) const {
+        if (!kind.dimension) return table.number(key, positive);
+        const double value = table.quantity(key, *kind.dimension, positive);
+        return *kind.dimension == Dimension::angle ? value / degree : value;
+    }
+
+    Target read_target(const TableReader& table, const TargetKind& kind) const {
+        Target target{kind.name, 0.0, read_value(table, "value", kind), 0.0};
+        if (table.has("tolerance") && table.has("standard_deviation"))
+            table.fail("standard_deviation", "given beside tolerance", "one of the two");
+        const char* key = table.has("tolerance") ? "tolerance" : "standard_deviation";
+        target.tolerance = kind.absolute ? kind.tolerance : kind.tolerance * target.value;
+        if (!table.has(key)) return target;
+        const toml::node& node = *table.find(key);
+        const bool percent = node.is_string() && node.as_string()->get().find('%') != std::string::npos;
+        target.tolerance = percent ? table.fraction(key, positive) * target.value : read_value(table, key, kind);
+        return target;
+    }
+
+    // By how much the specimen's numbers and those of its contacts differ in rocks of this kind (docs/calibration.md).
+    std::vector<RangeRule> range_rules() const {
+        const auto target = [&](const char* name) {
+            for (const Target& t : result_.targets)
+                if (t.name == name) return t.value;
+            return std::nan("");
+        };
+        const auto first = [](std::initializer_list<double> values) {
+            for (const double value : values)
+                if (std::isfinite(value)) return value;
+            return std::nan("");
+        };
+        const double E = target("E"), ratio = target("UCS_over_BTS");
+        const double UCS = first({target("UCS"), 2.0 * target("cohesion") * std::tan((45.0 + 0.5 * target("friction_angle")) * degree)});
+        const double tension = first({target("DTS"), target("BTS"), UCS / first({ratio, 13.0})});
+        const double diameter = typical_diameter_m(result_.base.job().specimen.grain_sizes);
+        const bool flexible = result_.base.job().variants.front().model.kind == GrainKind::flexible;
+        return {{"material.grain.E", 0.8 * E, 1.6 * E, true},
+                {"material.grain.nu", 0.1, 0.4, true, false},
+                {"material.contact.Kn", (flexible ? 4.0 : 0.5) * E / diameter, (flexible ? 60.0 : 4.0) * E / diameter, true},
+                {"material.contact.eta", 0.1, 1.0, true},
+                {"material.contact.kratio", 1.0, 10.0, true},
+                {"material.contact.sigma_nt", 0.5 * tension, 2.5 * tension},
+                {"material.contact.tau", 0.1 * UCS, 0.6 * UCS},
+                {"material.contact.mu", 0.1, 1.0, false, false},
+                {"material.contact.Gfn", 5.0, 100.0},
+                {"material.contact.Gfs", 100.0, 4000.0}};
+    }
+
+    // What multiplies another key is a ratio.
+    static std::optional<std::pair<double, double>> ratio_rule(const std::string& key) {
+        if (key == "material.contact.tau") return std::pair{1.5, 6.0};
+        if (key == "material.contact.Gfs") return std::pair{5.0, 100.0};
+        return std::nullopt;
+    }
+
+    void read_unknowns() {
+        if (root_.find("unknown")->is_table()) root_.fail("unknown", "is written as one table", "a list of tables, each headed [[unknown]]");
+        int number = 0;
+        for (const toml::node& node : root_.array("unknown")) {
+            if (!node.is_table()) root_.fail_at(node, "unknown", shown(node) + " is not an unknown", "a table headed [[unknown]]");
+            const TableReader table(*node.as_table(), fmt::format("unknown[{}]", ++number), root_.file(),
+                                    {"name", "key", "times", "coupled", "range", "scale"});
+            result_.unknowns.push_back(read_unknown(table));
+        }
+        for (std::size_t i = 0; i < result_.unknowns.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                if (result_.unknowns[i].key == result_.unknowns[j].key)
+                    root_.fail("unknown", "'" + result_.unknowns[i].key + "' is given twice", "each key once");
+        if (result_.unknowns.empty()) root_.fail("unknown", "the list is empty", "one [[unknown]] or more");
+        try {
+            std::vector<double> low, high;
+            for (const Unknown& unknown : result_.unknowns) {
+                low.push_back(unknown.low);
+                high.push_back(unknown.high);
+            }
+            (void)result_.job_with(low);
+            (void)result_.job_with(high);
+        } catch (const InputError& error) {
+            throw InputError({root_.file(), 0, 0, error.place().key}, "at an end of the ranges: " + error.problem(), error.allowed(), error.suggestion());
+        }
+    }
+
+    Unknown read_unknown(const TableReader& table) {
+        table.require({"key"});
+        Unknown unknown;
+        unknown.key = read_job_key(table, "key", table.text("key"));
+        unknown.name = table.text("name", unknown.key.substr(unknown.key.rfind('.') + 1));
+        if (table.has("times")) unknown.times = read_job_key(table, "times", table.text("times"));
+        if (table.has("coupled")) unknown.coupled = read_coupled(table);
+        const std::vector<RangeRule> rules = range_rules();
+        const auto rule = std::find_if(rules.begin(), rules.end(), [&](const RangeRule& r) { return unknown.key == r.key; });
+        if (rule != rules.end()) {
+            unknown.elastic = rule->elastic;
+            unknown.logarithmic = rule->logarithmic || !unknown.times.empty();
+        }
+        if (table.has("range")) read_range(table, unknown);
+        else if (!unknown.times.empty() && ratio_rule(unknown.key)) std::tie(unknown.low, unknown.high) = *ratio_rule(unknown.key);
+        else if (unknown.times.empty() && rule != rules.end() && std::isfinite(rule->low)) {
+            unknown.low = rule->low;
+            unknown.high = rule->high;
+            unknown.unit = unit_of(unknown.key);
+        } else {
+            table.fail("range", "is missing: neither the key nor the targets say what is usual", "range = [lowest, highest]");
+        }
+        unknown.logarithmic = table.choice<bool>("scale", {{"log", true}, {"linear", false}}, unknown.logarithmic);
+        if (!(unknown.low < unknown.high)) table.fail("range", "is empty", "the lower value first");
+        if (unknown.logarithmic && !(unknown.low > 0.0)) table.fail("range", "begins at zero or below, and is divided by its logarithm", "a lower end above zero, or scale = \"linear\"");
+        return unknown;
+    }
+
+    static std::string unit_of(const std::string& key) {
+        if (key.ends_with(".E") || key.ends_with(".sigma_nt") || key.ends_with(".tau")) return "Pa";
+        if (key.ends_with(".Kn")) return "Pa/m";
+        if (key.ends_with(".Gfn") || key.ends_with(".Gfs")) return "N/m";
+        return {};
+    }
+
+    void read_range(const TableReader& table, Unknown& unknown) const {
+        const toml::array& range = table.array("range");
+        if (range.size() != 2) table.fail("range", fmt::format("has {} values", range.size()), "two: the lowest and the highest");
+        const Measure low = measure_of(range[0]), high = measure_of(range[1]);
+        if (std::isnan(low.number) || std::isnan(high.number)) table.fail("range", "has values that do not begin with a number", "such as [\"5 MPa\", \"20 MPa\"]");
+        if (low.unit != high.unit) table.fail("range", fmt::format("has the units '{}' and '{}'", low.unit, high.unit), "the same unit twice");
+        unknown.low = low.number;
+        unknown.high = high.number;
+        unknown.unit = low.unit;
+    }
+
+    // Unknowns that no target can tell anything of.
+    void check_determined() const {
+        const auto elastic_target = [](const Target& target) { return target.name == "E" || target.name == "nu"; };
+        const bool any_elastic = std::any_of(result_.targets.begin(), result_.targets.end(), elastic_target);
+        const bool any_strength = std::any_of(result_.targets.begin(), result_.targets.end(), [&](const Target& t) { return !elastic_target(t); });
+        for (const Unknown& unknown : result_.unknowns) {
+            if (unknown.elastic && !any_elastic) root_.fail("unknown", fmt::format("{} changes E and nu, and neither is a target", unknown.name), "a target E or nu, or the key fixed in the job");
+            if (!unknown.elastic && !any_strength) root_.fail("unknown", fmt::format("{} changes strengths, and none is a target", unknown.name), "a strength among the targets, or the key fixed in the job");
+        }
+    }
+
+    toml::table tree_;
+    TableReader root_;
+    Calibration result_;
+};
+
+}  // namespace
+
+Calibration parse_calibration(const std::string& text, const std::filesystem::path& name) { return CalibrationReader(text, name).read(); }
+
+Calibration read_calibration(const std::filesystem::path& file) { return parse_calibration(read_toml_file(file, "calibration"), file); }
+
+std::string Target::label() const { return name == "sigma1" ? fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6) : name; }
+
+namespace {
+
+double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+
+}  // namespace
+
+double Unknown::value_at(double x) const {
+    const double inside = std::clamp(x, 0.0, 1.0);
+    return six_digits(logarithmic ? low * std::pow(high / low, inside) : low + (high - low) * inside);
+}
+
+double Unknown::x_of(double value) const { return logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low); }
+
+Job Calibration::job_with(const std::vector<double>& values) const {
+    toml::table piece;
+    const auto put = [&](const Unknown& unknown, const Measure& measure) {
+        insert(piece, unknown.key, measure);
+        for (const auto& [key, factor] : unknown.coupled) insert(piece, key, Measure{factor * measure.number, measure.unit});
+    };
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+        if (unknowns[i].times.empty()) put(unknowns[i], {values[i], unknowns[i].unit});
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+        if (unknowns[i].times.empty()) continue;
+        Measure measure = base.value_in(piece, unknowns[i].times);
+        measure.number = six_digits(measure.number * values[i]);
+        put(unknowns[i], measure);
+    }
+    Job job = base.with(piece);
+    job.name = name;
+    return job;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,103 @@
+#include "feldspar/calibration/search.hpp"
+
+#include <algorithm>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/sobol.hpp>
+#include <boost/random/mersenne_twister.hpp>
+#include <cmath>
+#include <nlopt.hpp>
+
+namespace feldspar {
+namespace {
+
+constexpr std::size_t candidates_everywhere = 1024, candidates_nearby = 384;
+constexpr int samples = 48;               // of what may be true, for the expected improvement
+constexpr double towards_middle = 1e-3;   // misfit a point pays at the end of a range: decides between equals only
+
+double off_middle(const std::vector<double>& x) {
+    double sum = 0.0;
+    for (const double value : x) sum += (2.0 * value - 1.0) * (2.0 * value - 1.0);
+    return sum;
+}
+
+double cost(const Learner& learner, const std::vector<double>& x) { return learner.at(x).misfit + towards_middle * off_middle(x); }
+
+}  // namespace
+
+std::vector<std::vector<double>> evenly(std::size_t dimensions, std::size_t count, std::size_t skip) {
+    boost::random::sobol engine(dimensions);
+    engine.discard(dimensions * skip);
+    const double range = static_cast<double>((boost::random::sobol::max)()) + 1.0;
+    std::vector<std::vector<double>> points(count, std::vector<double>(dimensions));
+    for (auto& point : points)
+        for (double& value : point) value = (static_cast<double>(engine()) + 0.5) / range;
+    return points;
+}
+
+std::vector<double> best_point(const Learner& learner, std::size_t dimensions) {
+    std::vector<std::pair<double, std::vector<double>>> ranked;
+    for (std::vector<double>& x : evenly(dimensions, 2 * candidates_everywhere, 1)) ranked.emplace_back(cost(learner, x), std::move(x));
+    std::partial_sort(ranked.begin(), ranked.begin() + 3, ranked.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
+    std::pair<double, std::vector<double>> best = ranked.front();
+    for (int start = 0; start < 3; ++start) {
+        nlopt::opt search(nlopt::LN_SBPLX, static_cast<unsigned>(dimensions));
+        search.set_lower_bounds(0.0);
+        search.set_upper_bounds(1.0);
+        search.set_xtol_abs(1e-4);
+        search.set_maxeval(150 * static_cast<int>(dimensions));
+        search.set_initial_step(0.05);
+        search.set_min_objective([](const std::vector<double>& x, std::vector<double>&, void* data) { return cost(*static_cast<const Learner*>(data), x); },
+                                 const_cast<Learner*>(&learner));
+        std::vector<double> x = ranked[static_cast<std::size_t>(start)].second;
+        double value = 0.0;
+        try {
+            search.optimize(x, value);
+        } catch (const nlopt::roundoff_limited&) {   // as good as it gets
+            value = cost(learner, x);
+        }
+        if (value < best.first) best = {value, x};
+    }
+    return best.second;
+}
+
+std::vector<std::vector<double>> promising_points(Learner learner, std::size_t dimensions, std::size_t count, std::size_t round) {
+    boost::random::mt19937_64 engine(1000 + round);
+    boost::random::normal_distribution<double> normal;
+    std::vector<std::vector<double>> draws(samples, std::vector<double>(learner.quantities().size()));
+    for (auto& draw : draws)
+        for (double& value : draw) value = normal(engine);
+
+    std::vector<std::vector<double>> chosen;
+    for (std::size_t c = 0; c < count; ++c) {
+        const std::vector<double> best = best_point(learner, dimensions);
+        const double least = learner.at(best).misfit;
+        std::vector<std::vector<double>> candidates = evenly(dimensions, candidates_everywhere, 1 + candidates_everywhere * (2 + round + c));
+        candidates.push_back(best);
+        for (std::size_t i = 0; i < candidates_nearby; ++i) {
+            const double reach = i % 2 == 0 ? 0.03 : 0.1;
+            std::vector<double> x = best;
+            for (double& value : x) value = std::clamp(value + reach * normal(engine), 0.0, 1.0);
+            candidates.push_back(std::move(x));
+        }
+        double largest = -1.0;
+        std::vector<double> next = best;
+        for (const std::vector<double>& x : candidates) {
+            const std::vector<Belief> beliefs = learner.beliefs(x);
+            double improvement = 0.0;
+            for (const auto& draw : draws) {
+                std::vector<double> means;
+                for (std::size_t q = 0; q < beliefs.size(); ++q) means.push_back(beliefs[q].mean + std::sqrt(beliefs[q].variance) * draw[q]);
+                improvement += std::max(0.0, least - learner.misfit(learner.targets_by(means)));
+            }
+            if (improvement > largest) {
+                largest = improvement;
+                next = x;
+            }
+        }
+        chosen.push_back(next);
+        learner.believe(next);
+    }
+    return chosen;
+}
+
+}  // namespace feldspar

@@ -1,0 +1,101 @@
+// From what runs show to what the laboratory measured.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "feldspar/calibration/calibration.hpp"
+#include "feldspar/lab/strength_envelope.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// By how much the intercept of a straight envelope and the measured UCS may differ, because real envelopes are curved.
+constexpr double curvature_allowance = 0.25;
+constexpr double ratio_allowance = 0.10;
+
+bool of_envelope(const Target& target) {
+    return target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
+}
+
+double mean_of(const std::string& name, const std::vector<Quantity>& quantities, const std::vector<double>& means) {
+    for (std::size_t q = 0; q < quantities.size(); ++q)
+        if (quantities[q].name == name) return means[q];
+    return nan;
+}
+
+EnvelopeFit envelope(const std::vector<Quantity>& quantities, const std::vector<double>& means) {
+    std::vector<double> sigma3, sigma1;
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+        const bool confined = quantities[q].test == TestKind::biaxial;
+        if (!confined && quantities[q].name != "UCS") continue;
+        sigma3.push_back(quantities[q].sigma3_Pa);
+        sigma1.push_back(means[q]);
+    }
+    return fit_envelopes(std::move(sigma3), std::move(sigma1));
+}
+
+}  // namespace
+
+std::vector<Quantity> quantities_for(const Calibration& calibration) {
+    std::vector<Quantity> all;
+    const auto add = [&](const Quantity& quantity) {
+        if (std::none_of(all.begin(), all.end(), [&](const Quantity& q) { return q.name == quantity.name; })) all.push_back(quantity);
+    };
+    const Quantity ucs{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"}, dts{"DTS", TestKind::direct_tension, 0.0, "strength_Pa"},
+        bts{"BTS", TestKind::brazilian, 0.0, "strength_Pa"};
+    const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), TestKind::biaxial, sigma3_Pa, "strength_Pa"}); };
+    for (const Target& target : calibration.targets) {
+        if (target.name == "E") add({"E", TestKind::uniaxial_compression, 0.0, "E_Pa"});
+        if (target.name == "nu") add({"nu", TestKind::uniaxial_compression, 0.0, "nu", false});
+        if (target.name == "sigma_ci") add({"sigma_ci", TestKind::uniaxial_compression, 0.0, "sigma_ci_crack_count_Pa"});
+        if (target.name == "UCS" || target.name.starts_with("UCS_over") || of_envelope(target)) add(ucs);
+        if (target.name == "DTS" || target.name.ends_with("_DTS")) add(dts);
+        if (target.name == "BTS" || target.name.find("BTS") != std::string::npos) add(bts);
+        if (target.name == "sigma1") confined(target.sigma3_Pa);
+        if (of_envelope(target))
+            for (const double sigma3_Pa : calibration.sigma3_Pa) confined(sigma3_Pa);
+    }
+    return all;
+}
+
+double value_of(const Target& target, const std::vector<Quantity>& quantities, const std::vector<double>& means) {
+    const auto mean = [&](const std::string& name) { return mean_of(name, quantities, means); };
+    if (target.name == "UCS_over_BTS") return mean("UCS") / mean("BTS");
+    if (target.name == "UCS_over_DTS") return mean("UCS") / mean("DTS");
+    if (target.name == "BTS_over_DTS") return mean("BTS") / mean("DTS");
+    if (target.name == "cohesion") return envelope(quantities, means).cohesion_Pa;
+    if (target.name == "friction_angle") return envelope(quantities, means).friction_angle_deg;
+    if (target.name == "hoek_brown_mi") return envelope(quantities, means).hoek_brown_mi;
+    return mean(target.label());
+}
+
+std::vector<std::string> contradictions(const std::vector<Target>& targets) {
+    const auto value = [&](const char* name) {
+        for (const Target& target : targets)
+            if (target.name == name) return target.value;
+        return nan;
+    };
+    std::vector<std::string> sentences;
+    const double UCS = value("UCS"), c = value("cohesion"), phi = value("friction_angle");
+    const double intercept = 2.0 * c * std::tan((45.0 + 0.5 * phi) * std::numbers::pi / 180.0);   // 2 c sqrt(N)
+    if (std::abs(intercept / UCS - 1.0) > curvature_allowance)
+        sentences.push_back(fmt::format("A cohesion of {:.4g} MPa and a friction angle of {:.4g} deg mean a uniaxial strength of 2 c sqrt(N) = {:.4g} MPa, but UCS is to be {:.4g} MPa; "
+                                        "the curvature of an envelope accounts for {:.0f} % at most.",
+                                        c / 1e6, phi, intercept / 1e6, UCS / 1e6, 100.0 * curvature_allowance));
+    const auto ratio = [&](const char* name, double above, double below) {
+        const double given = value(name);
+        if (std::abs(above / below / given - 1.0) > ratio_allowance)
+            sentences.push_back(fmt::format("{} is to be {:.4g}, but the two strengths, which are targets too, have a ratio of {:.4g}.", name, given, above / below));
+    };
+    ratio("UCS_over_BTS", UCS, value("BTS"));
+    ratio("UCS_over_DTS", UCS, value("DTS"));
+    ratio("BTS_over_DTS", value("BTS"), value("DTS"));
+    return sentences;
+}
+
+}  // namespace feldspar
