@@ -122,7 +122,7 @@ private:
             if (!needed && !may) table_.refuse({key}, rule);
         };
         need(needs.second, needs.may_second, "second");
-        need(needs.second, needs.may_second, "first");
+        need(needs.second, true, "first");   // it may choose points for every rule
         need(needs.third, false, "third");
         need(needs.axis, false, "axis");
         need(needs.bound, false, "bound");

@@ -101,7 +101,7 @@ TEST(Claims, RunsThatAreMissingAreToldFromValuesThatAre) {
     Study& study = studies.at("study").study;
     for (std::size_t p = 0; p < 2; ++p)
         for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-            Run run;
+            feldspar::Run run;
             run.id = std::to_string(10 * p + seed);
             run.point = p;
             run.job.tests = {TestSpec{}};
@@ -274,7 +274,7 @@ TEST(Claims, MistakesAreNamedWithTheirLine) {
 
 TEST(Claims, StatementsThatTheStudyCannotHoldAreRefused) {
     StudiesByName studies = along_mu([](bool, double mu) { return mu; });
-    Run run;
+    feldspar::Run run;
     run.job.tests = {TestSpec{}};
     studies.at("study").study.runs = {run};   // uniaxial compression only
     const std::vector<BadClaims> mistakes{
