@@ -35,6 +35,12 @@ std::string counted(const ClaimResult& claim) {
     });
 }
 
+/// "figure 12a", "table 4"
+std::string place(const Claim& claim) {
+    const bool number = !claim.figure.empty() && claim.figure.front() >= '0' && claim.figure.front() <= '9';
+    return number ? "figure " + claim.figure : claim.figure;
+}
+
 /// "35 of 120 runs missing, 2 failed", or nothing.
 std::string lacking(const StatementResult& statement) {
     std::string text;
@@ -57,7 +63,6 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{:
 std::string interval_text(const Comparison& comparison) {
     const MeanInterval& i = comparison.interval;
     const std::string unit = comparison.unit.empty() ? "" : " " + comparison.unit;
-    if (i.count == 0) return "no packing";
     return fmt::format("{}{} ({} to {}), {} packing{}", number(i.mean), unit, number(i.low), number(i.high), i.count, i.count == 1 ? "" : "s");
 }
 
@@ -83,7 +88,7 @@ std::string claims_csv(std::span<const ClaimResult> results) {
 std::string claims_text(std::span<const ClaimResult> results) {
     std::string text;
     for (const ClaimResult& claim : results) {
-        text += fmt::format("{}  figure {}: {}\n  {}: {}\n", claim.claim.id, claim.claim.figure, claim.claim.says, name(claim.verdict), counted(claim));
+        text += fmt::format("{}  {}: {}\n  {}: {}\n", claim.claim.id, place(claim.claim), claim.claim.says, name(claim.verdict), counted(claim));
         for (const StatementResult& s : claim.statements) {
             text += fmt::format("  - {}\n", s.statement.says);
             if (!s.statement.not_evaluated.empty()) {
@@ -93,7 +98,8 @@ std::string claims_text(std::span<const ClaimResult> results) {
             const std::string lack = lacking(s);
             text += fmt::format("    {}{}: {} ({}){}; {}\n", s.study, s.votes ? "" : " (no vote)", name(s.verdict), counted(s), lack.empty() ? "" : ", " + lack,
                                 rule_text(s.statement));
-            for (const Comparison& c : s.comparisons) text += fmt::format("      {:14} {}: {}\n", name(c.verdict), c.what, interval_text(c));
+            for (const Comparison& c : s.comparisons)
+                if (c.interval.count > 0) text += fmt::format("      {:14} {}: {}\n", name(c.verdict), c.what, interval_text(c));
         }
         text += "\n";
     }
@@ -108,7 +114,7 @@ std::string claims_markdown(const ClaimList& list, std::span<const ClaimResult> 
     for (const ClaimResult& claim : results)
         text += fmt::format("| {} | {} | {} | {} | {} |\n", claim.claim.id, claim.claim.figure, claim.claim.says, name(claim.verdict), counted(claim));
     for (const ClaimResult& claim : results) {
-        text += fmt::format("\n## {}: {}\n\nFigure {}. {}.\n", claim.claim.id, name(claim.verdict), claim.claim.figure, claim.claim.says);
+        text += fmt::format("\n## {}: {}\n\n{}: {}.\n", claim.claim.id, name(claim.verdict), place(claim.claim), claim.claim.says);
         for (const StatementResult& s : claim.statements) {
             if (!s.statement.not_evaluated.empty()) {
                 text += fmt::format("\n**{}**: not evaluated, because {}.\n", s.statement.says, s.statement.not_evaluated);

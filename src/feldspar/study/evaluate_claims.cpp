@@ -241,7 +241,8 @@ private:
 
     std::string words(const Side& side, const std::string& from, const std::string& to) const {
         const std::string chosen = words(side.selection);
-        return fmt::format("{}{}{} {} to {}", side.quantity.text + " ", chosen.empty() ? "" : chosen + ", ", side.axis, from, to);
+        const bool two = statement_.first.quantity.text != statement_.second.quantity.text;
+        return fmt::format("{}{}{} {} to {}", two ? side.quantity.text + " " : "", chosen.empty() ? "" : chosen + ", ", side.axis, from, to);
     }
 
     void compare(const Labels& base) {

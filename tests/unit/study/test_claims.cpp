@@ -282,7 +282,7 @@ TEST(Claims, StatementsThatTheStudyCannotHoldAreRefused) {
         {"rule = \"rises_with\"\nproperty = \"DTS_Pa\"\naxis = \"mu\"\n", 11, "needs a test"},
         {"rule = \"rises_with\"\nproperty = \"UCS_Pa\"\naxis = \"my\"\n", 12, "'my' is not an axis"},
         {"rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexibel\" }\nsecond = { grains = \"rigid\" }\n", 12, "did you mean 'flexible'"},
-        {"rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexible\" }\nsecond = { mu = 0.2 }\n", 12, "which value of the axis 'mu'"},
+        {"rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexible\" }\nsecond = { mu = 0.2 }\n", 13, "which value of the axis 'grains'"},
         {"rule = \"rises_with\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nwhere = { mu = [0.2, 0.3] }\n", 13, "'0.3' is not a value"},
         {"rule = \"linear_with\"\nproperty = \"UCS_Pa\"\naxis = \"grains\"\nbound = \"5 %\"\n", 12, "is not a number"},
         {"rule = \"within\"\nproperty = \"nu\"\nbound = \"5 %\"\n", 7, "no laboratory value"},
