@@ -63,6 +63,17 @@ struct CalibrateOptions {
 /// Finds the values of a job's keys with which the model shows a laboratory's numbers, and confirms them.
 ExitCode calibrate_command(const CalibrateOptions& options);
 
+/// What stands on the command line of `claims`.
+struct ClaimsOptions {
+    std::string folder;                    ///< holds claims.toml and the study files that it names
+    std::optional<std::string> results;    ///< directory of the ledger, instead of the studies' own
+    std::vector<std::string> claims;       ///< ids; empty = all
+    std::optional<std::string> csv, markdown;   ///< files to write, too
+};
+
+/// Holds the claims of a folder against what its studies' ledgers have, and prints the verdicts. Runs nothing.
+ExitCode claims_command(const ClaimsOptions& options);
+
 /// Builds everything, prints counts, memory, stable step, expected steps and time, and stops.
 ExitCode check_command(const JobOptions& options);
 

@@ -146,6 +146,14 @@ int run_program(int argc, char** argv) {
         ->excludes(kind_option)
         ->excludes(file_option);
 
+    ClaimsOptions claims;
+    CLI::App* claims_app = app.add_subcommand("claims", "hold claims about a model against what studies have found; runs nothing");
+    claims_app->add_option("folder", claims.folder, "the folder with claims.toml and the study files")->required()->type_name("FOLDER");
+    claims_app->add_option("--results", claims.results, "directory of the ledger (default: as the studies say)")->type_name("DIR");
+    claims_app->add_option("--claim", claims.claims, "only this claim, by its id; may be repeated")->type_name("ID")->allow_extra_args(false);
+    claims_app->add_option("--csv", claims.csv, "write every comparison to this file, too")->type_name("FILE");
+    claims_app->add_option("--markdown", claims.markdown, "write the verdicts and their numbers to this file, too")->type_name("FILE");
+
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -154,6 +162,7 @@ int run_program(int argc, char** argv) {
     return guarded([&] {
         if (*run_app) return run_command(run);
         if (*check_app) return check_command(check);
+        if (*claims_app) return claims_command(claims);
         if (*study_app && study.study.empty()) throw InputError({}, "study: a study file is required", "feldspar study STUDY.toml");
         if (*status_app) return study_status_command(study);
         if (*table_app) return study_table_command(study);

@@ -61,7 +61,7 @@ std::vector<SourceFile> files_under(const std::string& folder, const std::set<st
 /// Everything that we wrote: the folders of the house and the files at its door.
 std::vector<SourceFile> all_files() {
     std::vector<SourceFile> found;
-    for (const char* folder : {"src", "apps", "tests", "benchmarks", "cmake", "docs", "examples", "scripts", ".ci", "python"}) {
+    for (const char* folder : {"src", "apps", "tests", "benchmarks", "cmake", "docs", "examples", "studies", "scripts", ".ci", "python"}) {
         for (SourceFile& file : files_under(folder, text_extensions)) found.push_back(std::move(file));
     }
     for (const auto& entry : fs::directory_iterator(FELDSPAR_SOURCE_DIR)) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/lab/failure_pattern.hpp"
 
 namespace feldspar {
 namespace {
@@ -34,6 +35,11 @@ double count(const TestResult& result, CrackMode mode) {
     return static_cast<double>(std::count_if(result.cracks.begin(), result.cracks.end(), [mode](const Crack& c) { return c.mode == mode; }));
 }
 
+template <double FailurePattern::* member>
+Number pattern(const char* name) {
+    return {name, [](const TestResult& r) { return failure_pattern(r).*member; }};
+}
+
 const std::vector<Number>& numbers() {
     static const std::vector<Number> all{
         property<&TestProperties::peak_stress_Pa>("strength_Pa"),
@@ -54,6 +60,11 @@ const std::vector<Number>& numbers() {
         property<&TestProperties::sigma_cd_Pa>("sigma_cd_Pa"),
         {"cracks_tensile", [](const TestResult& r) { return count(r, CrackMode::tensile); }},
         {"cracks_shear", [](const TestResult& r) { return count(r, CrackMode::shear); }},
+        pattern<&FailurePattern::tensile_share>("tensile_share"),
+        pattern<&FailurePattern::crack_angle_deg>("crack_angle_deg"),
+        pattern<&FailurePattern::crack_alignment>("crack_alignment"),
+        pattern<&FailurePattern::crack_localisation>("crack_localisation"),
+        pattern<&FailurePattern::post_peak_strain>("post_peak_strain"),
         evidence<&QuasiStaticEvidence::residual_mean>("residual_mean"),
         evidence<&QuasiStaticEvidence::residual_at_peak>("residual_at_peak"),
         evidence<&QuasiStaticEvidence::imbalance_max>("imbalance_max"),

@@ -1,0 +1,240 @@
+// A claims file (docs/claims.md): read, and checked as far as it can be without its studies.
+#include <fmt/format.h>
+
+#include <set>
+
+#include "feldspar/job/toml_reader.hpp"
+#include "feldspar/study/claims.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr std::string_view statement_keys[] = {
+    "says", "study", "also", "rule", "property", "first", "second", "third", "where", "axis", "from", "to", "than_property", "than_axis",
+    "than_from", "than_to", "bound", "number", "packings", "not_evaluated"};
+
+/// Which keys a rule needs, beside study and property.
+struct Needs {
+    bool second = false, third = false, axis = false, bound = false, number = false;
+    bool may_second = false, may_number = false, may_than = false;
+};
+
+Needs needs_of(Rule rule) {
+    switch (rule) {
+        case Rule::greater: return {.second = true};
+        case Rule::rises_with:
+        case Rule::falls_with: return {.axis = true};
+        case Rule::negligible:
+        case Rule::matters:
+        case Rule::linear_with: return {.axis = true, .bound = true};
+        case Rule::influence_greater: return {.axis = true, .may_second = true, .may_than = true};
+        case Rule::between:
+        case Rule::closer: return {.second = true, .third = true};
+        case Rule::above:
+        case Rule::below: return {.number = true, .may_second = true};
+        case Rule::within: return {.bound = true, .may_second = true, .may_number = true};
+    }
+    return {};
+}
+
+std::string trimmed(const std::string& text) {
+    const auto begin = text.find_first_not_of(' ');
+    return begin == std::string::npos ? std::string() : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
+}
+
+Quantity quantity_of(const TableReader& table, std::string_view key, const std::string& text) {
+    const auto slash = text.find(" / ");
+    Quantity quantity{text, trimmed(text.substr(0, slash)), slash == std::string::npos ? "" : trimmed(text.substr(slash + 3))};
+    if (quantity.property.empty() || (slash != std::string::npos && quantity.divisor.empty()))
+        table.fail(key, "'" + text + "' is not a property", "a property, or two with ' / ' between them");
+    return quantity;
+}
+
+std::string label_of(const TableReader& table, const toml::node& node, std::string_view key) {
+    if (node.is_integer()) return std::to_string(node.as_integer()->get());
+    if (node.is_floating_point()) return fmt::format("{:g}", node.as_floating_point()->get());
+    return table.text_of(node, key);
+}
+
+/// { grains = "rigid", "tau/sigma_nt" = [1, 2] }; lists only in `where`.
+Selection read_selection(const TableReader& table, std::string_view key) {
+    Selection selection;
+    if (!table.has(key)) return selection;
+    const toml::node& node = *table.find(key);
+    const bool lists = key == "where";
+    const std::string allowed = lists ? "axes with a label, or a list of labels, such as { grains = [\"rigid\", \"flexible\"] }"
+                                      : "axes with a label, such as { grains = \"rigid\" }";
+    if (!node.is_table() || node.as_table()->empty()) table.fail(key, shown(node) + " chooses no points", allowed);
+    for (const auto& [axis, value] : *node.as_table()) {
+        std::vector<std::string>& labels = selection[std::string(axis.str())];
+        if (!value.is_array()) {
+            labels.push_back(label_of(table, value, key));
+            continue;
+        }
+        if (!lists || value.as_array()->empty()) table.fail_at(value, key, "a list of labels is not allowed here, or it is empty", allowed);
+        for (const toml::node& label : *value.as_array()) labels.push_back(label_of(table, label, key));
+    }
+    return selection;
+}
+
+std::string read_label(const TableReader& table, std::string_view key) {
+    return table.has(key) ? label_of(table, *table.find(key), key) : std::string();
+}
+
+class StatementReader {
+public:
+    StatementReader(const toml::table& tree, const std::string& path, const std::string& file) : table_(tree, path, file, statement_keys) {
+        statement_.lines[""] = static_cast<int>(tree.source().begin.line);
+        for (const auto& [key, value] : tree) statement_.lines[std::string(key.str())] = static_cast<int>(key.source().begin.line);
+    }
+
+    Statement read() {
+        statement_.says = table_.text("says");
+        if (table_.has("not_evaluated")) {
+            statement_.not_evaluated = table_.text("not_evaluated");
+            table_.refuse({"study", "also", "rule", "property", "first", "second", "third", "where", "axis", "bound", "number"}, "not_evaluated");
+            return statement_;
+        }
+        table_.require({"study", "rule", "property"});
+        read_studies();
+        read_rule();
+        read_sides();
+        read_numbers();
+        return statement_;
+    }
+
+private:
+    void read_studies() {
+        statement_.study = table_.text("study");
+        if (!table_.has("also")) return;
+        for (const toml::node& node : table_.array("also")) statement_.also.push_back(table_.text_of(node, "also"));
+    }
+
+    void read_rule() {
+        statement_.rule = table_.choice<Rule>(
+            "rule", {{"greater", Rule::greater}, {"rises_with", Rule::rises_with}, {"falls_with", Rule::falls_with}, {"negligible", Rule::negligible},
+                     {"matters", Rule::matters}, {"influence_greater", Rule::influence_greater}, {"linear_with", Rule::linear_with},
+                     {"between", Rule::between}, {"closer", Rule::closer}, {"above", Rule::above}, {"below", Rule::below}, {"within", Rule::within}});
+        const Needs needs = needs_of(statement_.rule);
+        const std::string rule = fmt::format("rule = \"{}\"", name(statement_.rule));
+        const auto need = [&](bool needed, bool may, std::string_view key) {
+            if (needed) table_.require({key});
+            if (!needed && !may) table_.refuse({key}, rule);
+        };
+        need(needs.second, needs.may_second, "second");
+        need(needs.second, true, "first");   // it may choose points for every rule
+        need(needs.third, false, "third");
+        need(needs.axis, false, "axis");
+        need(needs.bound, false, "bound");
+        need(needs.number, needs.may_number, "number");
+        if (table_.has("second")) table_.require({"first"});
+        for (const std::string_view key : {"from", "to"}) need(false, needs.may_than || statement_.rule == Rule::matters, key);
+        for (const std::string_view key : {"than_property", "than_axis", "than_from", "than_to"}) need(false, needs.may_than, key);
+    }
+
+    void read_sides() {
+        statement_.first.quantity = quantity_of(table_, "property", table_.text("property"));
+        statement_.first.selection = read_selection(table_, "first");
+        statement_.first.axis = table_.text("axis", "");
+        statement_.first.from = read_label(table_, "from");
+        statement_.first.to = read_label(table_, "to");
+        statement_.second = statement_.first;
+        statement_.has_second = table_.has("second");
+        if (statement_.has_second) statement_.second.selection = read_selection(table_, "second");
+        if (table_.has("than_property")) statement_.second.quantity = quantity_of(table_, "than_property", table_.text("than_property"));
+        if (table_.has("than_axis")) {
+            statement_.second.axis = table_.text("than_axis");
+            statement_.second.from = statement_.second.to = {};
+        }
+        if (table_.has("than_from")) statement_.second.from = read_label(table_, "than_from");
+        if (table_.has("than_to")) statement_.second.to = read_label(table_, "than_to");
+        statement_.third = read_selection(table_, "third");
+        statement_.where = read_selection(table_, "where");
+        if (statement_.rule == Rule::influence_greater && !statement_.has_second && !table_.has("than_property") && !table_.has("than_axis") &&
+            !table_.has("than_to"))
+            table_.fail("rule", "says nothing that the influence is compared with", "second, than_property, than_axis or than_to");
+    }
+
+    void read_numbers() {
+        statement_.packings = static_cast<int>(table_.integer("packings", 2, 1000, 5));
+        if (table_.has("bound")) {
+            statement_.bound.relative = table_.find("bound")->is_string();
+            statement_.bound.size = table_.fraction("bound", positive);
+            const Rule rule = statement_.rule;
+            if (!statement_.bound.relative && rule == Rule::linear_with)
+                table_.fail("bound", "must be a share of the change over the axis", "text such as \"10 %\"");
+        }
+        if (!table_.has("number")) return;
+        const bool stress = statement_.first.quantity.property.ends_with("_Pa") && statement_.first.quantity.divisor.empty() && !statement_.has_second;
+        statement_.number = stress ? table_.quantity("number", Dimension::stress, any_value) : table_.number("number", any_value);
+        if (statement_.rule == Rule::within && statement_.bound.relative && !(statement_.number > 0.0))
+            table_.fail("number", "a share of it cannot be the tolerance", "a number greater than zero");
+    }
+
+    TableReader table_;
+    Statement statement_;
+};
+
+const toml::array& list_of(const TableReader& table, std::string_view key, const std::string& head) {
+    table.require({key});
+    const toml::node& node = *table.find(key);
+    if (!node.is_array() || node.as_array()->empty()) table.fail(key, shown(node) + " is not a list", "one " + head + " or more");
+    for (const toml::node& inside : *node.as_array())
+        if (!inside.is_table()) table.fail_at(inside, key, shown(inside) + " is not a table", "tables headed " + head);
+    return *node.as_array();
+}
+
+Claim read_claim(const toml::table& tree, const std::string& path, const std::string& file) {
+    const TableReader table(tree, path, file, {"id", "figure", "says", "statement"});
+    table.require({"id", "figure", "says", "statement"});
+    Claim claim{table.text("id"), table.text("figure"), table.text("says"), {}};
+    int number = 0;
+    for (const toml::node& node : list_of(table, "statement", "[[claim.statement]]")) {
+        const std::string place = fmt::format("{}.statement[{}]", path, ++number);
+        claim.statements.push_back(StatementReader(*node.as_table(), place, file).read());
+    }
+    return claim;
+}
+
+}  // namespace
+
+const char* name(Rule rule) {
+    switch (rule) {
+        case Rule::greater: return "greater";
+        case Rule::rises_with: return "rises_with";
+        case Rule::falls_with: return "falls_with";
+        case Rule::negligible: return "negligible";
+        case Rule::matters: return "matters";
+        case Rule::influence_greater: return "influence_greater";
+        case Rule::linear_with: return "linear_with";
+        case Rule::between: return "between";
+        case Rule::closer: return "closer";
+        case Rule::above: return "above";
+        case Rule::below: return "below";
+        case Rule::within: return "within";
+    }
+    return "";
+}
+
+ClaimList parse_claims(const std::string& text, const std::filesystem::path& file) {
+    const toml::table tree = parse_toml(text, file.string());
+    const TableReader root(tree, "", file.string(), {"title", "source", "claim"});
+    root.require({"title", "source", "claim"});
+    ClaimList list{file, root.text("title"), root.text("source"), {}};
+    std::set<std::string> ids;
+    int number = 0;
+    for (const toml::node& node : list_of(root, "claim", "[[claim]]")) {
+        const std::string path = fmt::format("claim[{}]", ++number);
+        list.claims.push_back(read_claim(*node.as_table(), path, file.string()));
+        if (!ids.insert(list.claims.back().id).second)
+            root.fail_at(*node.as_table()->get("id"), path + ".id", "'" + list.claims.back().id + "' is the id of another claim", "each claim its own");
+    }
+    return list;
+}
+
+ClaimList read_claims(const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / "claims.toml";
+    return parse_claims(read_toml_file(file, "claims"), file);
+}
+
+}  // namespace feldspar
