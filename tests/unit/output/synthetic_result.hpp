@@ -199,12 +199,12 @@ inline Provenance make_provenance() {
 
 inline PropertySummary make_properties() {
     PropertySummary properties;
-    properties.values["E_Pa"] = {25e9, 24e9, 26e9, {3, 4}};
-    properties.values["UCS_Pa"] = {120e6, 110e6, 130e6, {3, 4}};
-    properties.values["nu"] = {0.23, 0.22, 0.24, {3, 4}};
-    properties.values["friction_angle_deg"] = {52.0, 51.0, 53.0, {3}};
-    properties.values["cohesion_Pa"] = {20e6, 19e6, 21e6, {3}};
-    properties.values["hoek_brown_mi"] = {std::numeric_limits<double>::quiet_NaN(), 1.0, 2.0, {3}};
+    properties.values["E_Pa"] = {25e9, 24e9, 26e9, {3, 4}, {}};
+    properties.values["UCS_Pa"] = {120e6, 110e6, 130e6, {3, 4}, {}};
+    properties.values["nu"] = {0.23, 0.22, 0.24, {3, 4}, {}};
+    properties.values["friction_angle_deg"] = {52.0, 51.0, 53.0, {3}, {}};
+    properties.values["cohesion_Pa"] = {20e6, 19e6, 21e6, {3}, {}};
+    properties.values["hoek_brown_mi"] = {std::numeric_limits<double>::quiet_NaN(), 1.0, 2.0, {3}, {}};
     properties.fits.push_back({.seed = 3,
                                .cohesion_Pa = 20e6,
                                .friction_angle_deg = 52.0,
