@@ -384,7 +384,7 @@ function writePattern() {
 function writeEvidence() {
   page.append(h("h2", {}, "Evidence that the tests are quasi-static"), h("p", {class: "soft"},
     "Grade A: the strength is shown to about 0.5 % (tension and Brazilian tests: 1 %); B: to about 2 %; C: not shown. The estimated error follows from what the typical grain leaves unbalanced and from how fast the load rises, from 0.9 of the peak on; " +
-    "after a repeat at a third of the rate, from the change of the strength. The other columns are shown, not judged, and count from half of the peak on. R* is the sum of the unbalanced forces over the platen force; the median grain's R* leaves the few grains beside a crack out. " +
+    "after a repeat at a third of the rate, from the change of the strength. The two platens must agree, too. The other columns are shown, not judged; the mean R* counts from half of the peak on. R* is the sum of the unbalanced forces over the platen force; the median grain's R* leaves the few grains beside a crack out. " +
     "Damping is a numerical aid: compare what it dissipates with what fracture dissipates."));
   const percent = (v) => (v === null ? "\u2013" : show(100 * v, 2) + " %");
   const speedAtPeak = (t) => {
