@@ -24,6 +24,7 @@ std::uint64_t hash(const TestResult& r) {
         add(row.stress_top_Pa);
         add(row.lateral_strain_gauge);
         add(row.residual);
+        add(row.residual_median);
         add(row.platen_speed);
         add(row.stress_bottom_Pa);
         add(row.energy.external);   // the platens' work is summed by one thread while the others wait

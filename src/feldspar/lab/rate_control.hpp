@@ -13,6 +13,9 @@ namespace feldspar {
 /// 1e-2 and 3e-2), and powers of the accuracy in between and beyond.
 double residual_target(const NumericsSpec& numerics, TestKind kind, GrainKind grains);
 
+/// The accuracy that has this target: the inverse of residual_target().
+double accuracy_of(double residual_target, TestKind kind, GrainKind grains);
+
 /// A first estimate of the strength from the contacts alone, Pa: tension sigma_nt; compression the Mohr-Coulomb strength of
 /// a material with the contacts' cohesion and friction, 2 tau (mu + sqrt(1 + mu^2)) + N sigma_3. Only the rate control uses it.
 double expected_strength(const ContactMaterial& contact, const TestSpec& test);

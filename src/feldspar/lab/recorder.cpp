@@ -43,6 +43,7 @@ HistoryRow Recorder::present(Phase phase) {
     const double force = 0.5 * (std::abs(reactions.loading) + std::abs(reactions.rest));
     unbalanced_ = feldspar::unbalanced(e_.assembly);
     row.residual = force > 0.0 ? unbalanced_.total_N / force : 0.0;
+    row.residual_median = force > 0.0 ? unbalanced_.typical_N / force : 0.0;
     row.platen_speed = e_.settings.speed;
     StepSettings last = e_.settings;
     if (!e_.stepped) last.dt = 0.0;
@@ -76,7 +77,7 @@ void Recorder::elastic_phase(const HistoryRow& from) {
         // Energies grow with the square of the load only from an unloaded start; elsewhere they follow the two states.
         for (double EnergyLedger::*value : {&EnergyLedger::elastic_grains, &EnergyLedger::elastic_contacts, &EnergyLedger::elastic_start})
             row.energy.*value = from.axial_stress_Pa == 0.0 ? share * share * (to.energy.*value) : mix(from.energy.*value, to.energy.*value, share);
-        row.energy.rate_control = row.energy.kinetic = row.kinetic_deviation = row.residual = row.platen_speed = 0.0;
+        row.energy.rate_control = row.energy.kinetic = row.kinetic_deviation = row.residual = row.residual_median = row.platen_speed = 0.0;
         result_.history.push_back(row);
     }
 }

@@ -47,6 +47,7 @@ struct HistoryRow {
     int cracks_tensile = 0;
     int cracks_shear = 0;
     double residual = 0.0;                ///< R*: sum of |F| over free degrees of freedom / platen force
+    double residual_median = 0.0;         ///< the same with the median body's |F| times the number of bodies as sum
     double platen_speed = 0.0;            ///< m a step (dynamic: m/s)
     double kinetic_deviation = 0.0;       ///< J, of the motion that departs from the loading motion
     EnergyLedger energy;
@@ -85,8 +86,12 @@ struct Snapshot {
     std::vector<double> crack_opening_m;     ///< one for each of these cracks; > 0 open
 };
 
-/// Evidence that the run was quasi-static, each taken from half the peak to the peak, and the verdict in words.
+/// Evidence that the run was quasi-static, from half the peak to the peak unless said, and the verdict in words.
 struct QuasiStaticEvidence {
+    double error_estimate = 0.0;          ///< how much the loading rate may have changed the strength, relative; from the repeat if confirmed
+    double residual_median = 0.0;         ///< mean of HistoryRow::residual_median from 0.9 of the peak to the peak
+    double load_per_travel_time = 0.0;    ///< growth of the platen displacement in a travel time of a wave, relative; mean from 0.9 of the peak on
+    double imbalance_mean = 0.0;          ///< |top - bottom| / mean of both, mean from 0.9 of the peak to the peak
     double residual_mean = 0.0;
     double residual_at_peak = 0.0;
     double imbalance_max = 0.0;           ///< largest |top - bottom| / mean
@@ -145,6 +150,7 @@ struct TestResult {
     double angular_momentum_loss = 0.0;   ///< moment lost by them, relative to the contact moments
     long long vanished_compressions = 0;  ///< points whose compression vanished at damage 1 (model, section 5)
     int new_contacts = 0;                 ///< frictional contacts made after detachment
+    double travel_time = 0.0;             ///< of a wave over the height, steps (dynamic: s)
     double stable_omega2 = 0.0;           ///< largest omega^2 dt^2 of the initial state
     double stable_limit = 0.0;            ///< its bound for this damping
 };

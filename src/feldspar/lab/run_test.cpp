@@ -71,6 +71,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
         result.stop_reason = "interrupted by the user";
     }
     result.preparation_steps = e.preparation_steps;
+    result.travel_time = e.travel_time;
     result.threads = e.team.size();
     recorder.finish();
     result.vanished_compressions = count_vanished(e.assembly);

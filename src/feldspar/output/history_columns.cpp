@@ -33,6 +33,8 @@ constexpr auto columns = std::to_array<HistoryColumn>({
     {"cracks_shear", "1", "contact points broken in shear so far", true,
      [](Row r) { return static_cast<double>(r.cracks_shear); }},
     {"residual", "1", "R*: sum of the unbalanced forces / platen force", false, [](Row r) { return r.residual; }},
+    {"residual_median", "1", "the same with the median body's unbalanced force times the number of bodies as sum", false,
+     [](Row r) { return r.residual_median; }},
     {"platen_speed", "m/step", "closing speed of the platens (dynamic numerics: m/s)", false,
      [](Row r) { return r.platen_speed; }},
     {"kinetic_deviation_J", "J", "kinetic energy of the motion that departs from the loading motion", false,

@@ -95,6 +95,10 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["shear"] = static_cast<std::ptrdiff_t>(result.cracks.size()) - tensile;
     test["steps"] = result.steps;
     test["wall_s"] = rounded(result.wall_s);
+    test["error_estimate"] = rounded(e.error_estimate);
+    test["residual_median"] = rounded(e.residual_median);
+    test["load_per_travel_time"] = rounded(e.load_per_travel_time);
+    test["imbalance_mean"] = rounded(e.imbalance_mean);
     test["residual_mean"] = rounded(e.residual_mean);
     test["residual_at_peak"] = rounded(e.residual_at_peak);
     test["imbalance_max"] = rounded(e.imbalance_max);

@@ -83,6 +83,11 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["wall_s"] = number(result.wall_s);
     test["ms_per_step"] = number(result.ms_per_step);
     test["threads"] = result.threads;
+    test["error_estimate"] = number(e.error_estimate);
+    test["residual_median"] = number(e.residual_median);
+    test["load_per_travel_time"] = number(e.load_per_travel_time);
+    test["imbalance_mean"] = number(e.imbalance_mean);
+    test["travel_time"] = number(result.travel_time);
     test["residual_mean"] = number(e.residual_mean);
     test["residual_at_peak"] = number(e.residual_at_peak);
     test["imbalance_max"] = number(e.imbalance_max);

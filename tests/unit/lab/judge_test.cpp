@@ -29,15 +29,41 @@ TEST(Judge, QuietRunIsGradeA) {
     EXPECT_DOUBLE_EQ(e.imbalance_max, 0.0);
     EXPECT_NEAR(e.kinetic_over_strain, 1e-5, 1e-12);
     EXPECT_DOUBLE_EQ(e.damping_over_fracture, 0.25);
+    EXPECT_NEAR(e.residual_median, 3e-3, 1e-15);
+    EXPECT_NEAR(e.load_per_travel_time, 4e-3, 1e-15);
+    EXPECT_NEAR(e.error_estimate, 4e-3, 1e-15);
     EXPECT_TRUE(says(e, "Quasi-static to about 0.5 % up to the peak")) << e.verdict;
     EXPECT_TRUE(says(e, "branch after the peak is dynamic"));
 }
 
-TEST(Judge, OnlyHalfThePeakToThePeakCounts) {
+TEST(Judge, OnlyNineTenthsOfThePeakToThePeakDecide) {
     const QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [](HistoryRow& h) {
         if (h.axial_stress_Pa < 49e6 || h.step > 1000) h.residual = h.kinetic_deviation = 1.0;
+        if (h.axial_stress_Pa < 89e6 || h.step > 1000) h.residual_median = 1.0;
     });
+    EXPECT_NEAR(e.residual_mean, 5e-3, 1e-15);
     EXPECT_EQ(e.grade, 'A') << e.verdict;
+}
+
+void set_median(HistoryRow& h, double v) { h.residual_median = v; }
+void set_imbalance(HistoryRow& h, double v) {
+    h.stress_top_Pa = h.axial_stress_Pa * (1.0 + 0.5 * v);
+    h.stress_bottom_Pa = h.axial_stress_Pa * (1.0 - 0.5 * v);
+}
+void set_growth(HistoryRow& h, double v) { h.platen_speed = v / 400.0 * std::abs(h.platen_displacement_m); }
+// An estimated error from the unbalanced force alone.
+void set_error(HistoryRow& h, double v) {
+    set_median(h, v);
+    set_growth(h, 0.0);
+}
+// The same from the speed alone.
+void set_overrun(HistoryRow& h, double v) {
+    set_median(h, 0.0);
+    set_growth(h, 4.0 * v);
+}
+void set_tension_error(HistoryRow& h, double v) {
+    set_median(h, 3.0 * v);
+    set_growth(h, 0.0);
 }
 
 struct Limit {
@@ -47,79 +73,103 @@ struct Limit {
     void (*set)(HistoryRow&, double);
 };
 
-void set_residual(HistoryRow& h, double v) { h.residual = v; }
-void set_peak_residual(HistoryRow& h, double v) { h.residual = h.step == 1000 ? v : 1e-4; }
-void set_imbalance(HistoryRow& h, double v) {
-    h.stress_top_Pa = h.axial_stress_Pa * (1.0 + 0.5 * v);
-    h.stress_bottom_Pa = h.axial_stress_Pa * (1.0 - 0.5 * v);
-}
-void set_kinetic(HistoryRow& h, double v) { h.kinetic_deviation = v * (h.energy.elastic_grains + h.energy.elastic_contacts); }
-
 // The verdict table (L9), line by line: just inside and just outside each limit.
 TEST(Judge, LimitsOfTheVerdictTable) {
     const Limit table[] = {
-        {"mean R*", TestKind::uniaxial_compression, 7e-3, 1.5e-2, set_residual},
-        {"mean R*", TestKind::biaxial, 7e-3, 1.5e-2, set_residual},
-        {"mean R*", TestKind::direct_tension, 7e-3, 1.5e-2, set_residual},
-        {"mean R*", TestKind::brazilian, 1.4e-2, 3e-2, set_residual},
-        {"R* at the peak", TestKind::uniaxial_compression, 2e-2, 5e-2, set_peak_residual},
-        {"R* at the peak", TestKind::direct_tension, 4e-2, 5e-2, set_peak_residual},
-        {"imbalance", TestKind::uniaxial_compression, 1.5e-2, 3e-2, set_imbalance},
-        {"imbalance", TestKind::brazilian, 5e-2, 5e-2, set_imbalance},
-        {"kinetic", TestKind::uniaxial_compression, 2e-4, 1e-3, set_kinetic},
-        {"kinetic", TestKind::brazilian, 2e-4, 1e-3, set_kinetic},
+        {"unbalanced force", TestKind::uniaxial_compression, 5e-3, 2e-2, set_error},
+        {"unbalanced force", TestKind::biaxial, 5e-3, 2e-2, set_error},
+        {"unbalanced force", TestKind::direct_tension, 1e-2, 2e-2, set_tension_error},
+        {"unbalanced force", TestKind::brazilian, 1e-2, 2e-2, set_tension_error},
+        {"overrun", TestKind::uniaxial_compression, 5e-3, 2e-2, set_overrun},
+        {"overrun", TestKind::direct_tension, 1e-2, 2e-2, set_overrun},
+        {"imbalance", TestKind::uniaxial_compression, 1e-2, 2e-2, set_imbalance},
+        {"imbalance", TestKind::brazilian, 3e-2, 5e-2, set_imbalance},
     };
     for (const Limit& line : table) {
         const auto grade = [&](double value) {
             return judged(line.kind, [&](HistoryRow& h) { line.set(h, value); }).grade;
         };
         EXPECT_EQ(grade(0.99 * line.a), 'A') << line.quantity << ", " << name(line.kind);
-        if (line.b > line.a) {
-            EXPECT_EQ(grade(1.01 * line.a), 'B') << line.quantity << ", " << name(line.kind);
-            EXPECT_EQ(grade(0.99 * line.b), 'B') << line.quantity << ", " << name(line.kind);
-        }
+        EXPECT_EQ(grade(1.01 * line.a), 'B') << line.quantity << ", " << name(line.kind);
+        EXPECT_EQ(grade(0.99 * line.b), 'B') << line.quantity << ", " << name(line.kind);
         EXPECT_EQ(grade(1.01 * line.b), 'C') << line.quantity << ", " << name(line.kind);
     }
+}
+
+// (L8): both parts add up, and the mean over the rows from 0.9 of the peak on counts.
+TEST(Judge, EstimatesTheErrorOfTheStrength) {
+    const auto change = [](HistoryRow& h) {
+        if (std::abs(h.axial_stress_Pa) < 89.5e6) return set_median(h, 1.0);
+        set_median(h, std::abs(h.axial_stress_Pa) < 94.5e6 ? 0.0 : 1.1e-2);   // six of the eleven rows
+        set_growth(h, 0.02);
+    };
+    const QuasiStaticEvidence pressed = judged(TestKind::uniaxial_compression, change), pulled = judged(TestKind::direct_tension, change);
+    EXPECT_NEAR(pressed.residual_median, 6e-3, 1e-12);
+    EXPECT_NEAR(pressed.load_per_travel_time, 0.02, 1e-12);
+    EXPECT_NEAR(pressed.error_estimate, 6e-3 + 5e-3, 1e-12);
+    EXPECT_NEAR(pulled.error_estimate, 2e-3 + 5e-3, 1e-12);
+}
+
+// A crack shakes a few bodies for a moment whatever the speed is: the sum and the largest values do not decide.
+TEST(Judge, AFewRestlessBodiesDoNotDecide) {
+    const QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [](HistoryRow& h) {
+        h.residual = 0.1;
+        if (h.step == 600) set_imbalance(h, 0.2);
+        if (h.step == 700) h.kinetic_deviation = 0.1;
+    });
+    EXPECT_EQ(e.grade, 'A') << e.verdict;
+    EXPECT_NEAR(e.residual_mean, 0.1, 1e-12);
+    EXPECT_NEAR(e.imbalance_max, 0.2, 1e-12);
+    EXPECT_NEAR(e.kinetic_over_strain, 0.1, 1e-12);
 }
 
 TEST(Judge, SaysWhatFailedAndWhatToDo) {
     QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [](HistoryRow& h) { set_imbalance(h, 0.042); });
     EXPECT_EQ(e.grade, 'C');
     EXPECT_TRUE(says(e, "Not shown to be quasi-static")) << e.verdict;
-    EXPECT_TRUE(says(e, "two platens' loads is 4.2 % (3 % allowed)")) << e.verdict;
-    EXPECT_TRUE(says(e, "run with accuracy = \"0.2 %\"")) << e.verdict;
+    EXPECT_TRUE(says(e, "two platens' loads is 4.2 % (2 % allowed)")) << e.verdict;
+    EXPECT_TRUE(says(e, "run with accuracy = \"0.1 %\"")) << e.verdict;   // a target 2.1 times smaller
 
     TestResult r = linear(TestKind::uniaxial_compression, 100e6);
-    for (HistoryRow& h : r.history) h.residual = 1e-2;
+    for (HistoryRow& h : r.history) set_error(h, 1e-2);
     r.numerics.accuracy = 0.02;
     EXPECT_EQ(judge(r).grade, 'B');
+    EXPECT_TRUE(says(judge(r), "the estimated error of the strength is 1 % (0.5 % allowed)")) << judge(r).verdict;
     EXPECT_TRUE(says(judge(r), "to reach 0.5 %, run with accuracy = \"0.5 %\"")) << judge(r).verdict;
+    r.numerics.residual_target = 6e-3;
+    EXPECT_TRUE(says(judge(r), "run with residual_target = 0.003")) << judge(r).verdict;
     r.numerics.kind = NumericsKind::paper;
-    EXPECT_TRUE(says(judge(r), "a third of the platen speed")) << judge(r).verdict;
+    EXPECT_TRUE(says(judge(r), "at a platen speed smaller by a factor of 2,")) << judge(r).verdict;
 }
 
-TEST(Judge, TheRepeatAtAThirdOfTheTargetIsPartOfTheEvidence) {
+TEST(Judge, TheRepeatAtAThirdOfTheTargetTakesThePlaceOfTheEstimate) {
     TestResult r = linear(TestKind::uniaxial_compression, 100e6);
+    for (HistoryRow& h : r.history) set_error(h, 0.03);
+    EXPECT_EQ(judge(r).grade, 'C');
     r.evidence.confirmed = true;
     r.evidence.peak_change_at_third = -0.003;
     EXPECT_EQ(judge(r).grade, 'A');
     EXPECT_TRUE(judge(r).confirmed);
+    EXPECT_NEAR(judge(r).error_estimate, 0.0045, 1e-12);   // in proportion to the rate: two thirds of it show
     EXPECT_TRUE(says(judge(r), "-0.3 %")) << judge(r).verdict;
     r.evidence.peak_change_at_third = -0.012;
     EXPECT_EQ(judge(r).grade, 'B');
-    r.evidence.peak_change_at_third = 0.06;
+    r.evidence.peak_change_at_third = 0.014;
     EXPECT_EQ(judge(r).grade, 'C');
 }
 
 TEST(Judge, WhatIsNotKnownIsNotShown) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (auto set : {set_residual, set_imbalance, set_kinetic}) {
+    for (auto set : {set_median, set_imbalance, set_growth}) {
         const QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [&](HistoryRow& h) {
-            if (h.step == 700) set(h, nan);
+            if (h.step == 950) set(h, nan);
         });
         EXPECT_EQ(e.grade, 'C');
         EXPECT_TRUE(says(e, "is not known")) << e.verdict;
     }
+    TestResult r = linear(TestKind::uniaxial_compression, 100e6);
+    r.travel_time = 0.0;
+    EXPECT_EQ(judge(r).grade, 'C');
 }
 
 TEST(Judge, PartialRecords) {

@@ -21,6 +21,15 @@ double per_travel_time(double speed) { return speed * kTravelTime / kTravel; }
 
 }  // namespace
 
+TEST(RateControl, AccuracyAndTargetAreInverse) {
+    for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::brazilian}) {
+        NumericsSpec numerics;
+        numerics.accuracy = 0.013;
+        EXPECT_NEAR(accuracy_of(residual_target(numerics, kind, GrainKind::flexible), kind, GrainKind::flexible), 0.013, 1e-12);
+    }
+    EXPECT_NEAR(accuracy_of(1e-2, TestKind::uniaxial_compression, GrainKind::flexible), 0.02, 1e-12);
+}
+
 TEST(RateControl, HoldsTheSpeedAtTheTarget) {
     const double v = 2e-8;
     EXPECT_DOUBLE_EQ(control().next(v, {kTarget * 80.0, kTarget * 80.0}, 80.0, kTravel, 1.0), v);
