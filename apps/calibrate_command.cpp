@@ -23,22 +23,22 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     job.threads = options.threads.value_or(0);
     Progress progress;
     progress.keep_log_short();
-    CalibrateControl control;
-    control.note = [&](const std::string& line) { progress.note(line); };
-    control.execute.threads = thread_count(job);
-    control.execute.at_once = options.at_once.value_or(0);
-    control.execute.keep = Keep::numbers;
-    control.execute.stop = &stop_requested();
-    control.execute.provenance = collect_provenance(options.command_line, control.execute.threads);
+    ExecuteControl control;
+    control.threads = thread_count(job);
+    control.at_once = options.at_once.value_or(0);
+    control.keep = Keep::numbers;
+    control.stop = &stop_requested();
+    control.provenance = collect_provenance(options.command_line, control.threads);
+    RunLaboratory laboratory(calibration, ledger, control);
     progress.note(fmt::format("{}: {} targets, {} unknowns, at most {} runs; results in {}", calibration.name, calibration.targets.size(),
                               calibration.unknowns.size(), calibration.budget, calibration.results.string()));
-    const CalibrationResult result = calibrate(calibration, ledger, control);
+    const CalibrationResult result = calibrate(calibration, laboratory, [&](const std::string& line) { progress.note(line); });
     if (!result.complete) {
         fmt::print(stderr, "interrupted after {} runs, which are kept; the same command goes on\n", result.runs);
         return ExitCode::interrupted;
     }
     const RunDirectory directory = RunDirectory::open(calibration.results);
-    directory.write_text("calibration.json", calibration_json(calibration, result, control.execute.provenance));
+    directory.write_text("calibration.json", calibration_json(calibration, result, control.provenance));
     directory.write_text("calibrated.toml", calibrated_job(calibration, result));
     fmt::print("\n{}\nJob with the best set: {}\n", calibration_text(result), (calibration.results / "calibrated.toml").string());
     return ExitCode::success;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <optional>
 #include <set>
 
 #include "feldspar/base/error.hpp"
@@ -19,80 +19,13 @@ namespace {
 constexpr std::size_t first_points_per_unknown = 4;   // of the space-filling set
 constexpr std::size_t points_per_round = 4;           // whatever the number of threads: the way must be the same on every machine
 constexpr std::size_t most_elastic_rounds = 4;
-constexpr double elastic_stress_share = 0.04;         // of the strength: where the short tests end
-constexpr double usual_UCS_over_E = 1.0 / 210.0;      // when no strength is a target
 constexpr double good_share = 0.5;                    // of a tolerance: how near the prediction, and how small the doubt about it, is to be
 constexpr double test_share = 0.3;                    // a test is worth a run where the doubt it removes is this share of a tolerance
 
-struct Request {
-    std::vector<double> values;         // of all unknowns
-    std::uint64_t seed = 0;
-    std::vector<std::size_t> quantities;   // which are to be seen
-};
-
-// Runs requests and hands what they show to whoever asked.
-class Laboratory {
-public:
-    Laboratory(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control) : calibration_(calibration), ledger_(ledger), control_(control) {}
-
-    using Seen = std::function<void(std::size_t request, std::size_t quantity, double value)>;
-
-    /// Of all these requests; short tests end at the given strain. @throws Interrupted
-    void see(const std::vector<Request>& requests, const std::vector<Quantity>& quantities, std::optional<double> short_strain, const Seen& seen) {
-        std::vector<Run> runs;
-        std::vector<std::vector<std::pair<std::size_t, std::size_t>>> asked;   // of each run: request and quantity
-        for (std::size_t r = 0; r < requests.size(); ++r) {
-            Job job = calibration_.job_with(requests[r].values);
-            std::map<std::pair<TestKind, double>, std::size_t> of_test;
-            for (const std::size_t q : requests[r].quantities) {
-                const std::pair test{quantities[q].test, quantities[q].sigma3_Pa};
-                if (!of_test.contains(test)) {
-                    of_test[test] = runs.size();
-                    runs.push_back(run_of(job, quantities[q], requests[r].seed, short_strain));
-                    asked.emplace_back();
-                }
-                asked[of_test[test]].emplace_back(r, q);
-            }
-        }
-        const Execution execution = execute(runs, ledger_, control_.execute);
-        for (const Run& run : runs) used_.insert(run.id);
-        if (execution.left > 0) throw Interrupted();
-        for (std::size_t i = 0; i < runs.size(); ++i) {
-            const auto record = ledger_.find(runs[i].id);
-            if (!record || record->state != RunState::done) continue;   // a run that fails teaches nothing
-            for (const auto& [r, q] : asked[i]) seen(r, q, record->numbers.at(column_of(quantities[q], short_strain.has_value())));
-        }
-    }
-
-    int used() const { return static_cast<int>(used_.size()); }
-    int left() const { return calibration_.budget - used(); }
-
-private:
-    static std::string column_of(const Quantity& quantity, bool is_short) {
-        if (!is_short) return quantity.column;
-        return quantity.name == "E" ? "E_initial_Pa" : "nu_initial";
-    }
-
-    Run run_of(const Job& job, const Quantity& quantity, std::uint64_t seed, std::optional<double> short_strain) const {
-        for (const TestSpec& test : job.tests) {
-            if (test.kind != quantity.test || (test.kind == TestKind::biaxial && test.sigma3_Pa != quantity.sigma3_Pa)) continue;
-            TestSpec wanted = test;
-            if (short_strain) wanted.maximum_strain = *short_strain;
-            return make_run(job, job.variants.front(), wanted, seed);
-        }
-        throw InputError({}, fmt::format("the job has no test for {}", quantity.name));   // was checked when the file was read
-    }
-
-    const Calibration& calibration_;
-    Ledger& ledger_;
-    const CalibrateControl& control_;
-    std::set<std::string> used_;
-};
-
 class Calibrate {
 public:
-    Calibrate(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control)
-        : calibration_(calibration), control_(control), laboratory_(calibration, ledger, control), quantities_(quantities_for(calibration)) {
+    Calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note)
+        : calibration_(calibration), laboratory_(laboratory), note_(note), quantities_(quantities_for(calibration)) {
         for (std::size_t u = 0; u < calibration.unknowns.size(); ++u) (calibration.unknowns[u].elastic ? elastic_ : strength_).push_back(u);
         middle_.assign(calibration.unknowns.size(), 0.5);
         best_ = middle_;
@@ -114,7 +47,7 @@ public:
 
 private:
     void note(const std::string& text) const {
-        if (control_.note) control_.note(text);
+        if (note_) note_(text);
     }
 
     std::vector<double> values_at(const std::vector<double>& x) const {
@@ -132,6 +65,8 @@ private:
 
     std::uint64_t next_seed() { return calibration_.seeds[turn_++ % calibration_.seeds.size()]; }
 
+    int runs_left() const { return calibration_.budget - laboratory_.used(); }
+
     int confirmation_runs() const {
         std::set<std::pair<TestKind, double>> tests;
         for (const Quantity& q : quantities_) tests.insert({q.test, q.sigma3_Pa});
@@ -139,17 +74,6 @@ private:
     }
 
     // ---- elastic constants, by tests that end before the first damage
-
-    double short_strain() const {
-        double UCS_over_E = usual_UCS_over_E;
-        double E = std::nan(""), UCS = std::nan("");
-        for (const Target& t : calibration_.targets) {
-            if (t.name == "E") E = t.value;
-            if (t.name == "UCS") UCS = t.value;
-        }
-        if (std::isfinite(UCS / E)) UCS_over_E = UCS / E;
-        return elastic_stress_share * UCS_over_E;
-    }
 
     void find_elastic() {
         std::vector<Target> targets;
@@ -177,9 +101,8 @@ private:
         std::vector<Request> requests;
         std::vector<std::size_t> all;
         for (std::size_t q = 0; q < elastic_learner_->quantities().size(); ++q) all.push_back(q);
-        for (const auto& x : points) requests.push_back({values_at(whole(elastic_, x)), next_seed(), all});
-        laboratory_.see(requests, elastic_learner_->quantities(), short_strain(),
-                        [&](std::size_t r, std::size_t q, double value) { elastic_learner_->observe(q, points[r], requests[r].seed, value); });
+        for (const auto& x : points) requests.push_back({values_at(whole(elastic_, x)), next_seed(), all, true});
+        see(requests, points, *elastic_learner_);
     }
 
     // E and nu at half of the strength are not those before damage: aims the elastic constants so that the former meet the targets.
@@ -224,7 +147,7 @@ private:
         std::vector<std::size_t> all;
         for (std::size_t q = 0; q < quantities_.size(); ++q) all.push_back(q);
         const std::size_t tests = static_cast<std::size_t>(confirmation_runs()) / calibration_.confirm_seeds.size();
-        const int for_learning = laboratory_.left() - confirmation_runs();
+        const int for_learning = runs_left() - confirmation_runs();
         const std::size_t affordable = static_cast<std::size_t>(std::max(0, for_learning / 2)) / tests;
         const std::size_t first = std::min(affordable, first_points_per_unknown * strength_.size() + 2);
         if (first < 3) throw InputError({calibration_.file.string(), 0, 0, "budget"},
@@ -241,7 +164,7 @@ private:
             const std::vector<double> x = best_point(learner, strength_.size());
             put_best(strength_, x);
             tell(learner, strength_);
-            const int affordable_runs = laboratory_.left() - confirmation_runs();
+            const int affordable_runs = runs_left() - confirmation_runs();
             if (settled(learner, x) || affordable_runs <= 0) break;
             std::vector<std::vector<double>> next = promising_points(learner, strength_.size(), points_per_round - 1, round);
             next.push_back(x);   // what would be the answer
@@ -287,11 +210,17 @@ private:
     void see_strength(const std::vector<std::vector<double>>& points, const std::vector<std::vector<std::size_t>>& wanted) {
         std::vector<Request> requests;
         for (std::size_t p = 0; p < points.size(); ++p) requests.push_back({values_at(whole(strength_, points[p])), next_seed(), wanted[p]});
-        laboratory_.see(requests, quantities_, std::nullopt,
-                        [&](std::size_t r, std::size_t q, double value) { strength_learner_->observe(q, points[r], requests[r].seed, value); });
+        see(requests, points, *strength_learner_);
     }
 
     // ---- both
+
+    void see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) const {
+        const auto values = laboratory_.see(requests, learner.quantities());
+        for (std::size_t r = 0; r < requests.size(); ++r)
+            for (std::size_t i = 0; i < requests[r].quantities.size(); ++i)
+                learner.observe(requests[r].quantities[i], points[r], requests[r].seed, values[r][i]);
+    }
 
     void learn(Learner& learner) const {
         if (!learner.learn()) throw NumericalError("calibration: a test failed at every point of the ranges; its runs say why");
@@ -343,8 +272,10 @@ private:
         for (std::size_t q = 0; q < quantities_.size(); ++q) all.push_back(q);
         std::vector<Request> requests;
         for (const std::uint64_t seed : calibration_.confirm_seeds) requests.push_back({values_at(best_), seed, all});
-        std::vector<std::vector<double>> seen(quantities_.size(), std::vector<double>(requests.size(), std::nan("")));
-        laboratory_.see(requests, quantities_, std::nullopt, [&](std::size_t r, std::size_t q, double value) { seen[q][r] = value; });
+        const auto by_packing = laboratory_.see(requests, quantities_);
+        std::vector<std::vector<double>> seen(quantities_.size());
+        for (const auto& values : by_packing)
+            for (std::size_t q = 0; q < quantities_.size(); ++q) seen[q].push_back(values[q]);
 
         CalibrationResult result;
         const Learner* learner = strength_learner_ ? &*strength_learner_ : &*elastic_learner_;
@@ -382,8 +313,8 @@ private:
     }
 
     const Calibration& calibration_;
-    const CalibrateControl& control_;
-    Laboratory laboratory_;
+    Laboratory& laboratory_;
+    const std::function<void(const std::string&)>& note_;
     std::vector<Quantity> quantities_;
     std::vector<std::size_t> elastic_, strength_;   // unknowns
     std::vector<double> middle_, best_;             // of all unknowns, 0 ... 1
@@ -393,6 +324,8 @@ private:
 
 }  // namespace
 
-CalibrationResult calibrate(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control) { return Calibrate(calibration, ledger, control)(); }
+CalibrationResult calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note) {
+    return Calibrate(calibration, laboratory, note)();
+}
 
 }  // namespace feldspar

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,13 +42,45 @@ struct CalibrationResult {
     bool complete = false;                          ///< false: interrupted
 };
 
-struct CalibrateControl {
-    ExecuteControl execute;
-    std::function<void(const std::string&)> note;   ///< what it does now, in words
+/// Tests that a calibration wants to see: some quantities, at some values of all unknowns, on one packing.
+struct Request {
+    std::vector<double> values;            ///< of all unknowns, in their units
+    std::uint64_t seed = 0;                ///< of the packing
+    std::vector<std::size_t> quantities;   ///< which of those that it asks for
+    bool elastic = false;                  ///< only E and nu, before damage: by a test that ends at a small strain
 };
 
-/// Learns, chooses and confirms. Everything it decides follows from the file and the runs, so that a second call goes the same way
+/// Where the tests are made.
+class Laboratory {
+public:
+    virtual ~Laboratory() = default;
+
+    /// Of each request the values of its quantities, in their order; not-a-number where a test failed. @throws Interrupted
+    virtual std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Quantity>& quantities) = 0;
+
+    /// Tests made so far, those that were in the ledger before too.
+    virtual int used() const = 0;
+};
+
+/// Makes the tests by runs on a ledger: those that are done are not repeated.
+class RunLaboratory : public Laboratory {
+public:
+    RunLaboratory(const Calibration& calibration, Ledger& ledger, ExecuteControl control) : calibration_(calibration), ledger_(ledger), control_(std::move(control)) {}
+    std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Quantity>& quantities) override;
+    int used() const override { return static_cast<int>(used_.size()); }
+
+private:
+    Run run_for(const Request& request, const Quantity& quantity) const;
+
+    const Calibration& calibration_;
+    Ledger& ledger_;
+    ExecuteControl control_;
+    std::set<std::string> used_;
+};
+
+/// Learns, chooses and confirms. Everything it decides follows from the file and from what it sees, so that a second call goes the same way
 /// over the runs in the ledger, and on from where the first one was interrupted.
-CalibrationResult calibrate(const Calibration& calibration, Ledger& ledger, const CalibrateControl& control);
+/// @param note  told in words what it does now; may be empty
+CalibrationResult calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note);
 
 }  // namespace feldspar
