@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "feldspar/base/error.hpp"
@@ -338,17 +339,22 @@ Gathering gather(Ledger& ledger) {
     return gather(ledger, plans, queue_of(plans));
 }
 
-ArrayState array_state(const SlurmPlan& plan) {
+std::vector<ArrayState> array_states(std::span<const SlurmPlan> plans) {
     const Queue queue = ask_queue();
-    ArrayState state;
-    for (std::size_t element = 0; element < plan.groups.size(); ++element) {
-        const auto found = queue.find({plan.array_job, element});
-        if (found != queue.end()) ++(found->second == Place::waiting ? state.waiting : state.running);
-        std::error_code error;
-        for (const std::string& id : plan.groups[element]) state.recorded += fs::exists(plan.results() / "runs" / id / "run.json", error) ? 1 : 0;
+    std::vector<ArrayState> states;
+    for (const SlurmPlan& plan : plans) {
+        ArrayState& state = states.emplace_back();
+        for (std::size_t element = 0; element < plan.groups.size(); ++element) {
+            if (const auto found = queue.find({plan.array_job, element}); found != queue.end())
+                ++(found->second == Place::waiting ? state.waiting : state.running);
+            std::error_code error;
+            for (const std::string& id : plan.groups[element])
+                if (fs::exists(plan.results() / "runs" / id / "run.json", error)) ++state.recorded;
+            state.runs += static_cast<int>(plan.groups[element].size());
+        }
+        state.over = state.waiting + state.running == 0 && !queue.contains({plan.gather_job, 0});
     }
-    state.over = !queue.contains({plan.gather_job, 0});
-    return state;
+    return states;
 }
 
 }  // namespace feldspar

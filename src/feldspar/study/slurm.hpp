@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,7 +48,12 @@ struct Gathering {
     std::vector<RunRecord> failed;    ///< runs that ended without a result
     std::vector<LostElement> lost;
 
-    bool complete() const { return queued == 0 && failed.empty() && lost.empty(); }
+    /// Runs of lost elements.
+    std::size_t missing() const {
+        std::size_t count = 0;
+        for (const LostElement& element : lost) count += element.runs.size();
+        return count;
+    }
 };
 
 /// Reads the run.json files of all plans of this ledger's directory into it. May be repeated at any time.
@@ -57,12 +62,12 @@ Gathering gather(Ledger& ledger);
 /// How far an array is.
 struct ArrayState {
     int waiting = 0, running = 0;   ///< elements
-    int recorded = 0;               ///< runs with a record
-    bool over = false;              ///< its results have been taken in, or never will be: the gathering job has left the queue
+    int recorded = 0, runs = 0;     ///< runs with a record, of all
+    bool over = false;              ///< neither an element nor the gathering job is in the queue any more
 };
 
-/// @throws InputError when Slurm cannot be asked
-ArrayState array_state(const SlurmPlan& plan);
+/// One for each of the plans. @throws InputError when Slurm cannot be asked
+std::vector<ArrayState> array_states(std::span<const SlurmPlan> plans);
 
 /// Elements of job arrays in text as Slurm writes it: "3", "4-6,9%2". @return nothing for other texts
 std::vector<std::size_t> elements_in(const std::string& text);
