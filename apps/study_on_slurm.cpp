@@ -104,6 +104,7 @@ std::vector<SlurmPlan> plans_in_queue(const fs::path& results) {
 }  // namespace
 
 ExitCode study_on_slurm(const Study& study, const StudyOptions& options) {
+    require_slurm();
     Ledger ledger(study.results, Ledger::Access::write);
     const Submission submission = submit(study, ledger, options.slurm, fs::read_symlink("/proc/self/exe"));
     print_submission(submission, options.study);
@@ -122,6 +123,8 @@ ExitCode study_on_slurm(const Study& study, const StudyOptions& options) {
 
 ExitCode study_gather_command(const StudyOptions& options) {
     const fs::path results = fs::is_directory(options.study) ? fs::path(options.study) : study_with_options(options).results;
+    if (read_plans(results).empty())
+        throw InputError({}, fmt::format("nothing of '{}' has gone to Slurm", results.string()), "feldspar study STUDY.toml --on slurm");
     Ledger ledger(results, Ledger::Access::write);
     const Gathering gathering = gather(ledger);
     print_gathering(gathering);

@@ -293,6 +293,11 @@ std::vector<std::size_t> elements_in(const std::string& text) {
     return elements;
 }
 
+void require_slurm() {
+    for (const char* program : {"sbatch", "squeue"})
+        if (!call_program({program, "--version"})) no_slurm(program);
+}
+
 Submission submit(const Study& study, Ledger& ledger, const SlurmOptions& options, const fs::path& program) {
     ledger.enrol(study);
     const std::vector<SlurmPlan> plans = read_plans(ledger.directory());

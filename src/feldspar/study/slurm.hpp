@@ -15,6 +15,9 @@
 
 namespace feldspar {
 
+/// @throws InputError if Slurm's programs are not on the PATH
+void require_slurm();
+
 /// What became of the runs of a study that was to be submitted.
 struct Submission {
     int done = 0;                    ///< were done before
@@ -56,7 +59,8 @@ struct Gathering {
     }
 };
 
-/// Reads the run.json files of all plans of this ledger's directory into it. May be repeated at any time.
+/// Reads the run.json files of all plans of this ledger's directory into it. May be repeated at any time. @throws InputError when Slurm
+/// does not say what is in its queue
 Gathering gather(Ledger& ledger);
 
 /// How far an array is.
