@@ -15,12 +15,6 @@
 namespace feldspar {
 namespace {
 
-Study study_with_options(const StudyOptions& options) {
-    Study study = read_study(options.study);
-    if (options.results) study.results = *options.results;
-    return study;
-}
-
 std::string label_of(const Study& study, const Run& run) {
     std::string text;
     for (const AxisValue& value : study.points[run.point].values) text += (text.empty() ? "" : ", ") + value.label;

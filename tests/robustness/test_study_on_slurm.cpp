@@ -1,4 +1,5 @@
 // A study on a cluster without a cluster: stand-ins for Slurm's programs run the scripts at once, or only put them into their queue.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "program.hpp"
@@ -30,6 +31,8 @@ echo $number
 constexpr const char* stand_in_squeue = "#!/bin/sh\n[ \"$1\" = --version ] || cat \"$STAND_IN/queue\" 2>/dev/null\nexit 0\n";
 constexpr const char* stand_in_sacct = "#!/bin/sh\necho 'Slurm accounting storage is disabled' >&2\nexit 1\n";
 constexpr const char* stand_in_scontrol = "#!/bin/sh\ncat \"$STAND_IN/ended\" 2>/dev/null\nexit 0\n";
+
+auto line_count(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 // A workplace with a small study and a stand-in for Slurm.
 class Cluster {
@@ -74,8 +77,7 @@ public:
     void tell(const std::string& what, const std::string& text = "") const { write_text(tools() / what, text); }
     void untell(const std::string& what) const { fs::remove(tools() / what); }
     int calls() const {
-        const std::string text = read_text(tools() / "calls");
-        return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+        return static_cast<int>(line_count(read_text(tools() / "calls")));
     }
 
 private:
@@ -95,7 +97,7 @@ std::map<std::string, json> records_in(const fs::path& results) {
     return records;
 }
 
-// The ledger as CSV, a row a run, without the columns that differ from call to call.
+// The ledger as CSV, a row a run.
 std::string rows_of(const Cluster& cluster, const std::string& results) {
     const Outcome table = cluster.study({"table", "study.toml", "--results", results, "--runs"});
     EXPECT_EQ(table.code, 0) << table.err;
@@ -112,8 +114,7 @@ TEST(StudyOnSlurm, HasTheSameRowsAsHere) {
     const auto records = records_in(cluster / "there");
     EXPECT_EQ(records.size(), 4u);
     EXPECT_EQ(records, records_in(cluster / "here"));
-    const std::string rows = rows_of(cluster, "there");
-    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), std::count(rows_of(cluster, "here").begin(), rows.end(), '\n')) << rows;
+    EXPECT_EQ(line_count(rows_of(cluster, "there")), line_count(rows_of(cluster, "here")));
     expect_no_half_files(cluster / "there");
 }
 
