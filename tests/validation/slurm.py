@@ -5,6 +5,7 @@ usage: slurm.py FELDSPAR
 
 Exit code 0: fine; 1: something is wrong (said in words); 77: Slurm is not installed (skipped).
 """
+import os
 import pathlib
 import re
 import signal
@@ -58,6 +59,12 @@ set = { model.kind = "rigid" }
 label = "flexible"
 set = { model.kind = "flexible" }
 """
+# Runs of seconds, so that there is time to disturb them.
+LONG_STUDY = """\
+job = "job.toml"
+seeds = [1, 2, 3, 4]
+tests = ["uniaxial-compression"]
+"""
 # What a run's row says of the machine and the moment, not of the rock.
 CIRCUMSTANCES = {"wall_s", "ms_per_step", "threads", "started", "command_line", "holder", "heard"}
 
@@ -109,6 +116,18 @@ def element_state(slurm, job, element):
     return slurm.ask("squeue", "-h", "-o", "%T", "-j", f"{job}_{element}").stdout.strip()
 
 
+def program_of_element(place, element):
+    """The number of the process that runs an element's group below this directory, if there is one."""
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            words = (process / "cmdline").read_bytes().decode().split("\0")
+            if words[1:5] == ["study", "element", ".", str(element)] and pathlib.Path(os.readlink(process / "cwd")).is_relative_to(place):
+                return int(process.name)
+        except OSError:
+            continue   # has just ended
+    return None
+
+
 def has_the_same_rows(program, slurm, place):
     study = Study(program, slurm, place / "rows", "2 %")
     start = time.monotonic()
@@ -140,14 +159,16 @@ def submits_nothing_twice(program, slurm, place):
 
 def runs_again_what_was_killed(program, slurm, place):
     """One element cancelled, one requeued, and the program of a third killed."""
-    study = Study(program, slurm, place / "killed", "0.1 %", STUDY.replace("[1, 2, 3]", "[1]"))
+    study = Study(program, slurm, place / "killed", "0.05 %", LONG_STUDY)
     job = job_number(study.submit("--group-minutes", "0.0001"))
-    check(slurm.patiently(lambda: all(element_state(slurm, job, k) == "RUNNING" for k in (0, 1, 3)), 30),
+    check(slurm.patiently(lambda: all(program_of_element(study.place, k) for k in (0, 1, 3)), 30),
           f"the elements do not run:\n{slurm.ask('squeue').stdout}")
-    time.sleep(0.2)
     slurm.ask("scancel", f"{job}_0")
     slurm.ask("scontrol", "requeue", f"{job}_1")
-    slurm.ask("scancel", "--full", "--signal=KILL", f"{job}_3")
+    os.kill(program_of_element(study.place, 3), signal.SIGKILL)
+    check(slurm.patiently(lambda: element_state(slurm, job, 1) == "PENDING" and "1 left" in study.output(), 30), "the requeued element does not wait")
+    time.sleep(2)   # for what Slurm has to clear away
+    slurm.ask("scontrol", "update", f"jobid={job}_1", "starttime=now")   # Slurm lets it wait for two minutes
     check(slurm.patiently(lambda: not slurm.ask("squeue", "-h").stdout.strip(), 120), f"the jobs do not end:\n{slurm.ask('squeue').stdout}")
     gathered = study.run("gather", "study.toml", "--results", "there", code=3)
     check(f"element {job}_0: it was cancelled" in gathered, f"no word of the cancelled element: {gathered}")
