@@ -161,12 +161,13 @@ TEST(StudyOnSlurm, LostRunsAreReportedAndSubmittedAgain) {
     cluster.tell("queue");
     cluster.tell("ended",
                  "JobId=5 ArrayJobId=1 ArrayTaskId=0 JobName=x JobState=TIMEOUT Reason=None ExitCode=0:15\n"
-                 "JobId=1 ArrayJobId=1 ArrayTaskId=1-2 JobName=x JobState=CANCELLED Reason=None ExitCode=0:0\n");
+                 "JobId=1 ArrayJobId=1 ArrayTaskId=1-2 JobName=x JobState=CANCELLED Reason=None ExitCode=0:0\n"
+                 "JobId=6 ArrayJobId=1 ArrayTaskId=3 JobName=x JobState=FAILED Reason=NonZeroExitCode ExitCode=130:0\n");
     const Outcome gathered = cluster.study({"gather", "study.toml", "--results", "there"});
     EXPECT_EQ(gathered.code, 3) << gathered.err;
     EXPECT_NE(gathered.out.find("1 run of element 1_0: it reached its time limit"), std::string::npos) << gathered.out;
     EXPECT_NE(gathered.out.find("1 run of element 1_1: it was cancelled"), std::string::npos) << gathered.out;
-    EXPECT_NE(gathered.out.find("1 run of element 1_3: Slurm no longer knows"), std::string::npos) << gathered.out;
+    EXPECT_NE(gathered.out.find("1 run of element 1_3: it was asked to stop"), std::string::npos) << gathered.out;
     EXPECT_NE(gathered.out.find("0 runs taken into the ledger, 0 in the queue, 0 failed, 4 not done"), std::string::npos) << gathered.out;
     cluster.untell("hold");
     const Outcome again = cluster.submit({"--wait"});

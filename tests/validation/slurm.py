@@ -157,6 +157,18 @@ def submits_nothing_twice(program, slurm, place):
     print("nothing twice")
 
 
+def ends_before_its_time_is_over(program, slurm, place):
+    """A run that would take hours, with a minute to live: Slurm says when there is half a minute left."""
+    study = Study(program, slurm, place / "late", "0.05 %", LONG_STUDY.replace("[1, 2, 3, 4]", "[1]"))
+    job_file = study.place / "job.toml"
+    job_file.write_text(job_file.read_text().replace('kind = "adaptive"\naccuracy = "0.05 %"', 'kind = "paper"\nspeed = "1e-12 m"'))
+    printed = study.submit("--wait", "--time", "1", code=3)
+    check("it was asked to stop, near its time limit" in printed, f"no word of the time limit: {printed}")
+    check("0 done now, 0 before, 0 failed, 1 left" in study.output(), f"the element did not end cleanly: {study.output()}")
+    check(not list(study.place.glob("there/runs/*")), "an interrupted run has left something")
+    print("ended before its time was over")
+
+
 def runs_again_what_was_killed(program, slurm, place):
     """One element cancelled, one requeued, and the program of a third killed."""
     study = Study(program, slurm, place / "killed", "0.05 %", LONG_STUDY)
@@ -189,7 +201,7 @@ def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))   # a test that takes too long still takes its daemons down
     program = str(pathlib.Path(sys.argv[1]).resolve())
     with tempfile.TemporaryDirectory(prefix="feldspar-slurm-studies-") as place, PrivateSlurm() as slurm:
-        for proof in (has_the_same_rows, submits_nothing_twice, runs_again_what_was_killed):
+        for proof in (has_the_same_rows, submits_nothing_twice, runs_again_what_was_killed, ends_before_its_time_is_over):
             proof(program, slurm, pathlib.Path(place))
     return 0
 

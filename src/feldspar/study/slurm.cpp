@@ -154,6 +154,8 @@ std::string reason_of(const Endings& endings, std::size_t element, const fs::pat
     const std::string& state = found->second.state;
     if (state.starts_with("CANCELLED")) return "it was cancelled";
     if (state == "TIMEOUT") return "it reached its time limit: ask for more with --time, or for less with --group-minutes";
+    if (found->second.exit_code.starts_with("130:"))   // ExitCode::interrupted
+        return "it was asked to stop, near its time limit or for another job: ask for more with --time, or for less with --group-minutes";
     if (state == "OUT_OF_MEMORY") return "it needed more memory than it was given: ask for more with --sbatch \"--mem=...\"";
     if (state == "NODE_FAIL") return "its machine failed";
     return fmt::format("Slurm says {}, exit code {}{}", state, found->second.exit_code, words);

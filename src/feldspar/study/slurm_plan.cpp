@@ -120,7 +120,7 @@ std::string array_script(const SlurmPlan& plan, const SlurmOptions& options, con
     if (options.array_limit > 0) text += fmt::format("%{}", options.array_limit);
     text += fmt::format(
         "\n#SBATCH --cpus-per-task={}\n#SBATCH --output=element-%a.out\n#SBATCH --open-mode=append\n#SBATCH --requeue\n"
-        "#SBATCH --signal=B:TERM@60\n\n"
+        "#SBATCH --signal=B:TERM@30\n\n"
         "# exec: what Slurm signals is the program itself, which then ends cleanly\n"
         "exec {} study element . \"$SLURM_ARRAY_TASK_ID\"\n",
         plan.cpus, quoted(program.string()));
