@@ -52,6 +52,11 @@ double size_factor(const Run& run) {
     return std::pow(std::max(1, grain_count(specimen)) / 1000.0, 1.5);
 }
 
+double number_in(const RunRecord& record, const std::string& column) {
+    const auto found = record.numbers.find(column);
+    return found == record.numbers.end() ? 0.0 : found->second;
+}
+
 const char* name(Keep keep) {
     switch (keep) {
         case Keep::numbers: return "numbers";
@@ -156,9 +161,8 @@ TimeEstimate::TimeEstimate(std::span<const Run> runs, std::span<const RunRecord>
     for (const RunRecord& record : records) {
         const auto found = by_id.find(record.id);
         if (found == by_id.end() || record.state != RunState::done) continue;
-        const TestResult result = result_of(record);
-        if (result.wall_s > 0.0)
-            samples[like(*found->second)].push_back(result.wall_s * std::max(1, result.threads) / size_factor(*found->second));
+        const double wall_s = number_in(record, "wall_s"), threads = number_in(record, "threads");
+        if (wall_s > 0.0) samples[like(*found->second)].push_back(wall_s * std::max(1.0, threads) / size_factor(*found->second));
     }
     for (auto& [kind, seconds] : samples) per_thousand_[kind] = median(seconds);
 }

@@ -1,4 +1,4 @@
-// What goes to a Slurm cluster: groups, estimates, the plan on disk and its scripts.
+// What goes to a Slurm cluster: groups, estimates, the plan on disk and its scripts. (In a fixture, Run alone is a function of GoogleTest.)
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -20,8 +20,17 @@ width = "40 mm"
 height = "80 mm"
 [specimen.grains]
 diameter = { distribution = "uniform", minimum = "7 mm", maximum = "11 mm" }
-[material]
-preset = "augig-flexible"
+[material.grain]
+E = "25.8 GPa"
+nu = 0.23
+[material.contact]
+Kn = "18.00e4 GPa/m"
+eta = 0.28
+sigma_nt = "8.5 MPa"
+tau = "29.75 MPa"
+mu = 0.40
+Gfn = "20 N/m"
+Gfs = "800 N/m"
 [[test]]
 kind = "uniaxial-compression"
 [[test]]
@@ -37,7 +46,7 @@ protected:
         std::string name = (fs::temp_directory_path() / "feldspar-plan-XXXXXX").string();
         place_ = mkdtemp(name.data());
         study_ = study_of(parse_job(small_job, "small"), "small study", place_ / "results");
-        for (const Run& run : study_.runs) runs_.push_back(&run);
+        for (const feldspar::Run& run : study_.runs) runs_.push_back(&run);
     }
     ~SlurmPlanTest() override { fs::remove_all(place_); }
 
@@ -47,7 +56,7 @@ protected:
     }
 
     // A record of a run that took so long.
-    static RunRecord record_of_time(const Run& run, double wall_s, double threads) {
+    static RunRecord record_of_time(const feldspar::Run& run, double wall_s, double threads) {
         RunRecord record;
         record.id = run.id;
         record.state = RunState::done;
@@ -58,7 +67,7 @@ protected:
 
     fs::path place_;
     Study study_;
-    std::vector<const Run*> runs_;
+    std::vector<const feldspar::Run*> runs_;
 };
 
 using Groups = std::vector<std::vector<std::size_t>>;
@@ -90,7 +99,7 @@ TEST(SlurmGroups, ElementsAsSlurmWritesThem) {
 }
 
 TEST_F(SlurmPlanTest, TimesOfLikeRunsReplaceTheDefaults) {
-    const Run &first = study_.runs[0], &disc = study_.runs[1], &second = study_.runs[2];
+    const feldspar::Run &first = study_.runs[0], &disc = study_.runs[1], &second = study_.runs[2];
     ASSERT_EQ(first.test().kind, second.test().kind);
     ASSERT_EQ(disc.test().kind, TestKind::brazilian);
     const TimeEstimate unknown;
@@ -117,7 +126,7 @@ TEST_F(SlurmPlanTest, IsOnDiskWithEverythingThatAnElementNeeds) {
     EXPECT_EQ(read.keep, Keep::histories);
     EXPECT_TRUE(read.array_job.empty());
 
-    for (const Run& run : study_.runs) {   // the same run comes back from its file
+    for (const feldspar::Run& run : study_.runs) {   // the same run comes back from its file
         const Job job = read_job(plan.job_file(run.id));
         EXPECT_EQ(make_run(job, job.variants.front(), job.tests.front(), job.seeds.front()).id, run.id);
     }
@@ -143,12 +152,12 @@ TEST_F(SlurmPlanTest, ScriptsSayWhatTheUserAsked) {
     options.sbatch = "--mem=2G --constraint=\"avx512\"";
     const SlurmPlan plan = write_plan(study_.results, study_, runs_, TimeEstimate{}, options, "/opt/it's here/feldspar");
     const std::string array = text_of(plan.directory / "array.sh"), gather = text_of(plan.directory / "gather.sh");
-    for (const std::string& line :
+    for (const char* line :
          {"#SBATCH --partition=short\n", "#SBATCH --account=rock\n", "#SBATCH --time=0:30:00\n", "#SBATCH --mem=2G --constraint=\"avx512\"\n",
           "#SBATCH --array=0-5%8\n", "#SBATCH --cpus-per-task=4\n", "#SBATCH --job-name=feldspar-small-study\n", "#SBATCH --requeue\n",
           "exec '/opt/it'\\''s here/feldspar' study element . \"$SLURM_ARRAY_TASK_ID\"\n"})
         EXPECT_NE(array.find(line), std::string::npos) << line << array;
-    for (const std::string& line : {"#SBATCH --partition=short\n", "#SBATCH --cpus-per-task=1\n", "study gather ../..\n"})
+    for (const char* line : {"#SBATCH --partition=short\n", "#SBATCH --cpus-per-task=1\n", "study gather ../..\n"})
         EXPECT_NE(gather.find(line), std::string::npos) << line << gather;
     EXPECT_EQ(gather.find("--array"), std::string::npos);
 }
