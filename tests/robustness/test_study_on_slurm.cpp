@@ -60,7 +60,7 @@ public:
     }
 
     Outcome submit(std::vector<std::string> more = {}) const {
-        std::vector<std::string> arguments{"study.toml", "--results", "there", "--on", "slurm", "--group-minutes", "0.000001"};
+        std::vector<std::string> arguments{"study.toml", "--results", "there", "--on", "slurm", "--group-minutes", "1e-9"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return study(arguments);
     }

@@ -39,7 +39,7 @@ public:
     TimeEstimate(std::span<const Run> runs, std::span<const RunRecord> records);
 
     /// Seconds on one thread: the median of like runs (kind of test, of grains and of numerics, accuracy), or a default by kind, scaled
-    /// with the 1.5th power of the grains' number, as the step's cost grows with it and the steps' number with its root.
+    /// with the number of grains (and a constant share for the small ones). Right within a factor of a few, which is what groups need.
     double seconds(const Run& run) const;
 
 private:
