@@ -9,6 +9,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/study/slurm_plan.hpp"
 
 namespace feldspar {
 
@@ -38,7 +39,32 @@ struct StudyOptions {
     std::optional<int> at_once;           ///< runs side by side
     bool runs = false;                    ///< table: a row a run instead of a row a point
     std::string command_line;             ///< for provenance
+    std::string on;                       ///< "slurm": on that cluster; empty: on this machine
+    SlurmOptions slurm;
+    bool wait = false;                    ///< on Slurm: until the results are there
 };
+
+/// What an element of a job array is called with.
+struct ElementOptions {
+    std::string plan;   ///< <results>/slurm/<n>
+    std::size_t group = 0;
+    std::string command_line;
+};
+
+/// Reads the study and applies the command line to it.
+Study study_with_options(const StudyOptions& options);
+
+/// Submits what is not done of a study to Slurm; with `wait` waits for it and prints the study's points.
+ExitCode study_on_slurm(const Study& study, const StudyOptions& options);
+
+/// Takes what elements have left into the ledger, and says what failed or is missing. `study` may be a directory of results.
+ExitCode study_gather_command(const StudyOptions& options);
+
+/// Runs an element's group: what Slurm calls on a machine of the cluster.
+ExitCode study_element_command(const ElementOptions& options);
+
+/// A line for each job array of these results that is in Slurm's queue.
+void print_slurm_status(const std::filesystem::path& results);
 
 /// Runs what is not done yet of a study, and prints its points.
 ExitCode study_command(const StudyOptions& options);

@@ -86,6 +86,34 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
     command.add_option("--results", options.results, "directory of the ledger and the runs (default: as the study says)")->type_name("DIR");
 }
 
+void add_slurm_options(CLI::App& command, StudyOptions& options) {
+    CLI::Option* on = command.add_option("--on", options.on, "slurm: the runs that are not done go to a Slurm cluster as a job array (docs/study.md)")
+                          ->type_name("WHERE")
+                          ->check(CLI::IsMember({"slurm"}));
+    const auto text = [&](const char* flag, std::string& value, const char* what, const char* type) {
+        command.add_option(flag, value, std::string("on Slurm: ") + what)->type_name(type)->needs(on);
+    };
+    text("--partition", options.slurm.partition, "the partition to run in", "NAME");
+    text("--account", options.slurm.account, "the account to charge", "NAME");
+    text("--time", options.slurm.time, "time limit of an element, as sbatch reads it", "TIME");
+    text("--sbatch", options.slurm.sbatch, "further options for sbatch, for example \"--mem=2G --qos=long\"", "OPTIONS");
+    command.add_option("--cpus", options.slurm.cpus, "on Slurm: threads of an element")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 256))
+        ->needs(on);
+    command.add_option("--array-limit", options.slurm.array_limit, "on Slurm: at most so many elements at once (default: as many as there is room for)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1'000'000))
+        ->needs(on);
+    command.add_option("--group-minutes", options.slurm.group_minutes, "on Slurm: runs are grouped to elements of about so long")
+        ->type_name("MIN")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber)
+        ->needs(on);
+    command.add_flag("--wait", options.wait, "on Slurm: wait for the results and print them")->needs(on);
+}
+
 int run_program(int argc, char** argv) {
     CLI::App app("A laboratory for rock fracture with the flexible particle model.", "feldspar");
     app.footer(examples);
@@ -110,7 +138,14 @@ int run_program(int argc, char** argv) {
     CLI::App* study_app = app.add_subcommand("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted");
     CLI::App* status_app = study_app->add_subcommand("status", "how much of the study is done");
     CLI::App* table_app = study_app->add_subcommand("table", "print the study's points, or its runs, as CSV");
-    for (CLI::App* command : {study_app, status_app, table_app}) add_study_options(*command, study);
+    CLI::App* gather_app = study_app->add_subcommand("gather", "take what the elements of a job array have left into the ledger; STUDY.toml or its results' directory");
+    for (CLI::App* command : {study_app, status_app, table_app, gather_app}) add_study_options(*command, study);
+    add_slurm_options(*study_app, study);
+    ElementOptions element;
+    element.command_line = run.command_line;
+    CLI::App* element_app = study_app->add_subcommand("element", "what an element of a job array runs")->group("");   // not the user's to call
+    element_app->add_option("plan", element.plan)->required();
+    element_app->add_option("group", element.group)->required();
     study_app->require_subcommand(0, 1);
     study_app->add_option("--threads", study.threads, "number of threads of the whole program (default: one for each core)")
         ->type_name("N")
@@ -163,9 +198,11 @@ int run_program(int argc, char** argv) {
         if (*run_app) return run_command(run);
         if (*check_app) return check_command(check);
         if (*claims_app) return claims_command(claims);
+        if (*element_app) return study_element_command(element);
         if (*study_app && study.study.empty()) throw InputError({}, "study: a study file is required", "feldspar study STUDY.toml");
         if (*status_app) return study_status_command(study);
         if (*table_app) return study_table_command(study);
+        if (*gather_app) return study_gather_command(study);
         if (*study_app) return study_command(study);
         if (*calibrate_app) return calibrate_command(calibrate);
         if (presets) return presets_command();

@@ -15,12 +15,6 @@
 namespace feldspar {
 namespace {
 
-Study study_with_options(const StudyOptions& options) {
-    Study study = read_study(options.study);
-    if (options.results) study.results = *options.results;
-    return study;
-}
-
 std::string label_of(const Study& study, const Run& run) {
     std::string text;
     for (const AxisValue& value : study.points[run.point].values) text += (text.empty() ? "" : ", ") + value.label;
@@ -91,9 +85,16 @@ ExitCode outcome(const Execution& execution) {
 
 }  // namespace
 
+Study study_with_options(const StudyOptions& options) {
+    Study study = read_study(options.study);
+    if (options.results) study.results = *options.results;
+    return study;
+}
+
 ExitCode study_command(const StudyOptions& options) {
     install_signal_handlers();
     const Study study = study_with_options(options);
+    if (options.on == "slurm") return study_on_slurm(study, options);
     Ledger ledger(study.results, Ledger::Access::write);
     ledger.enrol(study);
     StudyProgress progress(study, ledger);
@@ -137,6 +138,7 @@ ExitCode study_status_command(const StudyOptions& options) {
     fmt::print("Time of the runs that are done: {}\n", duration_text(spent_s));
     for (const RunRecord& record : by_state[RunState::failed]) fmt::print("failed: {}: {}\n", label_of(study, *runs.at(record.id)), record.reason);
     for (const RunRecord& record : by_state[RunState::running]) fmt::print("running, or left behind: {}\n", label_of(study, *runs.at(record.id)));
+    print_slurm_status(study.results);
     return ExitCode::success;
 }
 

@@ -83,7 +83,7 @@ struct Ledger::Database {
     std::string me = this_process();
     SQLite::Database file;
 
-    Database(const fs::path& directory_, int flags) : directory(directory_), file((directory_ / "ledger.sqlite").string(), flags, busy_timeout_ms) {}
+    Database(const fs::path& directory_, const std::string& name, int flags) : directory(directory_), file(name, flags, busy_timeout_ms) {}
 
     void make() {
         SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
@@ -174,13 +174,13 @@ auto guarded(const fs::path& directory, Action action) {
 Ledger::Ledger(const fs::path& directory, Access access) {
     const fs::path file = directory / "ledger.sqlite";
     std::error_code error;
-    if (access == Access::write) fs::create_directories(directory / "runs", error);
+    if (access != Access::read) fs::create_directories(directory / "runs", error);
     else if (!fs::exists(file, error))
         throw InputError({}, fmt::format("there is no ledger in '{}': nothing of the study has been run", directory.string()));
     if (error) throw OutputError(fmt::format("cannot make the directory '{}': {}", directory.string(), error.message()));
     try {
-        const int flags = SQLite::OPEN_READWRITE | (access == Access::write ? SQLite::OPEN_CREATE : 0);
-        database_ = std::make_unique<Database>(directory, flags);
+        const int flags = SQLite::OPEN_READWRITE | (access == Access::read ? 0 : SQLite::OPEN_CREATE);
+        database_ = std::make_unique<Database>(directory, access == Access::memory ? ":memory:" : file.string(), flags);
         const int version = database_->file.execAndGet("PRAGMA user_version").getInt();
         if (version > schema_version)
             throw InputError({file.string(), 0, 0, {}}, "was made by a later version of this program", "the version that made it, or another `results`");
@@ -188,7 +188,7 @@ Ledger::Ledger(const fs::path& directory, Access access) {
             database_->file.exec("PRAGMA journal_mode = WAL");     // readers and writers side by side
             database_->file.exec("PRAGMA synchronous = NORMAL");   // a power cut may lose the last rows; run.json has them
         }
-        if (access == Access::write || version < schema_version) database_->make();
+        if (access != Access::read || version < schema_version) database_->make();
         else database_->add_missing_columns();
     } catch (const SQLite::Exception& problem) {
         if (problem.getErrorCode() == 26) throw InputError({file.string(), 0, 0, {}}, "is not a ledger");   // SQLITE_NOTADB

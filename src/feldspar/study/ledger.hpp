@@ -16,7 +16,9 @@ namespace feldspar {
 
 class Ledger {
 public:
-    enum class Access { read, write };
+    /// `memory`: no file is read or written, the ledger starts empty and is gone with the object; the runs' directories are on disk all the
+    /// same, and what they hold counts. For where a file could not be shared.
+    enum class Access { read, write, memory };
 
     /// Opens `directory`/ledger.sqlite; with write access makes it if it is not there. @throws InputError for a file that is not a
     /// ledger, or that a later version has made; OutputError when it cannot be written.

@@ -30,7 +30,7 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
         result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test}, control);
     }
     if (result.interrupted) return result;
-    if (!fs::exists(path / record_file)) remove_directory(path);
+    if (!finished_record(path, run)) remove_directory(path);
     const RunDirectory directory = RunDirectory::create(path, run.job.name);
     directory.write_text("job.toml", resolved_toml(run.job));
     if (keep != Keep::numbers) write_history_csv(directory, result, provenance);
