@@ -8,7 +8,7 @@
 
 namespace feldspar {
 
-EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa) {
+EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa, const std::vector<double>& DTS_Pa) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EnvelopeFit fit;
     fit.cohesion_Pa = fit.friction_angle_deg = fit.UCS_fitted_Pa = nan;
@@ -27,9 +27,13 @@ EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sig
     }
 
     // (P13): (sigma_1 - sigma_3)^2 = mi sigma_ci sigma_3 + sigma_ci^2, a straight line in sigma_3
-    std::vector<double> squares;
+    std::vector<double> minor = sigma3_Pa, squares;
     for (std::size_t i = 0; i < sigma3_Pa.size(); ++i) squares.push_back((sigma1_Pa[i] - sigma3_Pa[i]) * (sigma1_Pa[i] - sigma3_Pa[i]));
-    const Line parabola = regression_line(sigma3_Pa, squares);
+    for (const double DTS : DTS_Pa) {
+        minor.push_back(-DTS);
+        squares.push_back(DTS * DTS);
+    }
+    const Line parabola = regression_line(minor, squares);
     if (parabola.intercept > 0.0) {
         fit.hoek_brown_UCS_Pa = std::sqrt(parabola.intercept);
         fit.hoek_brown_mi = parabola.slope / fit.hoek_brown_UCS_Pa;

@@ -11,6 +11,7 @@ namespace feldspar {
 /// seed; the measured UCS is the strength at sigma_3 = 0, if there is one.
 /// @param sigma3_Pa  confining stress of each test, compression positive
 /// @param sigma1_Pa  total axial strength of each test, in the same order
-EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa);
+/// @param DTS_Pa     direct tensile strengths (positive), through which Hoek-Brown's parabola is to go too: sigma_3 = -DTS, sigma_1 = 0
+EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa, const std::vector<double>& DTS_Pa = {});
 
 }  // namespace feldspar

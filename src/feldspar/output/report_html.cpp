@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "feldspar/output/html_page.hpp"
 #include "feldspar/output/report_assets.hpp"
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
@@ -13,67 +14,9 @@ namespace {
 
 constexpr std::size_t largest_report_B = 14'000'000;  ///< more is slow to open and to send
 
-std::string escaped(const std::string& text) {
-    std::string html;
-    for (const char letter : text) {
-        switch (letter) {
-            case '&':
-                html += "&amp;";
-                break;
-            case '<':
-                html += "&lt;";
-                break;
-            case '>':
-                html += "&gt;";
-                break;
-            case '"':
-                html += "&quot;";
-                break;
-            case '\'':
-                html += "&#39;";
-                break;
-            default:
-                html += letter;
-        }
-    }
-    return html;
-}
-
-/// JSON that may stand inside a script element: a '<' can only be in a string there, and as \u003c it ends no element.
-std::string script_json(const nlohmann::ordered_json& json) {
-    const std::string text = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-    std::string safe;
-    safe.reserve(text.size());
-    for (const char letter : text) {
-        if (letter == '<')
-            safe += "\\u003c";
-        else
-            safe += letter;
-    }
-    return safe;
-}
-
 std::string script_block(const std::string& id, const std::string& text) {
     return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, text);
 }
-
-/// Replaces each {{mark}} of the page once, in the order of the page, so that nothing inserted is searched for marks.
-class Page {
-public:
-    explicit Page(std::string page) : page_(std::move(page)) {}
-    void fill(const std::string& mark, const std::string& text) {
-        const std::string wanted = "{{" + mark + "}}";
-        const std::size_t found = page_.find(wanted, from_);
-        if (found == std::string::npos) return;
-        page_.replace(found, wanted.size(), text);
-        from_ = found + text.size();
-    }
-    const std::string& text() const { return page_; }
-
-private:
-    std::string page_;
-    std::size_t from_ = 0;
-};
 
 }  // namespace
 
@@ -96,7 +39,7 @@ void write_report(const RunDirectory& directory, const Job& job, std::span<const
         data["fields"].push_back(fields[f].meta);
         blocks += script_block(fmt::format("fields-{}", f), fields[f].block);
     }
-    Page page(asset_report_html);
+    HtmlPage page(asset_report_html);
     page.fill("title", escaped(job.name));
     page.fill("uplot_css", asset_uPlot_min_css);
     page.fill("css", asset_report_css);
@@ -104,6 +47,7 @@ void write_report(const RunDirectory& directory, const Job& job, std::span<const
     page.fill("fields", blocks);
     page.fill("uplot_js", asset_uPlot_iife_min_js);
     page.fill("charts_js", asset_charts_js);
+    page.fill("page_js", asset_page_js);
     page.fill("viewer_js", asset_viewer_js);
     page.fill("compare_js", asset_compare_js);
     page.fill("report_js", asset_report_js);

@@ -36,7 +36,10 @@ constexpr auto known = std::to_array<Words>({
     {"BTS_over_DTS", "Ratio BTS / DTS", "BTS/DTS"},
     {strength_at, "", ""},  // stands for the strengths at each lateral pressure
     {"UCS_fitted_Pa", "UCS from the Mohr-Coulomb line", "UCS fit"},
+    {"mohr_coulomb_N", "Slope of the Mohr-Coulomb line", "N"},
+    {"mohr_coulomb_tension_Pa", "Tensile strength, Mohr-Coulomb line", "\u03c3t M-C"},
     {"hoek_brown_UCS_Pa", "UCS from the Hoek-Brown fit", "\u03c3ci fit"},
+    {"hoek_brown_tension_Pa", "Tensile strength, Hoek-Brown parabola", "\u03c3t H-B"},
     {"first_crack_Pa", "Stress at the first crack", "\u03c31st"},
     {"sigma_ci_crack_count_Pa", "Crack initiation stress, crack count", "\u03c3ci"},
     {"sigma_ci_crack_volume_Pa", "Crack initiation stress, crack volumetric strain", "\u03c3ci"},

@@ -77,7 +77,8 @@ function drawMark(ctx, mark, x, y, size, color) {
 /**
  * A chart in `host`. series: [{label, x, y, color (a theme name or a colour), width, dash, mark, size, right, quiet, note}];
  * `right` uses the right axis, `quiet` keeps a series out of the legend and the tooltip,
- * `key: false` out of the legend only.
+ * `key: false` out of the legend only. `low` and `high` draw a bar through each point: its interval, which the tooltip names.
+ * options: {x, y, right (labels), height, xRange, yRange, xTicks: words at x = 0, 1, ..., equal: one scale for both axes}.
  */
 class XYChart {
   constructor(host, options) {
@@ -93,7 +94,14 @@ class XYChart {
     }).observe(this.host);
   }
 
-  height() { return Math.max(this.options.height || 300, Math.floor(this.host.clientHeight)); }
+  height() {
+    const least = this.options.height || 300;
+    if (this.options.equal && this.ranges) {   // 64 and 72 pixels are the axes'
+      const [x, y] = this.ranges;
+      return Math.round(Math.max(160, Math.min(760, ((this.width() - 64) * (y[1] - y[0])) / (x[1] - x[0]) + 72)));
+    }
+    return Math.max(least, Math.floor(this.host.clientHeight));
+  }
   width() { return Math.max(220, Math.floor(this.host.clientWidth)); }
   color(series) { return /^[a-z]+$/.test(series.color) ? theme.get(series.color) : series.color; }
 
@@ -107,7 +115,8 @@ class XYChart {
     const left = this.series.filter((s) => !s.right), right = this.series.filter((s) => s.right);
     const o = this.options;
     const x = o.xRange || padded(extent(this.series.map((s) => s.x)));
-    const y = o.yRange || padded(extent(left.map((s) => s.y)));
+    const y = o.yRange || padded(extent(left.flatMap((s) => [s.y, s.low || [], s.high || []])));
+    this.ranges = [x, y];
     const r = padded(extent(right.map((s) => s.y)));
     const ink = theme.get("soft"), line = theme.get("line");
     const axis = (scale, label, side, grid) => ({
@@ -116,6 +125,7 @@ class XYChart {
       values: (u, ticks) => ticks.map((t) => (t === null ? "" : String(Number(t.toPrecision(6))).replace("-", "\u2212"))),
     });
     const axes = [axis("x", o.x, 2, true), axis("y", o.y, 3, true)];
+    if (o.xTicks) Object.assign(axes[0], {splits: () => o.xTicks.map((_, i) => i), values: () => this.shortened(o.xTicks)});
     const scales = {x: {time: false, range: () => x}, y: {range: () => y}};
     const dummies = [{}, {show: true, scale: "y", points: {show: false}, paths: () => null}];
     const data = [[x[0], x[1]], [null, null]];
@@ -138,6 +148,12 @@ class XYChart {
         : h("b", {class: s.dash ? "dash" : "", style: "border-color:" + color});
       return h("span", {}, key, s.label);
     }));
+  }
+
+  /** Words as long as there is room for beside each other. */
+  shortened(words) {
+    const room = Math.max(3, Math.floor((this.width() - 64) / words.length / 6.6));
+    return words.map((word) => (word.length > room ? word.slice(0, room - 1) + "\u2026" : word));
   }
 
   draw(u) {
@@ -178,6 +194,18 @@ class XYChart {
         ctx.stroke();
         ctx.setLineDash([]);
       }
+      if (s.low) {
+        ctx.beginPath();
+        for (let i = 0; i < s.x.length; ++i) {
+          if (s.low[i] === null || s.high[i] === null || s.low[i] === undefined) continue;
+          const px = u.valToPos(s.x[i], "x", true), from = u.valToPos(s.low[i], scale, true), to = u.valToPos(s.high[i], scale, true), cap = 3.5 * dpr;
+          ctx.moveTo(px, from); ctx.lineTo(px, to);
+          for (const end of [from, to]) { ctx.moveTo(px - cap, end); ctx.lineTo(px + cap, end); }
+        }
+        ctx.strokeStyle = color;
+        ctx.lineWidth = 1.4 * dpr;
+        ctx.stroke();
+      }
       if (s.mark) {
         for (let i = 0; i < s.x.length; ++i) {
           if (s.x[i] === null || s.y[i] === null) continue;
@@ -211,7 +239,9 @@ class XYChart {
     this.tip.style.display = best ? "block" : "none";
     if (!best) return;
     const [s, i] = best;
-    this.tip.textContent = s.label + "\n" + show(s.x[i], 4) + "  |  " + show(s.y[i], 4);
+    const at = this.options.xTicks ? this.options.xTicks[Math.round(s.x[i])] : show(s.x[i], 4);
+    const interval = s.low && s.low[i] !== null ? "  (" + show(s.low[i], 4) + " to " + show(s.high[i], 4) + ")" : "";
+    this.tip.textContent = s.label + "\n" + at + "  |  " + show(s.y[i], 4) + interval;
     const px = u.valToPos(s.x[i], "x"), py = u.valToPos(s.y[i], s.right ? "right" : "y");
     this.tip.style.top = Math.max(0, py - 44) + "px";
     this.tip.style.left = Math.max(0, Math.min(px + 10, u.over.clientWidth - this.tip.offsetWidth)) + "px";

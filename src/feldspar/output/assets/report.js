@@ -1,38 +1,12 @@
 // The report's page: reads the data beside it and lays out tables, charts and the viewer.
 "use strict";
 
-const data = JSON.parse(document.getElementById("data").textContent);
-const page = document.getElementById("page");
 const kindNames = {"uniaxial-compression": "Uniaxial compression", "direct-tension": "Direct tension", biaxial: "Biaxial compression", brazilian: "Brazilian test"};
 data.tests.forEach((test, index) => { test.index = index; });
-const redraw = [];   // what must be drawn again when the theme changes
-
-function setTheme(forced) {
-  const dark = forced ? forced === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-  document.documentElement.dataset.theme = dark ? "dark" : "light";
-}
-function redrawAll() {
-  for (const chart of [...charts]) {
-    if (chart.host.isConnected) chart.rebuild();
-    else charts.delete(chart);
-  }
-  for (const draw of redraw) draw();
-}
 
 function titleOf(test) {
   return (kindNames[test.kind] || test.kind) + (test.kind === "biaxial" ? " at \u03c3\u2083 = " + Number(test.sigma3.toPrecision(4)) + " MPa" : "");
 }
-function median(values) {
-  const list = values.filter((v) => v !== null && Number.isFinite(v)).sort((a, b) => a - b);
-  if (!list.length) return null;
-  return list.length % 2 ? list[(list.length - 1) / 2] : (list[list.length / 2 - 1] + list[list.length / 2]) / 2;
-}
-function plural(count, word) { return count + " " + word + (count === 1 ? "" : "s"); }
-function table(className, head, rows) {
-  return h("div", {class: "scroll"}, h("table", {class: className}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)));
-}
-function th(text, number, title) { return h("th", {class: number ? "number" : null, scope: "col", title}, text); }
-function td(text, number, className) { return h("td", {class: ((number ? "number " : "") + (className || "")).trim() || null}, text); }
 
 /** The title with the variant before it, if the job has variants. */
 function fullTitle(test) { return (test.variant ? test.variant + " \u00b7 " : "") + titleOf(test); }
@@ -119,26 +93,6 @@ function writeProperties() {
   })));
   page.append(h("p", {class: "soft small", style: "margin-top:8px"}, "Spread, relative to the median (full width \u00b1" + Math.round(100 * reach) + " %). Dot: median; grey bar: range over the packings" +
     (compared ? "; orange mark: laboratory." : ".")));
-}
-
-/** Buttons for one of several things. */
-function picker(label, names, chosen, choose) {
-  if (names.length < 2) return null;
-  const buttons = names.map((name, i) => h("button", {type: "button", "aria-pressed": String(i === chosen), onclick: () => {
-    buttons.forEach((b, k) => b.setAttribute("aria-pressed", String(k === i)));
-    choose(i);
-  }}, name));
-  return h("div", {class: "pick"}, label, h("div", {class: "buttons", role: "group"}, buttons));
-}
-/** The same as a list to unfold, where buttons would fill more than a line. */
-function chooser(label, names, choose) {
-  if (names.join("").length < 90) return picker(label, names, 0, choose);
-  const list = h("select", {"aria-label": label || "Choose", onchange: (e) => choose(Number(e.target.value))}, names.map((text, i) => h("option", {value: i}, text)));
-  return h("div", {class: "pick"}, label, list);
-}
-function card(title) {
-  const body = h("div", {class: "card"}, h("h4", {}, title));
-  return body;
 }
 
 function stressSeries(tests, chosen) {
@@ -445,10 +399,4 @@ writePattern();
 if (!data.variants) writeEnvelope();
 writeEvidence();
 writeProvenance();
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { setTheme(); redrawAll(); });
-addEventListener("beforeprint", () => {
-  for (const d of document.querySelectorAll("details")) d.open = true;
-  setTheme("light");
-  redrawAll();
-});
-addEventListener("afterprint", () => { setTheme(); redrawAll(); });
+followTheme();

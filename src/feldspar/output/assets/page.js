@@ -1,0 +1,98 @@
+// What every page of Feldspar stands on: its data, the theme, tables, pickers and cards.
+"use strict";
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const page = document.getElementById("page");
+const redraw = [];   // what must be drawn again when the theme changes
+
+function setTheme(forced) {
+  const dark = forced ? forced === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  document.documentElement.dataset.theme = dark ? "dark" : "light";
+}
+function redrawAll() {
+  for (const chart of [...charts]) {
+    if (chart.host.isConnected) chart.rebuild();
+    else charts.delete(chart);
+  }
+  for (const draw of redraw) draw();
+}
+/** Draws again when the reader changes the theme, and in light colours on paper. */
+function followTheme() {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { setTheme(); redrawAll(); });
+  addEventListener("beforeprint", () => {
+    for (const d of document.querySelectorAll("details")) d.open = true;
+    setTheme("light");
+    redrawAll();
+  });
+  addEventListener("afterprint", () => { setTheme(); redrawAll(); });
+}
+
+function median(values) {
+  const list = values.filter((v) => v !== null && Number.isFinite(v)).sort((a, b) => a - b);
+  if (!list.length) return null;
+  return list.length % 2 ? list[(list.length - 1) / 2] : (list[list.length / 2 - 1] + list[list.length / 2]) / 2;
+}
+function plural(count, word) { return count + " " + word + (count === 1 ? "" : "s"); }
+function table(className, head, rows) {
+  return h("div", {class: "scroll"}, h("table", {class: className}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)));
+}
+function th(text, number, title) { return h("th", {class: number ? "number" : null, scope: "col", title}, text); }
+function td(text, number, className) { return h("td", {class: ((number ? "number " : "") + (className || "")).trim() || null}, text); }
+
+/** Buttons for one of several things. */
+function picker(label, names, chosen, choose) {
+  if (names.length < 2) return null;
+  const buttons = names.map((name, i) => h("button", {type: "button", "aria-pressed": String(i === chosen), onclick: () => {
+    buttons.forEach((b, k) => b.setAttribute("aria-pressed", String(k === i)));
+    choose(i);
+  }}, name));
+  return h("div", {class: "pick"}, label, h("div", {class: "buttons", role: "group"}, buttons));
+}
+/** The same as a list to unfold, where buttons would fill more than a line. */
+function chooser(label, names, choose) {
+  if (names.join("").length < 90) return picker(label, names, 0, choose);
+  const list = h("select", {"aria-label": label || "Choose", onchange: (e) => choose(Number(e.target.value))}, names.map((text, i) => h("option", {value: i}, text)));
+  return h("div", {class: "pick"}, label, list);
+}
+function card(title) {
+  const body = h("div", {class: "card"}, h("h4", {}, title));
+  return body;
+}
+
+/** The page's head: what made it, its title, facts as chips. */
+function pageHead(maker, title, facts) {
+  page.append(h("header", {}, h("div", {class: "maker"}, "Feldspar \u00b7 " + maker), h("h1", {}, title), h("ul", {class: "facts"}, facts.filter(Boolean).map((fact) => h("li", {}, fact)))));
+}
+
+/** "12.3 \u2013 14.1", or a dash where one packing gives no interval. */
+function intervalText(row) { return row.low === null || row.low === undefined ? "\u2013" : show(row.low) + " \u2013 " + show(row.high); }
+function unitText(unit) { return unit ? h("span", {class: "unit"}, " " + unit.replace("deg", "\u00b0")) : ""; }
+function gradeMark(grade) { return h("span", {class: "grade " + grade}, grade); }
+/** "12 A, 1 C" from {A: 12, B: 0, C: 1}. */
+function gradesText(grades) {
+  const some = Object.entries(grades).filter(([, count]) => count > 0);
+  return some.length ? h("span", {class: "marks"}, some.map(([grade, count]) => [gradeMark(grade), " " + count + " "])) : "\u2013";
+}
+function kindText(test, sigma3) {
+  const names = {"uniaxial-compression": "Uniaxial compression", "direct-tension": "Direct tension", biaxial: "Biaxial compression", brazilian: "Brazilian test"};
+  return (names[test] || test) + (test === "biaxial" && sigma3 !== null ? " at " + Number(sigma3.toPrecision(4)) + " MPa" : "");
+}
+
+/** Says that runs are missing, and lists those that failed with their reasons. */
+function writeState(missing, failures) {
+  if (missing) page.append(h("p", {class: "notice"}, plural(missing, "run") + (missing === 1 ? " is" : " are") + " still to do. The page holds those that are done; the same command goes on."));
+  if (!failures.length) return;
+  page.append(h("details", {open: failures.length <= 5}, h("summary", {}, plural(failures.length, "run") + " failed"),
+    table("evidence", [failures.some((f) => f.point) ? th("Point") : null, th("Test"), th("Seed", true), th("Reason")],
+      failures.map((f) => h("tr", {}, failures.some((g) => g.point) ? td(f.point) : null, td(kindText(f.test, f.sigma3_MPa), false, "kind"), td(String(f.seed), true), td(f.reason))))));
+}
+
+function writeSource(p, job) {
+  const list = h("dl", {}), add = (name, value) => list.append(h("dt", {}, name), h("dd", {}, value));
+  page.append(h("h2", {}, "Provenance"), list);
+  add("Program", "Feldspar " + p.version + ", commit " + p.commit);
+  if (p.command_line) add("Command", p.command_line);
+  if (p.started) add("Written", p.started.replace("T", " ").replace("Z", " UTC"));
+  if (p.machine) add("Machine", p.machine + "; " + plural(p.threads, "thread"));
+  if (job) { add("Job file", job.file); add("Packings", "seeds " + job.seeds.join(", ")); }
+}

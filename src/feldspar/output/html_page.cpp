@@ -1,0 +1,67 @@
+#include "feldspar/output/html_page.hpp"
+
+#include "feldspar/output/report_assets.hpp"
+
+namespace feldspar {
+
+std::string escaped(const std::string& text) {
+    std::string html;
+    for (const char letter : text) {
+        switch (letter) {
+            case '&':
+                html += "&amp;";
+                break;
+            case '<':
+                html += "&lt;";
+                break;
+            case '>':
+                html += "&gt;";
+                break;
+            case '"':
+                html += "&quot;";
+                break;
+            case '\'':
+                html += "&#39;";
+                break;
+            default:
+                html += letter;
+        }
+    }
+    return html;
+}
+
+std::string script_json(const nlohmann::ordered_json& json) {
+    const std::string text = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    std::string safe;
+    safe.reserve(text.size());
+    for (const char letter : text) {
+        if (letter == '<')
+            safe += "\\u003c";
+        else
+            safe += letter;
+    }
+    return safe;
+}
+
+void HtmlPage::fill(const std::string& mark, const std::string& text) {
+    const std::string wanted = "{{" + mark + "}}";
+    const std::size_t found = page_.find(wanted, from_);
+    if (found == std::string::npos) return;
+    page_.replace(found, wanted.size(), text);
+    from_ = found + text.size();
+}
+
+std::string html_page(const std::string& title, const nlohmann::ordered_json& data, const char* script) {
+    HtmlPage page(asset_page_html);
+    page.fill("title", escaped(title));
+    page.fill("uplot_css", asset_uPlot_min_css);
+    page.fill("css", asset_report_css);
+    page.fill("data", script_json(data));
+    page.fill("uplot_js", asset_uPlot_iife_min_js);
+    page.fill("charts_js", asset_charts_js);
+    page.fill("page_js", asset_page_js);
+    page.fill("script", script);
+    return page.text();
+}
+
+}  // namespace feldspar
