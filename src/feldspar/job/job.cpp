@@ -77,6 +77,7 @@ Job read_tree(const toml::table& tree, const std::string& text, const std::strin
     if (tests.brazilian_diameter_m) job.brazilian_specimen = disc_of(job.specimen, *tests.brazilian_diameter_m);
     check_variants(root, job);
     job.laboratory = read_laboratory(root);
+    job.laboratory_confined = read_laboratory_confined(root);
 
     check_one_packing(root, job);
     return job;

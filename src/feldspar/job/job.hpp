@@ -30,6 +30,12 @@ struct Variant {
     }
 };
 
+/// A strength that the laboratory measured under confinement, compression positive.
+struct ConfinedStrength {
+    double sigma3_Pa = 0.0;
+    double sigma1_Pa = 0.0;
+};
+
 /// A whole job, in SI.
 struct Job {
     std::filesystem::path file;         ///< as given
@@ -44,6 +50,7 @@ struct Job {
     int at_once = 0;                           ///< at most so many tests side by side; 0 = as suits their size
     std::map<std::string, double> laboratory;  ///< SI (radians for angles), by the names of `summary.json`: E, nu, UCS, DTS, BTS,
                                                ///< cohesion, friction_angle, hoek_brown_mi
+    std::vector<ConfinedStrength> laboratory_confined;   ///< in the order of the job
 
     bool has_variants() const { return variants.size() > 1 || !variants.front().name.empty(); }
 };

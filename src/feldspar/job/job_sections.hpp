@@ -56,6 +56,8 @@ RunSettings read_run(const TableReader& root);
 
 /// [laboratory], in SI.
 std::map<std::string, double> read_laboratory(const TableReader& root);
+/// Its list `confined`.
+std::vector<ConfinedStrength> read_laboratory_confined(const TableReader& root);
 
 /// `tests` of a table: kinds of test, each once; none if the key is not there.
 std::vector<TestKind> read_kinds(const TableReader& table);

@@ -15,6 +15,8 @@ constexpr auto material_keys = std::to_array<std::string_view>({"elastic_preset"
 constexpr auto grain_keys = std::to_array<std::string_view>({"E", "nu", "density"});
 constexpr auto contact_keys = std::to_array<std::string_view>(
     {"law", "Kn", "eta", "kratio", "sigma_nt", "tau", "mu", "Gfn", "Gfs", "shear_measure", "tension_unloading"});
+constexpr auto laboratory_keys = std::to_array<std::string_view>(
+    {"E", "nu", "UCS", "DTS", "BTS", "cohesion", "c", "friction_angle", "phi", "hoek_brown_mi", "mi", "confined"});
 constexpr auto numerics_keys = std::to_array<std::string_view>(
     {"kind", "accuracy", "residual_target", "damping", "speed", "mass_factor", "time_step", "maximum_steps", "confirm"});
 
@@ -286,8 +288,7 @@ Physics read_physics(const TableReader& root, const TableReader* variant) {
 std::map<std::string, double> read_laboratory(const TableReader& root) {
     std::map<std::string, double> values;
     if (!root.has("laboratory")) return values;
-    const TableReader table = root.table(
-        "laboratory", {"E", "nu", "UCS", "DTS", "BTS", "cohesion", "c", "friction_angle", "phi", "hoek_brown_mi", "mi"});
+    const TableReader table = root.table("laboratory", laboratory_keys);
     const auto one_of = [&](std::string_view name, std::string_view alias) {
         if (table.has(name) && table.has(alias))
             table.fail(alias, "given beside " + std::string(name) + ", which is the same", "one of the two");
@@ -303,6 +304,23 @@ std::map<std::string, double> read_laboratory(const TableReader& root) {
         values["friction_angle"] = table.quantity(key, Dimension::angle, angle);
     if (const auto key = one_of("hoek_brown_mi", "mi"); table.has(key)) values["hoek_brown_mi"] = table.number(key, positive);
     return values;
+}
+
+std::vector<ConfinedStrength> read_laboratory_confined(const TableReader& root) {
+    std::vector<ConfinedStrength> strengths;
+    if (!root.has("laboratory")) return strengths;
+    const TableReader table = root.table("laboratory", laboratory_keys);
+    if (!table.has("confined")) return strengths;
+    for (const toml::node& node : table.array("confined")) {
+        const toml::array* pair = node.as_array();
+        if (pair == nullptr || pair->size() != 2)
+            table.fail_at(node, "confined", shown(node) + " is not a strength under confinement", "pairs of sigma_3 and sigma_1: [[\"4 MPa\", \"150 MPa\"], ...]");
+        const ConfinedStrength strength{table.quantity_of(*pair->get(0), "confined", Dimension::stress, positive),
+                                        table.quantity_of(*pair->get(1), "confined", Dimension::stress, positive)};
+        if (strength.sigma1_Pa <= strength.sigma3_Pa) table.fail_at(node, "confined", "sigma_1 is not larger than sigma_3", "sigma_3 first, then sigma_1");
+        strengths.push_back(strength);
+    }
+    return strengths;
 }
 
 }  // namespace feldspar

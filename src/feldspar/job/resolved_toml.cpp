@@ -195,7 +195,7 @@ void write_variant(Lines& out, const Variant& variant) {
 }
 
 void write_laboratory(Lines& out, const Job& job) {
-    if (job.laboratory.empty()) return;
+    if (job.laboratory.empty() && job.laboratory_confined.empty()) return;
     out.head("[laboratory]");
     for (const auto& [key, value] : job.laboratory) {
         if (key == "nu" || key == "hoek_brown_mi")
@@ -203,6 +203,11 @@ void write_laboratory(Lines& out, const Job& job) {
         else
             out.quantity(key, value, key == "friction_angle" ? Dimension::angle : Dimension::stress);
     }
+    if (job.laboratory_confined.empty()) return;
+    std::string pairs;
+    for (const ConfinedStrength& c : job.laboratory_confined)
+        pairs += (pairs.empty() ? "" : ", ") + ("[\"" + format_si(c.sigma3_Pa, Dimension::stress) + "\", \"" + format_si(c.sigma1_Pa, Dimension::stress) + "\"]");
+    out.raw("confined", "[" + pairs + "]");
 }
 
 }  // namespace
