@@ -100,6 +100,29 @@ struct ClaimsOptions {
 /// Holds the claims of a folder against what its studies' ledgers have, and prints the verdicts. Runs nothing.
 ExitCode claims_command(const ClaimsOptions& options);
 
+/// What stands on the command line of `envelope` beside the job file.
+struct EnvelopeCommandOptions : JobOptions {
+    std::optional<int> packings;             ///< how many
+    std::vector<std::string> sigma3;         ///< "2 MPa"; empty = the job's, else a default series
+    bool with_tension = false;
+    std::optional<std::string> results;      ///< directory of ledger, runs and files
+    std::string command_line;                ///< for provenance
+};
+
+/// UCS, biaxial series, DTS and BTS on several packings; Mohr-Coulomb and Hoek-Brown through them.
+ExitCode envelope_command(const EnvelopeCommandOptions& options);
+
+/// What stands on the command line of `converge` beside the job file.
+struct ConvergeCommandOptions : JobOptions {
+    std::optional<int> packings;             ///< how many
+    std::string within = "5 %";              ///< a change that does not matter
+    std::optional<std::string> results;      ///< directory of ledger, runs and files
+    std::string command_line;                ///< for provenance
+};
+
+/// Varies grain size, specimen size, triangles and loading rate one at a time, and says whether the answer depends on them.
+ExitCode converge_command(const ConvergeCommandOptions& options);
+
 /// Builds everything, prints counts, memory, stable step, expected steps and time, and stops.
 ExitCode check_command(const JobOptions& options);
 

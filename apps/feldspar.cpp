@@ -21,6 +21,8 @@ constexpr const char* examples = R"(Examples:
   feldspar run granite.toml --threads 2                  the results do not depend on the threads
   feldspar run granite.toml --at-once 1                  one test after the other, each on all threads
   feldspar run granite.toml --test brazilian             only a part of the job
+  feldspar envelope granite.toml                         strength envelope over five packings
+  feldspar converge granite.toml                         does the answer depend on grains, size, mesh, rate, packings?
 
 Exit codes: 0 done, 2 mistake in the input (no file is left), 3 numerical failure, 4 results could not be written,
 130 interrupted (the results so far are kept).)";
@@ -114,6 +116,18 @@ void add_slurm_options(CLI::App& command, StudyOptions& options) {
     command.add_flag("--wait", options.wait, "on Slurm: wait for the results and print them")->needs(on);
 }
 
+// What commands that make a study of a job share.
+template <class Options>
+void add_made_study_options(CLI::App& command, Options& options, const char* packings) {
+    command.add_option("job", options.job, "the job file")->required()->type_name("JOB.toml");
+    command.add_option("--seeds", options.packings, packings)->type_name("N")->check(CLI::Range(1, 1000));
+    command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")->type_name("NAME")->allow_extra_args(false);
+    command.add_option("--threads", options.threads, "number of threads of the whole program (default: as the job says, else one for each core)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 256));
+    command.add_option("--at-once", options.at_once, "at most so many runs side by side (default: as suits their size)")->type_name("K")->check(CLI::Range(1, 256));
+}
+
 int run_program(int argc, char** argv) {
     CLI::App app("A laboratory for rock fracture with the flexible particle model.", "feldspar");
     app.footer(examples);
@@ -169,6 +183,25 @@ int run_program(int argc, char** argv) {
         ->check(CLI::Range(1, 256));
     calibrate_app->add_flag("--insist", calibrate.insist, "run even if the targets contradict each other");
 
+    EnvelopeCommandOptions envelope;
+    envelope.command_line = run.command_line;
+    CLI::App* envelope_app = app.add_subcommand("envelope", "strength envelope: UCS, biaxial series, DTS and BTS on several packings, with Mohr-Coulomb and Hoek-Brown");
+    add_made_study_options(*envelope_app, envelope, "number of packings (default: the job's seeds if there are several, else 5)");
+    envelope_app->add_option("--sigma3", envelope.sigma3, "confining stresses, such as \"2 MPa\" \"5 MPa\" (default: the job's biaxial tests, else 2.5, 5, 10 and 15 % of the expected strength)")
+        ->type_name("STRESS");
+    envelope_app->add_flag("--with-tension", envelope.with_tension, "the Hoek-Brown parabola goes through the direct tensile strengths too");
+    envelope_app->add_option("--results", envelope.results, "directory of the results (default: results/<job>-envelope); goes on with what is there")->type_name("DIR");
+
+    ConvergeCommandOptions converge;
+    converge.command_line = run.command_line;
+    CLI::App* converge_app = app.add_subcommand("converge", "does the answer depend on grain size, specimen size, mesh, loading rate or the number of packings?");
+    add_made_study_options(*converge_app, converge, "number of packings (default: the job's seeds if there are several, else 3)");
+    converge_app->add_option("--test", converge.tests, "only the job's tests of this kind (default: uniaxial, direct tension and Brazilian); may be repeated")
+        ->type_name("KIND")
+        ->allow_extra_args(false);
+    converge_app->add_option("--within", converge.within, "a change that does not matter (default: 5 %)")->type_name("SHARE");
+    converge_app->add_option("--results", converge.results, "directory of the results (default: results/<job>-converge); goes on with what is there")->type_name("DIR");
+
     std::string kind;
     std::optional<std::string> file;
     CLI::App* new_app = app.add_subcommand("new", "print a commented job to start from");
@@ -205,6 +238,8 @@ int run_program(int argc, char** argv) {
         if (*gather_app) return study_gather_command(study);
         if (*study_app) return study_command(study);
         if (*calibrate_app) return calibrate_command(calibrate);
+        if (*envelope_app) return envelope_command(envelope);
+        if (*converge_app) return converge_command(converge);
         if (presets) return presets_command();
         if (kind.empty())
             throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory");

@@ -117,6 +117,7 @@ class XYChart {
     const x = o.xRange || padded(extent(this.series.map((s) => s.x)));
     const y = o.yRange || padded(extent(left.flatMap((s) => [s.y, s.low || [], s.high || []])));
     this.ranges = [x, y];
+    if (o.equal) this.host.style.height = this.height() + "px";
     const r = padded(extent(right.map((s) => s.y)));
     const ink = theme.get("soft"), line = theme.get("line");
     const axis = (scale, label, side, grid) => ({
@@ -162,7 +163,7 @@ class XYChart {
     ctx.strokeStyle = theme.get("soft");   // the zero lines
     ctx.lineWidth = dpr;
     ctx.beginPath();
-    for (const [scale, vertical] of [["x", true], ["y", false]]) {
+    for (const [scale, vertical] of this.options.xTicks ? [["y", false]] : [["x", true], ["y", false]]) {
       const at = u.valToPos(0, scale, true);
       if (vertical) { ctx.moveTo(at, u.bbox.top); ctx.lineTo(at, u.bbox.top + u.bbox.height); }
       else { ctx.moveTo(u.bbox.left, at); ctx.lineTo(u.bbox.left + u.bbox.width, at); }

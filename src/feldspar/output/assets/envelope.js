@@ -66,7 +66,9 @@ function envelopeSeries(envelope) {
 
 /** Half circles of the mean strengths, and the line that should touch them. */
 function mohrSeries(envelope) {
-  const series = [], joint = envelope.joint;
+  const series = [], joint = envelope.joint, highest = 1.15 * Math.max(...envelope.strengths.map((s) => 0.5 * (s.mean - s.sigma3_MPa)));
+  /** A line of slope and intercept from the stress `from` until it leaves the circles behind. */
+  const straight = (from, cohesion, slope) => { const to = (highest - cohesion) / (slope || 1); return {x: [from, to], y: [cohesion + slope * from, highest]}; };
   const circle = (s3, s1, label, color, first) => {
     const x = [], y = [], middle = 0.5 * (s1 + s3), radius = 0.5 * (s1 - s3);
     for (let i = 0; i <= 90; ++i) { x.push(middle - radius * Math.cos((Math.PI * i) / 90)); y.push(radius * Math.sin((Math.PI * i) / 90)); }
@@ -77,14 +79,12 @@ function mohrSeries(envelope) {
   if (tension && tension.mean) circle(-tension.mean, 0, "direct tension", "va", false);
   const last = envelope.strengths[envelope.strengths.length - 1];
   if (joint.cohesion_MPa && joint.friction_angle_deg !== null && last) {
-    const slope = Math.tan((joint.friction_angle_deg * Math.PI) / 180), to = 0.5 * (last.mean + last.sigma3_MPa);
-    const least = Math.max(-joint.cohesion_MPa / (slope || 1), -0.1 * to);
-    series.push({label: "\u03c4 = c + \u03c3 tan \u03c6", x: [least, to], y: [joint.cohesion_MPa + slope * least, joint.cohesion_MPa + slope * to], color: "tensile", width: 2});
+    const slope = Math.tan((joint.friction_angle_deg * Math.PI) / 180);
+    series.push({label: "\u03c4 = c + \u03c3 tan \u03c6", ...straight(Math.max(-joint.cohesion_MPa / (slope || 1), -0.1 * last.mean), joint.cohesion_MPa, slope), color: "tensile", width: 2});
   }
   const lab = data.laboratory;
   if (lab.cohesion_MPa && lab.friction_angle_deg !== undefined && last) {
-    const slope = Math.tan((lab.friction_angle_deg * Math.PI) / 180), to = 0.5 * (last.mean + last.sigma3_MPa);
-    series.push({label: "laboratory", x: [0, to], y: [lab.cohesion_MPa, lab.cohesion_MPa + slope * to], color: "vd", width: 1.6, dash: true});
+    series.push({label: "laboratory", ...straight(0, lab.cohesion_MPa, Math.tan((lab.friction_angle_deg * Math.PI) / 180)), color: "vd", width: 1.6, dash: true});
   }
   return series;
 }

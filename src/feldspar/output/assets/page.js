@@ -71,7 +71,7 @@ function gradeMark(grade) { return h("span", {class: "grade " + grade}, grade); 
 /** "12 A, 1 C" from {A: 12, B: 0, C: 1}. */
 function gradesText(grades) {
   const some = Object.entries(grades).filter(([, count]) => count > 0);
-  return some.length ? h("span", {class: "marks"}, some.map(([grade, count]) => [gradeMark(grade), " " + count + " "])) : "\u2013";
+  return some.length ? h("span", {class: "marks"}, some.flatMap(([grade, count]) => [gradeMark(grade), " " + count + " "])) : "\u2013";
 }
 function kindText(test, sigma3) {
   const names = {"uniaxial-compression": "Uniaxial compression", "direct-tension": "Direct tension", biaxial: "Biaxial compression", brazilian: "Brazilian test"};

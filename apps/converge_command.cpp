@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "feldspar/base/units.hpp"
+#include "feldspar/study/converge.hpp"
+#include "interrupt.hpp"
+#include "running_study.hpp"
+
+namespace feldspar {
+namespace {
+
+double limit(const std::string& text) {
+    double value = 0.0;
+    try {
+        value = parse_quantity(text, Dimension::fraction);
+    } catch (const InputError& error) {
+        throw InputError({{}, 0, 0, "--within"}, error.problem(), error.allowed(), error.suggestion());
+    }
+    if (!(value > 0.0 && value < 1.0)) throw InputError({{}, 0, 0, "--within"}, fmt::format("'{}' is no change that does not matter", text), "more than 0 and less than 100 %");
+    return value;
+}
+
+}  // namespace
+
+ExitCode converge_command(const ConvergeCommandOptions& options) {
+    install_signal_handlers();
+    JobOptions whole = options;
+    whole.tests.clear();   // the plan chooses
+    const Job job = job_with_options(whole);
+    const ConvergePlan plan = plan_convergence(job, {options.packings, options.tests, limit(options.within), options.results});
+    for (const std::string& skipped : plan.skipped) fmt::print(stderr, "left out: {}\n", skipped);
+    Ledger ledger(plan.study.results, Ledger::Access::write);
+    const StudyRunning running{thread_count(job), job.at_once, options.command_line};
+    const Execution execution = run_study(plan.study, ledger, running);
+
+    const std::vector<PointResults> points = point_results(plan.study, ledger);
+    write_convergence(plan.study.results, plan, points, collect_provenance(options.command_line, running.threads));
+    fmt::print("\n{}\n", convergence_text(plan, points));
+    print_execution(plan.study, execution);
+    fmt::print("Page: {}\n", (plan.study.results / "converge.html").string());
+    return outcome(execution);
+}
+
+}  // namespace feldspar

@@ -1,0 +1,46 @@
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "feldspar/base/units.hpp"
+#include "feldspar/study/envelope.hpp"
+#include "interrupt.hpp"
+#include "running_study.hpp"
+
+namespace feldspar {
+namespace {
+
+std::vector<double> stresses(const std::vector<std::string>& given) {
+    std::vector<double> values;
+    for (const std::string& text : given) {
+        double value = 0.0;
+        try {
+            value = parse_quantity(text, Dimension::stress);
+        } catch (const InputError& error) {
+            throw InputError({{}, 0, 0, "--sigma3"}, error.problem(), error.allowed(), error.suggestion());
+        }
+        if (value <= 0.0) throw InputError({{}, 0, 0, "--sigma3"}, fmt::format("'{}' confines nothing", text), "stresses greater than zero; the uniaxial test is always there");
+        values.push_back(value);
+    }
+    return values;
+}
+
+}  // namespace
+
+ExitCode envelope_command(const EnvelopeCommandOptions& options) {
+    install_signal_handlers();
+    const Job job = job_with_options(options);
+    const EnvelopePlan plan = plan_envelope(job, {options.packings, stresses(options.sigma3), options.with_tension, options.results});
+    for (const std::string& remark : plan.remarks) fmt::print(stderr, "{}\n", remark);
+    Ledger ledger(plan.study.results, Ledger::Access::write);
+    const StudyRunning running{thread_count(job), job.at_once, options.command_line};
+    const Execution execution = run_study(plan.study, ledger, running);
+
+    const std::vector<PointResults> points = point_results(plan.study, ledger);
+    write_envelope(plan.study.results, plan.study, points, options.with_tension, collect_provenance(options.command_line, running.threads));
+    fmt::print("\n{}\n", envelope_text(plan.study, points, options.with_tension));
+    print_execution(plan.study, execution);
+    fmt::print("Page: {}\n", (plan.study.results / "envelope.html").string());
+    return outcome(execution);
+}
+
+}  // namespace feldspar

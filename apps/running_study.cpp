@@ -1,0 +1,106 @@
+#include "running_study.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+
+#include "campaign.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+
+namespace feldspar {
+namespace {
+
+// Tells of a study while it runs: a line for every run that ends, with what is left.
+class StudyProgress {
+public:
+    explicit StudyProgress(const Study& study, const Ledger& ledger) : study_(study) {
+        std::vector<std::string> ids;
+        for (const Run& run : study.runs) numbers_.emplace(run.id, 0);
+        for (const auto& [id, number] : numbers_) ids.push_back(id);
+        int number = 0;
+        for (const Run& run : study.runs)
+            if (numbers_[run.id] == 0) numbers_[run.id] = ++number;
+        for (const RunRecord& record : ledger.find(ids)) ended_ += record.state == RunState::done;
+        first_ = ended_;
+        progress_.keep_log_short();
+        progress_.keep_log_short();
+    }
+
+    int runs() const { return static_cast<int>(numbers_.size()); }
+    int done() const { return ended_; }
+
+    void report(const Run& run, const TestProgress& progress) { progress_.report(numbers_[run.id], runs(), label_of(study_, run), progress); }
+
+    void ended(const Run& run, const RunRecord& record) {
+        ++ended_;
+        progress_.ended(numbers_[run.id]);
+        const std::string what = record.state == RunState::failed ? "failed: " + record.reason : result_text(record);
+        progress_.note(fmt::format("{}/{} {}: {}{}", ended_, runs(), label_of(study_, run), what, left()));
+    }
+
+    void note(const std::string& line) { progress_.note(line); }
+    void clear() { progress_.clear(); }
+
+private:
+    static std::string result_text(const RunRecord& record) {
+        return fmt::format("{:.4g} MPa, grade {}, {}", record.numbers.at("strength_Pa") / 1e6, record.texts.at("grade"),
+                           duration_text(record.numbers.at("wall_s")));
+    }
+
+    // The rest, at the pace of this call so far.
+    std::string left() const {
+        const int rest = runs() - ended_;
+        if (rest <= 0) return {};
+        const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        return fmt::format("; about {} left", duration_text(passed / (ended_ - first_) * rest));
+    }
+
+    const Study& study_;
+    std::map<std::string, int> numbers_;   // of each run, from 1 on
+    int ended_ = 0, first_ = 0;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    Progress progress_;
+};
+
+}  // namespace
+
+std::string label_of(const Study& study, const Run& run) {
+    std::string text;
+    for (const AxisValue& value : study.points[run.point].values) text += (text.empty() ? "" : ", ") + value.label;
+    return fmt::format("{}{}{}, seed {}", text, text.empty() ? "" : ": ", title(run.test()), run.seed());
+}
+
+Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& running) {
+    ledger.enrol(study);
+    StudyProgress progress(study, ledger);
+    progress.note(fmt::format("{}: {} runs at {} point{}, {} done already; results in {}", study.name, progress.runs(), study.points.size(),
+                              study.points.size() == 1 ? "" : "s", progress.done(), study.results.string()));
+    ExecuteControl control;
+    control.threads = running.threads;
+    control.at_once = running.at_once;
+    control.keep = study.keep;
+    control.stop = &stop_requested();
+    control.provenance = collect_provenance(running.command_line, control.threads);
+    control.progress = [&](const Run& run, const TestProgress& state) { progress.report(run, state); };
+    control.ended = [&](const Run& run, const RunRecord& record) { progress.ended(run, record); };
+    control.note = [&](const std::string& line) { progress.note(line); };
+    const Execution execution = execute(study.runs, ledger, control);
+    progress.clear();
+    return execution;
+}
+
+void print_execution(const Study& study, const Execution& execution) {
+    fmt::print("{} runs done now, {} before, {} failed; {} of runs in {}\n", execution.done, execution.found_done, execution.failed,
+               duration_text(execution.run_s), duration_text(execution.wall_s));
+    fmt::print("Ledger: {}\n", (study.results / "ledger.sqlite").string());
+    if (execution.left > 0) fmt::print(stderr, "interrupted with {} runs left; the same command goes on with them\n", execution.left);
+}
+
+ExitCode outcome(const Execution& execution) {
+    if (execution.left > 0) return ExitCode::interrupted;
+    return execution.failed > 0 ? ExitCode::numerical : ExitCode::success;
+}
+
+}  // namespace feldspar
