@@ -12,7 +12,7 @@ TEST(CommandLine, HelpAndVersion) {
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
     EXPECT_NE(help.out.find("feldspar run"), std::string::npos);
-    for (const char* command : {"run", "check", "new"}) EXPECT_EQ(run_program(place.path(), {command, "--help"}).code, 0);
+    for (const char* command : {"run", "check", "new", "envelope", "converge"}) EXPECT_EQ(run_program(place.path(), {command, "--help"}).code, 0);
     const Outcome version = run_program(place.path(), {"--version"});
     EXPECT_EQ(version.code, 0);
     EXPECT_EQ(version.out.rfind("feldspar 0.", 0), 0u) << version.out;
