@@ -28,7 +28,7 @@ ExitCode converge_command(const ConvergeCommandOptions& options) {
     whole.tests.clear();   // the plan chooses
     const Job job = job_with_options(whole);
     const ConvergePlan plan = plan_convergence(job, {options.packings, options.tests, limit(options.within), options.results});
-    for (const std::string& skipped : plan.skipped) fmt::print(stderr, "left out: {}\n", skipped);
+    for (const std::string& remark : plan.remarks) fmt::print(stderr, "{}\n", remark);
     Ledger ledger(plan.study.results, Ledger::Access::write);
     const StudyRunning running{thread_count(job), job.at_once, options.command_line};
     const Execution execution = run_study(plan.study, ledger, running);

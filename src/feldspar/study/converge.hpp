@@ -34,7 +34,7 @@ struct ConvergeAxis {
 struct ConvergePlan {
     Study study;                          ///< its first point is the job as it is
     std::vector<ConvergeAxis> axes;
-    std::vector<std::string> skipped;     ///< axes that do not apply, with the reason, in sentences
+    std::vector<std::string> remarks;     ///< what was left out and why, and what is doubtful, in sentences
     double within = 0.05;
 };
 

@@ -91,7 +91,7 @@ Json whole_json(const ConvergePlan& plan, const Convergence& result, std::span<c
                  {"method", method(plan.within)},
                  {"within_percent", 100.0 * plan.within},
                  {"missing", missing_runs(points)},
-                 {"skipped", plan.skipped}};
+                 {"remarks", plan.remarks}};
     json["axes"] = Json::array();
     for (const AxisResult& axis : result.axes) json["axes"].push_back(axis_json(axis));
     Json seeds = {{"verdict", verdict_json(result.seed_verdict)}, {"properties", Json::array()}};
@@ -133,6 +133,12 @@ std::string csv(const ConvergePlan& plan, const Convergence& result, const Prove
     return text;
 }
 
+/// "+1.3", "-0.2", "0.0".
+std::string signed_percent(double share) {
+    const double tenths = std::round(1000.0 * share);
+    return tenths == 0.0 ? "0.0" : fmt::format("{:+.1f}", 0.1 * tenths);
+}
+
 std::string axis_table(const AxisResult& axis) {
     std::vector<Row> rows{{axis.axis.name, "property", "unit", "mean", "95 % interval", "n", "change", "95 % interval"}};
     for (const PropertyAlong& along : axis.properties)
@@ -145,8 +151,8 @@ std::string axis_table(const AxisResult& axis) {
             if (v == along.base) {
                 row.insert(row.end(), {"base", ""});
             } else {
-                row.push_back(std::isfinite(value.change.mean) ? fmt::format("{:+.1f} %", 100.0 * value.change.mean) : "-");
-                row.push_back(std::isfinite(value.change.low) ? fmt::format("{:+.1f} .. {:+.1f} %", 100.0 * value.change.low, 100.0 * value.change.high) : "-");
+                row.push_back(std::isfinite(value.change.mean) ? signed_percent(value.change.mean) + " %" : "-");
+                row.push_back(std::isfinite(value.change.low) ? fmt::format("{} .. {} %", signed_percent(value.change.low), signed_percent(value.change.high)) : "-");
             }
             rows.push_back(std::move(row));
         }
@@ -167,7 +173,7 @@ std::string convergence_text(const ConvergePlan& plan, std::span<const PointResu
     const Convergence result = judge_convergence(plan, points);
     std::string text;
     for (const AxisResult& axis : result.axes) text += axis_table(axis) + wrapped_text(axis.axis.name + ": " + axis.verdict.words) + "\n";
-    for (const std::string& skipped : plan.skipped) text += wrapped_text("Left out: " + skipped);
+    for (const std::string& remark : plan.remarks) text += wrapped_text(remark);
     text += wrapped_text("packings: " + result.seed_verdict.words) + "\n";
     return text + wrapped_text(result.overall);
 }

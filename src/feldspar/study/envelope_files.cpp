@@ -210,6 +210,11 @@ std::string goodness_table(const CurvePair& joint) {
                          1);
 }
 
+std::string grades_text(std::span<const TestResult> results) {
+    const Json grades = grades_json(results);
+    return fmt::format("Quasi-static: {} runs of grade A, {} B, {} C (strength not shown to be that of slow loading).\n", grades["A"].get<int>(), grades["B"].get<int>(), grades["C"].get<int>());
+}
+
 }  // namespace
 
 void write_envelope(const std::filesystem::path& directory, const Study& study, std::span<const PointResults> points, bool with_tension,
@@ -231,7 +236,7 @@ std::string envelope_text(const Study& study, std::span<const PointResults> poin
             continue;
         }
         text += strength_table(fits) + "\n" + constant_table(study.points.front().job, fits) + "\n" + goodness_table(fits.joint) + "\n";
-        text += wrapped_text(fits.verdict) + wrapped_text(fits.method);
+        text += wrapped_text(fits.verdict) + grades_text(point.results) + wrapped_text(fits.method);
     }
     return text;
 }

@@ -19,6 +19,7 @@ std::string key_of(const Run& run) {
     job.tests = {TestSpec{}};
     job.name = "specimen";
     job.laboratory.clear();
+    job.laboratory_confined.clear();
     job.threads = job.at_once = 0;
     return resolved_toml(job);
 }

@@ -17,7 +17,7 @@ namespace {
 constexpr int usual_packings = 3;
 constexpr double smallest_accuracy = 0.0005, largest_accuracy = 0.1;
 constexpr double usual_paper_speed_m = 6.25e-9;
-constexpr double smallest_width_over_grain = 5.0;   ///< largest grain; below, a specimen is not one
+constexpr double least_width = 5.0, good_width = 10.0;   ///< in largest grains: below the first a specimen is not one, below the second hardly
 
 /// One more value of an axis: what it is called, and the job that has it.
 struct Step {
@@ -68,10 +68,13 @@ bool needs(const Job& job, bool disc) {
     return std::any_of(job.tests.begin(), job.tests.end(), [disc](const TestSpec& test) { return (test.kind == TestKind::brazilian) == disc; });
 }
 
-/// Is the narrowest specimen wide enough for its grains?
-bool wide_enough(const Job& job) {
-    const auto enough = [](const SpecimenSpec& s) { return width_m(s.outline) >= smallest_width_over_grain * coarsest_m(s.grain_sizes); };
-    return (!needs(job, false) || enough(job.specimen)) && (!needs(job, true) || enough(job.brazilian_specimen));
+/// Width of the narrowest specimen over its largest grain.
+double grains_across(const Job& job) {
+    const auto across = [](const SpecimenSpec& s) { return width_m(s.outline) / coarsest_m(s.grain_sizes); };
+    double least = std::numeric_limits<double>::infinity();
+    if (needs(job, false)) least = std::min(least, across(job.specimen));
+    if (needs(job, true)) least = std::min(least, across(job.brazilian_specimen));
+    return least;
 }
 
 template <class Change>
@@ -98,14 +101,18 @@ Step size_step(const Job& job, double factor) {
 }
 
 Draft draft_of_sizes(const Job& job, const char* axis, const std::function<Step(const Job&, double)>& step, std::initializer_list<double> factors,
-                     std::vector<std::string>& skipped) {
+                     std::vector<std::string>& remarks) {
     Draft draft{axis, "mm", false, step(job, 1.0), {}};
     for (const double factor : factors) {
         Step next = step(job, factor);
-        if (wide_enough(next.job))
-            draft.steps.push_back(std::move(next));
-        else
-            skipped.push_back(fmt::format("{} {}: the specimen would be narrower than five of its largest grains.", axis, next.label));
+        const double across = grains_across(next.job);
+        if (across < least_width) {
+            remarks.push_back(fmt::format("Left out: {} {}, a specimen narrower than five of its largest grains.", axis, next.label));
+            continue;
+        }
+        if (across < good_width)
+            remarks.push_back(fmt::format("Doubtful: {} {}, a specimen only {:.1f} of its largest grains wide; ten are the least that is usual.", axis, next.label, across));
+        draft.steps.push_back(std::move(next));
     }
     return draft;
 }
@@ -178,18 +185,18 @@ void keep_tests(Job& job, const std::vector<std::string>& wanted) {
     for (TestSpec& test : job.tests) test.seeds.clear();
 }
 
-std::vector<Draft> drafts_of(const Job& job, std::vector<std::string>& skipped) {
+std::vector<Draft> drafts_of(const Job& job, std::vector<std::string>& remarks) {
     std::vector<Draft> drafts;
     if (!job.specimen.packing_file.empty()) {
-        skipped.emplace_back("Grain size and specimen size: the job loads a packing.");
+        remarks.emplace_back("Left out: grain size and specimen size, because the job loads a packing.");
     } else {
-        drafts.push_back(draft_of_sizes(job, "grain size", grain_step, {0.75, 1.5}, skipped));
-        drafts.push_back(draft_of_sizes(job, "specimen size", size_step, {0.75, 1.5}, skipped));
+        drafts.push_back(draft_of_sizes(job, "grain size", grain_step, {0.75, 1.5}, remarks));
+        drafts.push_back(draft_of_sizes(job, "specimen size", size_step, {0.75, 1.5}, remarks));
     }
     if (job.variants.front().model.kind == GrainKind::flexible)
         drafts.push_back(draft_of_triangles(job));
     else
-        skipped.emplace_back("Triangles per grain: only flexible grains are meshed.");
+        remarks.emplace_back("Left out: triangles per grain, because only flexible grains are meshed.");
     drafts.push_back(draft_of_rate(job));
     std::erase_if(drafts, [](const Draft& draft) { return draft.steps.empty(); });
     return drafts;
@@ -221,7 +228,7 @@ ConvergePlan plan_convergence(const Job& job, const ConvergeOptions& options) {
     base.seeds = choose_seeds(job, options.seeds, usual_packings);
     base.variants.front().seeds.clear();
     keep_tests(base, options.tests);
-    std::vector<Draft> drafts = drafts_of(base, plan.skipped);
+    std::vector<Draft> drafts = drafts_of(base, plan.remarks);
     plan.study = study_of(base, job.name + "-converge", options.results.value_or(std::filesystem::path("results") / (job.name + "-converge")));
     plan.study.title = "Convergence of " + job.name;
     plan.study.axes.clear();

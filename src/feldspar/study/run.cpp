@@ -20,6 +20,7 @@ std::string identity(Job job) {
     job.name = "run";
     job.threads = job.at_once = 0;
     job.laboratory.clear();
+    job.laboratory_confined.clear();
     job.tests.front().snapshots = 0;
     if (job.tests.front().kind == TestKind::brazilian) job.specimen = job.brazilian_specimen;   // the rectangle is not used
     std::string text = kind_of_run;

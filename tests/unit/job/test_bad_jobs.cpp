@@ -235,6 +235,8 @@ std::vector<BadJob> bad_jobs() {
          36,
          {"laboratory.UCS", "is a length, not a stress"}},
         {"angle without unit", edited("UCS = \"122.1 MPa\"", "phi = 53"), 36, {"53 has no unit", "deg"}},
+        {"confined without sigma_1", edited("UCS = \"122.1 MPa\"", "confined = [[\"4 MPa\"]]"), 36, {"laboratory.confined", "pairs of sigma_3 and sigma_1"}},
+        {"confined the wrong way round", edited("UCS = \"122.1 MPa\"", "confined = [[\"150 MPa\", \"4 MPa\"]]"), 36, {"laboratory.confined", "sigma_3 first"}},
         {"cohesion twice", edited("UCS = \"122.1 MPa\"", "c = \"2 MPa\"\ncohesion = \"2 MPa\""), 36, {"which is the same"}},
     };
 }

@@ -147,6 +147,16 @@ TEST(Job, LaboratoryValuesHaveOneNameInside) {
     EXPECT_EQ(job.laboratory.at("hoek_brown_mi"), 20.0);
 }
 
+TEST(Job, LaboratoryStrengthsUnderConfinement) {
+    const Job job = parse_job(edited("UCS = \"122.1 MPa\"", "confined = [[\"4 MPa\", \"150 MPa\"], [\"10 MPa\", \"0.195 GPa\"]]"), "job");
+    ASSERT_EQ(job.laboratory_confined.size(), 2u);
+    EXPECT_EQ(job.laboratory_confined[0].sigma3_Pa, 4e6);
+    EXPECT_EQ(job.laboratory_confined[1].sigma1_Pa, 195e6);
+    const Job again = parse_job(resolved_toml(job), "again");
+    ASSERT_EQ(again.laboratory_confined.size(), 2u);
+    EXPECT_EQ(again.laboratory_confined[1].sigma3_Pa, 10e6);
+}
+
 TEST(Job, AByteOrderMarkAndWindowsLineEndsAreFine) {
     std::string text = "\xEF\xBB\xBF";
     for (char c : sample_job) text += c == '\n' ? std::string("\r\n") : std::string(1, c);

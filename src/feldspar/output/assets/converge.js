@@ -16,7 +16,7 @@ function writeOverview() {
   rows.push(["packings", data.packings.verdict]);
   page.append(table("evidence", [th("Varied"), th("Answer"), th("In words")], rows.map(([name, verdict]) => h("tr", {}, td(title(name), false, "kind"),
     h("td", {}, name === "packings" ? h("span", {class: "grade " + marks[verdict.dependence]}, verdict.dependence === "independent" ? "enough" : "not enough") : verdictMark(verdict.dependence)), td(restOf(verdict))))));
-  for (const reason of data.skipped) page.append(h("p", {class: "soft small"}, "Left out. " + reason));
+  for (const remark of data.remarks) page.append(h("p", {class: "soft small"}, remark));
   page.append(h("p", {class: "soft small"}, pretty(data.method)));
 }
 
