@@ -49,7 +49,7 @@ function writeAxis(axis) {
   for (const p of axis.properties) {
     p.values.forEach((v, i) => rows.push(h("tr", {}, i ? td("") : td([p.symbol || p.label, unitText(p.unit)], false, "kind"), td(v.label + (v.base ? " (job)" : ""), false, "name"), td(show(v.mean, 4), true, "strong"), td(intervalText(v), true), td(String(v.n), true),
       td(v.base ? "" : percentText(v.change.mean_percent, true), true), td(v.base || v.change.low_percent === null ? "" : percentText(v.change.low_percent, true) + " \u2026 " + percentText(v.change.high_percent, true), true),
-      i ? null : h("td", {rowspan: p.values.length, class: "small"}, verdictMark(p.verdict.dependence), " ", restOf(p.verdict)))));
+      i ? null : h("td", {rowspan: p.values.length, class: "small wide"}, verdictMark(p.verdict.dependence), " ", restOf(p.verdict)))));
   }
   page.append(table("evidence", head, rows));
   page.append(h("p", {class: "soft small"}, axis.same_packings ? "The packings are the same at all values: changes are formed on each packing." : "Every value has packings of its own: changes are differences of means, relative to the job's."));
