@@ -109,7 +109,7 @@ Subsample subsample(std::span<const double> values, int k, double scale) {
 
 double Change::bound() const { return std::max(std::abs(low), std::abs(high)); }
 
-// (P21)
+// (P24)
 Change change_by_packing(const PropertyStatistics& base, const PropertyStatistics& other) {
     Change change{true, 0, nan, nan, nan, nan, nan};
     const PairedValues pairs = paired(base, other);
@@ -125,7 +125,7 @@ Change change_by_packing(const PropertyStatistics& base, const PropertyStatistic
     return change;
 }
 
-// (P22)
+// (P25)
 Change change_between_means(const PropertyStatistics& base, const PropertyStatistics& other) {
     Change change{false, 0, nan, nan, nan, nan, nan};
     const MeanInterval a = mean_interval(base.values), b = mean_interval(other.values);

@@ -10,7 +10,7 @@ namespace feldspar {
 
 /// A relative change: 0.02 is 2 % more than at the base. Without two packings everything but count and mean is not-a-number.
 struct Change {
-    bool by_packing = false;         ///< formed on each packing (P21), else between the means of different packings (P22)
+    bool by_packing = false;         ///< formed on each packing (P24), else between the means of different packings (P25)
     int count = 0;                   ///< packings that both have, else those of the smaller sample
     double mean = 0.0;
     double low = 0.0, high = 0.0;    ///< 95 % interval of the mean

@@ -101,7 +101,7 @@ std::vector<EnvelopeConstant> constants_of(const std::vector<CurvePair>& packing
     return constants;
 }
 
-/// (P18)
+/// (P21)
 double pooled_scatter(const std::vector<StrengthAt>& strengths) {
     double squares = 0.0;
     int freedom = 0;
@@ -194,7 +194,7 @@ CurvePair fit_curves(std::span<const StrengthPoint> points, const std::vector<do
     if (!points.empty()) pair.fit.seed = points.front().seed;
     const double sine = std::sin(pair.fit.friction_angle_deg * std::numbers::pi / 180.0);
     pair.N = (1.0 + sine) / (1.0 - sine);
-    // (P16)
+    // (P19)
     pair.mohr_coulomb_tension_Pa = pair.fit.UCS_fitted_Pa / pair.N;
     const double mi = pair.fit.hoek_brown_mi;
     pair.hoek_brown_tension_Pa = 0.5 * pair.fit.hoek_brown_UCS_Pa * (std::sqrt(mi * mi + 4.0) - mi);

@@ -1,5 +1,5 @@
 // Strength envelopes through the tests of several packings: fits, what the packings say of their constants, and how well a line
-// or a parabola goes through the strengths (docs/theory/properties.md, section 6).
+// or a parabola goes through the strengths (docs/theory/properties.md, sections 5 and 7).
 #pragma once
 
 #include <cstdint>
@@ -14,16 +14,16 @@ namespace feldspar {
 
 /// How far strengths lie from a curve.
 struct Goodness {
-    double rms_Pa = 0.0;   ///< root mean square of sigma_1 - curve (P17); not-a-number where the points just determine the curve
-    double R2 = 0.0;       ///< (P17)
+    double rms_Pa = 0.0;   ///< root mean square of sigma_1 - curve (P20); not-a-number where the points just determine the curve
+    double R2 = 0.0;       ///< (P20)
 };
 
 /// Both curves through one set of strengths.
 struct CurvePair {
     EnvelopeFit fit;
     double N = 0.0;                        ///< slope of the Mohr-Coulomb line
-    double mohr_coulomb_tension_Pa = 0.0;  ///< where the line meets sigma_1 = 0, a positive magnitude (P16)
-    double hoek_brown_tension_Pa = 0.0;    ///< where the parabola does (P16)
+    double mohr_coulomb_tension_Pa = 0.0;  ///< where the line meets sigma_1 = 0, a positive magnitude (P19)
+    double hoek_brown_tension_Pa = 0.0;    ///< where the parabola does (P19)
     Goodness mohr_coulomb, hoek_brown;
 
     double mohr_coulomb_at(double sigma3_Pa) const;   ///< sigma_1 of the line
@@ -37,7 +37,7 @@ struct StrengthPoint {
     double sigma1_Pa = 0.0;
 };
 
-/// Fits both curves (P12), (P13) to all points, whatever their packings; Hoek-Brown's takes the points (-DTS, 0) in as well (P15).
+/// Fits both curves (P12), (P13) to all points, whatever their packings; Hoek-Brown's takes the points (-DTS, 0) in as well (P18).
 /// The seed of the fit is that of the first point.
 CurvePair fit_curves(std::span<const StrengthPoint> points, const std::vector<double>& DTS_Pa = {});
 
