@@ -96,8 +96,8 @@ std::string after_colon(const std::string& words) {
     return colon == std::string::npos ? words : words.substr(colon + 2);
 }
 
-Verdict summed(const std::vector<PropertyAlong>& properties) {
-    Verdict verdict{Dependence::independent, {}, 0.0, 0};
+Finding summed(const std::vector<PropertyAlong>& properties) {
+    Finding verdict{Dependence::independent, {}, 0.0, 0};
     double independent_bound = 0.0;
     for (const PropertyAlong& p : properties) {
         verdict.dependence = std::max(verdict.dependence, p.verdict.dependence);
@@ -154,8 +154,8 @@ std::vector<SeedResult> judge_seeds(const PointResults& base, double within) {
     return results;
 }
 
-Verdict summed(const std::vector<SeedResult>& seeds, double within) {
-    Verdict verdict{Dependence::independent, {}, 0.0, 0};
+Finding summed(const std::vector<SeedResult>& seeds, double within) {
+    Finding verdict{Dependence::independent, {}, 0.0, 0};
     std::vector<std::string> parts;
     for (const SeedResult& s : seeds) {
         verdict.dependence = std::max(verdict.dependence, s.verdict.dependence);
@@ -198,8 +198,8 @@ const char* name(Dependence dependence) {
     return "?";
 }
 
-Verdict judge_property(const PropertyAlong& along, const std::vector<bool>& stands, double within) {
-    Verdict verdict{Dependence::undecided, {}, 0.0, 0};
+Finding judge_property(const PropertyAlong& along, const std::vector<bool>& stands, double within) {
+    Finding verdict{Dependence::undecided, {}, 0.0, 0};
     std::vector<std::string> changes, not_read;
     int least_count = std::numeric_limits<int>::max();
     for (std::size_t v = 0; v < along.values.size(); ++v) {
@@ -233,7 +233,7 @@ Verdict judge_property(const PropertyAlong& along, const std::vector<bool>& stan
     return verdict;
 }
 
-Verdict judge_packings(const MeanInterval& mean, double within) {
+Finding judge_packings(const MeanInterval& mean, double within) {
     if (mean.count < 2) return {Dependence::undecided, "undecided: one packing has no scatter to judge by; two at least would", nan, 0};
     const double scale = std::abs(mean.mean), half = mean.half_width() / scale;
     if (half <= within) return {Dependence::independent, fmt::format("known to +- {} with {} packings", percent_up(half), mean.count), half, 0};

@@ -45,7 +45,7 @@ enum class Dependence { independent, undecided, depends };
 
 const char* name(Dependence dependence);
 
-struct Verdict {
+struct Finding {
     Dependence dependence = Dependence::undecided;
     std::string words;      ///< without the property: "independent within 1.8 %"
     double bound = 0.0;     ///< the largest relative change that is not ruled out; not-a-number without an interval
@@ -65,13 +65,13 @@ struct PropertyAlong {
     std::string property;
     std::vector<ValueAt> values;
     std::size_t base = 0;       ///< of values
-    Verdict verdict;
+    Finding verdict;
 };
 
 struct AxisResult {
     ConvergeAxis axis;
     std::vector<PropertyAlong> properties;
-    Verdict verdict;            ///< of all properties
+    Finding verdict;            ///< of all properties
 };
 
 /// A property by the number of packings, at the base.
@@ -79,23 +79,23 @@ struct SeedResult {
     std::string property;
     MeanInterval mean;
     std::vector<Subsample> subsamples;
-    Verdict verdict;
+    Finding verdict;
 };
 
 struct Convergence {
     std::vector<AxisResult> axes;
     std::vector<SeedResult> seeds;
-    Verdict seed_verdict;
+    Finding seed_verdict;
     std::string overall;        ///< in sentences
 };
 
 Convergence judge_convergence(const ConvergePlan& plan, std::span<const PointResults> points);
 
 /// One property: `stands` says which changes stand beside all others of the axis (stand_together); the base's is not read.
-Verdict judge_property(const PropertyAlong& along, const std::vector<bool>& stands, double within);
+Finding judge_property(const PropertyAlong& along, const std::vector<bool>& stands, double within);
 
 /// Whether enough packings were taken for +- `within` of the mean.
-Verdict judge_packings(const MeanInterval& mean, double within);
+Finding judge_packings(const MeanInterval& mean, double within);
 
 /// converge.csv, converge.json and converge.html in `directory`, which is there.
 void write_convergence(const std::filesystem::path& directory, const ConvergePlan& plan, std::span<const PointResults> points, const Provenance& provenance);

@@ -15,7 +15,7 @@ namespace feldspar {
 
 namespace {
 
-Json verdict_json(const Verdict& verdict) {
+Json verdict_json(const Finding& verdict) {
     return {{"dependence", name(verdict.dependence)},
             {"words", verdict.words},
             {"bound_percent", json_number(100.0 * verdict.bound)},

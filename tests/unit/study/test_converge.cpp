@@ -28,27 +28,27 @@ PropertyAlong two_values(const PropertyStatistics& base, const PropertyStatistic
     return along;
 }
 
-Verdict verdict_of(const PropertyAlong& along, double within = 0.05) {
+Finding verdict_of(const PropertyAlong& along, double within = 0.05) {
     return judge_property(along, stand_together(std::vector{std::nan(""), along.values[1].change.chance}), within);
 }
 
 TEST(Converge, IndependentWhenAllChangesAreSmall) {
-    const Verdict verdict = verdict_of(two_values(statistics_from({100, 101, 102}), statistics_from({100.5, 101.6, 102.5}), true));
+    const Finding verdict = verdict_of(two_values(statistics_from({100, 101, 102}), statistics_from({100.5, 101.6, 102.5}), true));
     EXPECT_EQ(verdict.dependence, Dependence::independent);
     EXPECT_LT(verdict.bound, 0.01);
     EXPECT_EQ(verdict.words.rfind("independent within 0.", 0), 0u) << verdict.words;
 }
 
 TEST(Converge, DependsWhenAChangeStandsOut) {
-    const Verdict verdict = verdict_of(two_values(statistics_from({100, 101, 102}), statistics_from({120, 121, 122}), false));
+    const Finding verdict = verdict_of(two_values(statistics_from({100, 101, 102}), statistics_from({120, 121, 122}), false));
     EXPECT_EQ(verdict.dependence, Dependence::depends);
     for (const char* part : {"grows by 20 %", "from 3 mm to 4.5 mm"}) EXPECT_NE(verdict.words.find(part), std::string::npos) << verdict.words;
-    const Verdict falling = verdict_of(two_values(statistics_from({120, 121, 122}), statistics_from({100, 101, 102}), false));
+    const Finding falling = verdict_of(two_values(statistics_from({120, 121, 122}), statistics_from({100, 101, 102}), false));
     EXPECT_NE(falling.words.find("falls by 17 %"), std::string::npos) << falling.words;
 }
 
 TEST(Converge, UndecidedSaysHowManyPackingsWould) {
-    const Verdict verdict = verdict_of(two_values(statistics_from({90, 100, 110}), statistics_from({95, 99, 112}), false));
+    const Finding verdict = verdict_of(two_values(statistics_from({90, 100, 110}), statistics_from({95, 99, 112}), false));
     EXPECT_EQ(verdict.dependence, Dependence::undecided);
     EXPECT_GT(verdict.packings, 3);
     for (const char* part : {"the scatter of 3 packings allows no statement below", "packings would"}) EXPECT_NE(verdict.words.find(part), std::string::npos) << verdict.words;
@@ -58,13 +58,13 @@ TEST(Converge, UndecidedSaysHowManyPackingsWould) {
 }
 
 TEST(Converge, ASmallChangeThatIsSureIsStillIndependence) {
-    const Verdict verdict = verdict_of(two_values(statistics_from({100, 150, 200}), statistics_from({102, 153, 204.01}), true));
+    const Finding verdict = verdict_of(two_values(statistics_from({100, 150, 200}), statistics_from({102, 153, 204.01}), true));
     EXPECT_LT(two_values(statistics_from({100, 150, 200}), statistics_from({102, 153, 204.01}), true).values[1].change.chance, 1e-5);
     EXPECT_EQ(verdict.dependence, Dependence::independent);
 }
 
 TEST(Converge, OnePackingAllowsNoStatement) {
-    const Verdict verdict = verdict_of(two_values(statistics_from({100}), statistics_from({150}), true));
+    const Finding verdict = verdict_of(two_values(statistics_from({100}), statistics_from({150}), true));
     EXPECT_EQ(verdict.dependence, Dependence::undecided);
     EXPECT_NE(verdict.words.find("one packing allows no statement"), std::string::npos) << verdict.words;
     EXPECT_TRUE(std::isnan(verdict.bound));
@@ -73,7 +73,7 @@ TEST(Converge, OnePackingAllowsNoStatement) {
 
 TEST(Converge, PackingsAreEnoughOrNot) {
     EXPECT_EQ(judge_packings(mean_interval(std::vector{100.0, 101.0, 102.0}), 0.05).dependence, Dependence::independent);
-    const Verdict few = judge_packings(mean_interval(std::vector{80.0, 100.0, 120.0}), 0.05);
+    const Finding few = judge_packings(mean_interval(std::vector{80.0, 100.0, 120.0}), 0.05);
     EXPECT_EQ(few.dependence, Dependence::undecided);
     EXPECT_EQ(few.packings, packings_for_mean(0.2, 0.05));
     EXPECT_EQ(judge_packings(mean_interval(std::vector{1.0}), 0.05).dependence, Dependence::undecided);
