@@ -35,10 +35,10 @@ ExitCode study_command(const StudyOptions& options) {
     const Execution execution = run_study(study, ledger, {threads_for(options), options.at_once.value_or(0), options.command_line});
 
     const std::vector<PointResults> points = point_results(study, ledger);
-    write_study_report(study, points, study.results / "report.html");
+    write_study_report(study, points, study_page(study));
     fmt::print("\n{}\n", study_text(study, points));
     print_execution(study, execution);
-    fmt::print("Page: {}\n", (study.results / "report.html").string());
+    fmt::print("Page: {}\n", study_page(study).string());
     return outcome(execution);
 }
 

@@ -25,7 +25,7 @@ constexpr double test_share = 0.3;                    // a test is worth a run w
 class Calibrate {
 public:
     Calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note)
-        : calibration_(calibration), laboratory_(laboratory), note_(note), quantities_(quantities_for(calibration)) {
+        : calibration_(calibration), laboratory_(laboratory), note_(note), quantities_(observables_for(calibration)) {
         for (std::size_t u = 0; u < calibration.unknowns.size(); ++u) (calibration.unknowns[u].elastic ? elastic_ : strength_).push_back(u);
         middle_.assign(calibration.unknowns.size(), 0.5);
         best_ = middle_;
@@ -69,7 +69,7 @@ private:
 
     int confirmation_runs() const {
         std::set<std::pair<TestKind, double>> tests;
-        for (const Quantity& q : quantities_) tests.insert({q.test, q.sigma3_Pa});
+        for (const Observable& q : quantities_) tests.insert({q.test, q.sigma3_Pa});
         return static_cast<int>(tests.size() * calibration_.confirm_seeds.size());
     }
 
@@ -79,8 +79,8 @@ private:
         std::vector<Target> targets;
         for (const Target& t : calibration_.targets)
             if (t.name == "E" || t.name == "nu") targets.push_back(t);
-        std::vector<Quantity> quantities;
-        for (const Quantity& q : quantities_)
+        std::vector<Observable> quantities;
+        for (const Observable& q : quantities_)
             if (q.name == "E" || q.name == "nu") quantities.push_back(q);
         elastic_learner_.emplace(quantities, targets);
         note(fmt::format("elastic constants: {} unknowns, short tests", elastic_.size()));
@@ -133,7 +133,7 @@ private:
         note(fmt::format("elastic constants, for E and nu at half of the strength: {}", set_text(elastic_)));
     }
 
-    static std::size_t index_of(const std::vector<Quantity>& quantities, const std::string& name) {
+    static std::size_t index_of(const std::vector<Observable>& quantities, const std::string& name) {
         std::size_t q = 0;
         while (q < quantities.size() && quantities[q].name != name) ++q;
         return q;
@@ -315,7 +315,7 @@ private:
     const Calibration& calibration_;
     Laboratory& laboratory_;
     const std::function<void(const std::string&)>& note_;
-    std::vector<Quantity> quantities_;
+    std::vector<Observable> quantities_;
     std::vector<std::size_t> elastic_, strength_;   // unknowns
     std::vector<double> middle_, best_;             // of all unknowns, 0 ... 1
     std::optional<Learner> elastic_learner_, strength_learner_;

@@ -56,7 +56,7 @@ public:
     virtual ~Laboratory() = default;
 
     /// Of each request the values of its quantities, in their order; not-a-number where a test failed. @throws Interrupted
-    virtual std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Quantity>& quantities) = 0;
+    virtual std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) = 0;
 
     /// Tests made so far, those that were in the ledger before too.
     virtual int used() const = 0;
@@ -66,11 +66,11 @@ public:
 class RunLaboratory : public Laboratory {
 public:
     RunLaboratory(const Calibration& calibration, Ledger& ledger, ExecuteControl control) : calibration_(calibration), ledger_(ledger), control_(std::move(control)) {}
-    std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Quantity>& quantities) override;
+    std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) override;
     int used() const override { return static_cast<int>(used_.size()); }
 
 private:
-    Run run_for(const Request& request, const Quantity& quantity) const;
+    Run run_for(const Request& request, const Observable& quantity) const;
 
     const Calibration& calibration_;
     Ledger& ledger_;

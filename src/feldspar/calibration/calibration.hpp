@@ -13,7 +13,7 @@
 namespace feldspar {
 
 /// What is read off one run.
-struct Quantity {
+struct Observable {
     std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "sigma1 at 10 MPa", ...
     TestKind test = TestKind::uniaxial_compression;
     double sigma3_Pa = 0.0;  ///< of biaxial tests
@@ -69,10 +69,10 @@ Calibration read_calibration(const std::filesystem::path& file);
 Calibration parse_calibration(const std::string& text, const std::filesystem::path& name);
 
 /// What the targets need to be known of runs, each once.
-std::vector<Quantity> quantities_for(const Calibration& calibration);
+std::vector<Observable> observables_for(const Calibration& calibration);
 
-/// A target's value by the means of the quantities, in the order of quantities_for(); not-a-number where they do not make sense.
-double value_of(const Target& target, const std::vector<Quantity>& quantities, const std::vector<double>& means);
+/// A target's value by the means of the quantities, in the order of observables_for(); not-a-number where they do not make sense.
+double value_of(const Target& target, const std::vector<Observable>& quantities, const std::vector<double>& means);
 
 /// Sentences on targets that no rock can show together, by closed form; none if there is nothing to say.
 std::vector<std::string> contradictions(const std::vector<Target>& targets);

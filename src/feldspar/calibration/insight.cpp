@@ -173,7 +173,7 @@ void find_conflicts(const WeighedSets& sets, const Learner& learner, Calibration
 
 }  // namespace
 
-MeanInterval confirmed_interval(const Target& target, const std::vector<Quantity>& quantities, const std::vector<std::vector<double>>& seen) {
+MeanInterval confirmed_interval(const Target& target, const std::vector<Observable>& quantities, const std::vector<std::vector<double>>& seen) {
     std::vector<std::vector<double>> packings;   // with every run that the target needs
     for (std::size_t p = 0; p < seen.front().size(); ++p) {
         std::vector<double> one;

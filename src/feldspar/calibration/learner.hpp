@@ -19,9 +19,9 @@ struct Prediction {
 /// One surrogate for each quantity; targets follow from them.
 class Learner {
 public:
-    Learner(std::vector<Quantity> quantities, std::vector<Target> targets) : quantities_(std::move(quantities)), targets_(std::move(targets)), seen_(quantities_.size()), processes_(quantities_.size()) {}
+    Learner(std::vector<Observable> quantities, std::vector<Target> targets) : quantities_(std::move(quantities)), targets_(std::move(targets)), seen_(quantities_.size()), processes_(quantities_.size()) {}
 
-    const std::vector<Quantity>& quantities() const { return quantities_; }
+    const std::vector<Observable>& quantities() const { return quantities_; }
     const std::vector<Target>& targets() const { return targets_; }
 
     /// A quantity seen on one packing. What is not a positive number of a logarithmic quantity teaches nothing.
@@ -60,7 +60,7 @@ public:
 private:
     std::vector<double> shares(const std::vector<double>& x, const std::vector<double>& deviations) const;
 
-    std::vector<Quantity> quantities_;
+    std::vector<Observable> quantities_;
     std::vector<Target> targets_;
     std::vector<std::vector<Observation>> seen_;
     std::vector<std::optional<GaussianProcess>> processes_;

@@ -119,7 +119,7 @@ private:
             if (target.name == "sigma1" && std::find(sigma3.begin(), sigma3.end(), target.sigma3_Pa) == sigma3.end())
                 table.fail("sigma1", fmt::format("the job has no biaxial test at {:g} MPa", target.sigma3_Pa / 1e6), "a sigma3 of the job's biaxial tests");
         }
-        for (const Quantity& quantity : quantities_for(result_))
+        for (const Observable& quantity : observables_for(result_))
             if (std::none_of(result_.base.job().tests.begin(), result_.base.job().tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
                 root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name), fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
     }

@@ -22,14 +22,14 @@ double elastic_strain(const Calibration& calibration) {
     return elastic_stress_share * (std::isfinite(UCS / E) ? UCS / E : usual_UCS_over_E);
 }
 
-std::string column_of(const Quantity& quantity, bool elastic) {
+std::string column_of(const Observable& quantity, bool elastic) {
     if (!elastic) return quantity.column;
     return quantity.name == "E" ? "E_initial_Pa" : "nu_initial";
 }
 
 }  // namespace
 
-Run RunLaboratory::run_for(const Request& request, const Quantity& quantity) const {
+Run RunLaboratory::run_for(const Request& request, const Observable& quantity) const {
     const Job job = calibration_.job_with(request.values);
     for (const TestSpec& test : job.tests) {
         if (test.kind != quantity.test || (test.kind == TestKind::biaxial && test.sigma3_Pa != quantity.sigma3_Pa)) continue;
@@ -40,7 +40,7 @@ Run RunLaboratory::run_for(const Request& request, const Quantity& quantity) con
     throw InputError({}, fmt::format("the job has no test for {}", quantity.name));   // was checked when the file was read
 }
 
-std::vector<std::vector<double>> RunLaboratory::see(const std::vector<Request>& requests, const std::vector<Quantity>& quantities) {
+std::vector<std::vector<double>> RunLaboratory::see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) {
     std::vector<Run> runs;
     std::vector<std::vector<std::size_t>> run_of;   // of each request's quantities
     for (const Request& request : requests) {

@@ -22,13 +22,13 @@ bool of_envelope(const Target& target) {
     return target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
 }
 
-double mean_of(const std::string& name, const std::vector<Quantity>& quantities, const std::vector<double>& means) {
+double mean_of(const std::string& name, const std::vector<Observable>& quantities, const std::vector<double>& means) {
     for (std::size_t q = 0; q < quantities.size(); ++q)
         if (quantities[q].name == name) return means[q];
     return nan;
 }
 
-EnvelopeFit envelope(const std::vector<Quantity>& quantities, const std::vector<double>& means) {
+EnvelopeFit envelope(const std::vector<Observable>& quantities, const std::vector<double>& means) {
     std::vector<double> sigma3, sigma1;
     for (std::size_t q = 0; q < quantities.size(); ++q) {
         const bool confined = quantities[q].test == TestKind::biaxial;
@@ -41,12 +41,12 @@ EnvelopeFit envelope(const std::vector<Quantity>& quantities, const std::vector<
 
 }  // namespace
 
-std::vector<Quantity> quantities_for(const Calibration& calibration) {
-    std::vector<Quantity> all;
-    const auto add = [&](const Quantity& quantity) {
-        if (std::none_of(all.begin(), all.end(), [&](const Quantity& q) { return q.name == quantity.name; })) all.push_back(quantity);
+std::vector<Observable> observables_for(const Calibration& calibration) {
+    std::vector<Observable> all;
+    const auto add = [&](const Observable& quantity) {
+        if (std::none_of(all.begin(), all.end(), [&](const Observable& q) { return q.name == quantity.name; })) all.push_back(quantity);
     };
-    const Quantity ucs{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"}, dts{"DTS", TestKind::direct_tension, 0.0, "strength_Pa"},
+    const Observable ucs{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"}, dts{"DTS", TestKind::direct_tension, 0.0, "strength_Pa"},
         bts{"BTS", TestKind::brazilian, 0.0, "strength_Pa"};
     const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), TestKind::biaxial, sigma3_Pa, "strength_Pa"}); };
     for (const Target& target : calibration.targets) {
@@ -63,7 +63,7 @@ std::vector<Quantity> quantities_for(const Calibration& calibration) {
     return all;
 }
 
-double value_of(const Target& target, const std::vector<Quantity>& quantities, const std::vector<double>& means) {
+double value_of(const Target& target, const std::vector<Observable>& quantities, const std::vector<double>& means) {
     const auto mean = [&](const std::string& name) { return mean_of(name, quantities, means); };
     if (target.name == "UCS_over_BTS") return mean("UCS") / mean("BTS");
     if (target.name == "UCS_over_DTS") return mean("UCS") / mean("DTS");

@@ -1,4 +1,4 @@
-// report.html of a study: its points as a table, and any property over any axis as a chart.
+// The page of a study: its points as a table, and any property over any axis as a chart.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,9 @@
 #include "feldspar/study/point_results.hpp"
 
 namespace feldspar {
+
+/// Where the page stands: `results`/<name>.html, for studies may share their results.
+inline std::filesystem::path study_page(const Study& study) { return study.results / (study.name + ".html"); }
 
 /// Writes the page; `points` as point_results() gives them, whole or not. It is self-contained and asks the network for nothing.
 /// @throws OutputError when the file cannot be written
