@@ -214,10 +214,15 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
         for (int k = 0; k < nv; ++k) owner[{cell.vertices[k], cell.vertices[(k + 1) % nv]}] = {g, k};
     }
     struct Facing {
+        int place;       // sum of those of the two grains, in the order of packs or rigid bodies
         double height;   // twice that of the edge's middle
         int ga, ka, gb, kb;
     };
     std::vector<Facing> facing;
+    std::vector<int> place(cells.cells.size());
+    std::iota(place.begin(), place.end(), 0);
+    for (int p = 0; p < std::ssize(assembly.packs.grains); ++p)
+        for (int lane = 0; lane < assembly.packs.grains[p].lanes; ++lane) place[assembly.packs.grains[p].grain[lane]] = p;
     for (int g = 0; g < std::ssize(cells.cells); ++g) {
         const Cell& cell = cells.cells[g];
         const int nv = static_cast<int>(cell.vertices.size());
@@ -226,11 +231,11 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
             const int from = cell.vertices[k], to = cell.vertices[(k + 1) % nv];
             const auto other = owner.find({to, from});
             if (other == owner.end()) throw NumericalError("the tessellation is not conforming");
-            facing.push_back({cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
+            facing.push_back({place[g] + place[other->second.first], cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
         }
     }
-    // From bottom to top, as the packs of grains are: the contiguous share of a thread is a band of the specimen.
-    std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return l.height < r.height; });
+    // From bottom to top, as the packs of grains are: a contiguous share is a band of the specimen (model/bands.hpp).
+    std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return std::pair{l.place, l.height} < std::pair{r.place, r.height}; });
     for (const Facing& f : facing) add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb);
     lay_out_bonds(assembly);
 }

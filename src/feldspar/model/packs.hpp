@@ -9,8 +9,8 @@
 //     point j of lane l       first_state + j x lanes + l      bonds (Bonds), along, area
 //
 // Grains are grouped by topology: the number of vertices, and whether the shortest edge of the ring is collapsed
-// (specimen theory, section 4). Vertices are counted from behind the collapsed edge, so that it is the last one. Full packs are ordered by
-// height, so that the contiguous share of a thread is a band of the specimen; the few that are not full stand at the end.
+// (specimen theory, section 4). Vertices are counted from behind the collapsed edge, so that it is the last one. Packs of grains are ordered
+// by height, and those of contacts by the places of the grains that they join, so that a contiguous share is a band of the specimen.
 //
 // A grain edge has one line of 64 bytes between its grain and its contact: the grain leaves in it how the edge moves, the contact
 // reads that, and leaves in it what the edge feels. Rigid bodies have a line each, for how they move, and a short line
@@ -26,6 +26,7 @@
 
 #include "feldspar/base/array.hpp"
 #include "feldspar/base/vec2.hpp"
+#include "feldspar/model/bands.hpp"
 
 namespace feldspar {
 
@@ -61,7 +62,7 @@ struct GrainPack {
 /// The grains of the mesh that have a common topology, in packs; numbers of nodes, edges and triangles from 0 on.
 std::vector<GrainPack> pack_grains(const GrainMesh& mesh);
 
-/// Consecutive contacts with equally many points of one material.
+/// Consecutive contacts with equally many points of one material; if at a plate, all at the same.
 struct ContactPack {
     std::int32_t first_contact = 0;
     std::int32_t lanes = 0;
@@ -147,7 +148,8 @@ struct Packs {
     std::vector<std::int32_t> shared_slots;
 
     std::vector<ContactPack> contacts;
-    std::vector<std::int32_t> loose_contacts;
+    std::vector<std::int32_t> loose_contacts;        ///< in the order of their packs
+    Bands bands;
     Array<double> offset, tangent_x, tangent_y;      ///< kMostLanes a pack
     Array<std::uint32_t> line_a, line_b;             ///< kMostLanes a pack: distance in bytes from the first line; some more at the end
     Array<double> along, area;                       ///< as bonds
@@ -158,6 +160,9 @@ struct Packs {
     /// Where a contact on this edge of this body finds how it moves.
     std::int32_t line_of(const Assembly& assembly, int body, int edge) const;
 };
+
+/// The pack of grains that holds a node; -1: none.
+int pack_of_node(const Packs& packs, int node);
 
 /// Makes the packs of grains of an assembly that has its nodes in their order; once.
 void index_grain_packs(Assembly& assembly);
