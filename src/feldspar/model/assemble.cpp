@@ -280,13 +280,20 @@ void add_across_contact(Assembly& assembly, const AcrossContact& across, Contact
     add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
 }
 
-// Grain by grain, so that a sweep over the contacts goes through the particles once.
-void add_contacts_of_particles(Assembly& assembly, const Filling& filling, ContactNormal normal) {
+// From the first particles to the last, so that a sweep over the contacts goes through the particles once; those inside grains and those
+// across edges in turn, a full pack of either.
+void add_contacts_of_particles(Assembly& assembly, Filling filling, ContactNormal normal) {
+    const auto in_order = [](auto& all) { std::stable_sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.a + l.b < r.a + r.b; }); };
+    in_order(filling.inside);
+    in_order(filling.across);
     auto inside = filling.inside.begin();
     auto across = filling.across.begin();
-    for (int g = 0; g + 1 < std::ssize(filling.particle_begin); ++g) {
-        for (; inside != filling.inside.end() && inside->a < filling.particle_begin[g + 1]; ++inside) add_inside_contact(assembly, *inside);
-        for (; across != filling.across.end() && across->cell_a <= g; ++across) add_across_contact(assembly, *across, normal);
+    while (inside != filling.inside.end() || across != filling.across.end()) {
+        const bool inside_first = across == filling.across.end() || (inside != filling.inside.end() && inside->a + inside->b < across->a + across->b);
+        for (int lane = 0; lane < kMostLanes; ++lane) {
+            if (inside_first && inside != filling.inside.end()) add_inside_contact(assembly, *inside++);
+            if (!inside_first && across != filling.across.end()) add_across_contact(assembly, *across++, normal);
+        }
     }
 }
 
@@ -478,7 +485,7 @@ double Assembly::memory_bytes() const {
                  bytes(origins) + bytes(points) + bytes(bonds.un_m) * 9.0 + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) +
                  bytes(pressure_edges) + bytes(body_work);
     sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.line_of_edge) + bytes(packs.lines) + bytes(packs.inverse_cross) +
-           bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0;
+           bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0 + bytes(packs.normal_x) * 2.0 + bytes(packs.rigid);
     return sum;
 }
 

@@ -50,13 +50,16 @@ std::optional<Topology> topology_of(const GrainMesh& mesh, int g) {
     return topology;
 }
 
+bool has_own_normal(const Contact& contact) { return contact.edge_normal != Vec2{}; }
+
 // Contacts c and c + 1 may be lanes of one pack.
 bool alike(const Assembly& assembly, int c) {
     const Contact &l = assembly.contacts[c], &r = assembly.contacts[c + 1];
-    return l.points == r.points && l.material == r.material && l.flexible == r.flexible && l.plate == r.plate && (!l.plate || l.b.body == r.b.body);
+    return l.points == r.points && l.material == r.material && l.flexible == r.flexible && has_own_normal(l) == has_own_normal(r) && l.plate == r.plate &&
+           (!l.plate || l.b.body == r.b.body);
 }
 
-bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape || contact.edge_normal != Vec2{}; }
+bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape; }
 
 }  // namespace
 
@@ -158,7 +161,13 @@ void find_contact_packs(Assembly& assembly) {
     const int contacts = static_cast<int>(assembly.contacts.size());
     for (int c = 0; c < contacts;) {
         const Contact& first = assembly.contacts[c];
-        ContactPack pack{c, 1, first.points, assembly.points[first.first_point].state, first.material, !first.flexible, false, false, 0};
+        ContactPack pack;
+        pack.first_contact = c;
+        pack.lanes = 1;
+        pack.points = first.points;
+        pack.first_state = assembly.points[first.first_point].state;
+        pack.material = first.material;
+        pack.rigid = !first.flexible;
         // The lanes' points stand right if those of the first point are consecutive and those of the second follow.
         const auto stands = [&](int lane, int lanes) {
             const Contact& contact = assembly.contacts[c + lane];
@@ -226,20 +235,32 @@ void index_contact_packs(Assembly& assembly) {
         packs.area[point.state] = point.area_m2;
     }
     packs.loose_contacts.clear();
+    packs.rigid.clear();
+    for (int b = 0; b < packs.rigid_end; ++b) {
+        const Body& body = assembly.bodies[b];
+        packs.rigid.push_back({body.first_node, body.slot_begin, body.slot_end, 1.0 / body.radius_m});
+    }
     find_contact_packs(assembly);
     cut_into_bands(assembly);
-    for (auto* array : {&packs.offset, &packs.tangent_x, &packs.tangent_y}) array->clear();
+    for (auto* array : {&packs.offset, &packs.tangent_x, &packs.tangent_y, &packs.normal_x, &packs.normal_y}) array->clear();
     for (auto* array : {&packs.line_a, &packs.line_b}) array->clear();
-    for (const ContactPack& pack : packs.contacts)
+    for (ContactPack& pack : packs.contacts) {
+        const bool own_normal = has_own_normal(assembly.contacts[pack.first_contact]);
+        if (own_normal) pack.first_normal = static_cast<std::int32_t>(packs.normal_x.size());
         for (int lane = 0; lane < kMostLanes; ++lane) {   // lanes beyond the last repeat it: harmless to read
             const Contact& contact = assembly.contacts[pack.first_contact + std::min(lane, pack.lanes - 1)];
             packs.offset.push_back(contact.offset_m);
             packs.tangent_x.push_back(contact.tangent.x);
             packs.tangent_y.push_back(contact.tangent.y);
+            if (own_normal) {
+                packs.normal_x.push_back(contact.edge_normal.x);
+                packs.normal_y.push_back(contact.edge_normal.y);
+            }
             const std::int32_t a = packs.line_of(assembly, contact.a.body, contact.a.edge), b = packs.line_of(assembly, contact.b.body, contact.b.edge);
             packs.line_a.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(a)));
             packs.line_b.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(b)));
         }
+    }
     for (auto* array : {&packs.line_a, &packs.line_b}) array->resize(array->size() + kMostLanes * kFetchAhead, 0);
 }
 
@@ -249,6 +270,9 @@ namespace {
 void sort_out_contacts(Assembly& assembly, int p) {
     Packs& packs = assembly.packs;
     ContactPack& pack = packs.contacts[p];
+    const double* damage = &assembly.bonds.damage[pack.first_state];
+    pack.intact = std::all_of(damage, damage + pack.lanes * pack.points, [](double D) { return D == 0.0; });
+    if (pack.rigid && pack.plain) return;   // only flexible sides fall back from one block to the next
     pack.active = 0;
     pack.plain = pack.lanes == kMostLanes;
     for (int lane = 0; lane < pack.lanes; ++lane) {
@@ -259,8 +283,6 @@ void sort_out_contacts(Assembly& assembly, int p) {
         const std::size_t at = static_cast<std::size_t>(kMostLanes * p + lane);
         pack.plain = pack.plain && takes_part && !packs.shared[packs.line_a[at] / sizeof(SideLine)] && !packs.shared[packs.line_b[at] / sizeof(SideLine)];
     }
-    const double* damage = &assembly.bonds.damage[pack.first_state];
-    pack.intact = std::all_of(damage, damage + pack.lanes * pack.points, [](double D) { return D == 0.0; });
 }
 
 }  // namespace

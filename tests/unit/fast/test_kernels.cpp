@@ -382,6 +382,51 @@ TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
         }
 }
 
+TEST(Packs, HoldContactsWithANormalOfTheirOwnHoweverFarBodiesHaveTurned) {
+    const ModelSpec model = fixtures::model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge);
+    TestSetup setup = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, model);
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    stir(e.assembly);
+    RandomStream random(7, "turned");
+    for (const Body& body : e.assembly.bodies)   // a quarter of a radian parts the series from the rest
+        if (body.kind == BodyKind::rigid) e.assembly.nodes.displacement[body.centre_node + 1].x = body.radius_m * 3.0 * (random.uniform() - 0.5);
+    StepSettings settings = e.settings;
+    settings.speed = 1e-9;
+    settings.kernels = nullptr;
+    Assembly readable = e.assembly;
+    PlatenWork work;
+    advance(readable, e.team, settings, 0, 1, work);
+    for (const Kernels* kernels : kernels_here()) {
+        settings.kernels = kernels;
+        Assembly fast = e.assembly;
+        advance(fast, e.team, settings, 0, 1, work);
+        expect_same(fast, readable, 1e-9, kernels->name);
+        for (const int c : fast.packs.loose_contacts) EXPECT_TRUE(fast.contacts[c].plate);
+    }
+}
+
+TEST(StepSequence, GoesOnWhereItsLastCallEnded) {
+    const TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    stir(e.assembly);
+    for (const Kernels* kernels : kernels_here()) {
+        StepSettings settings = e.settings;
+        settings.kernels = kernels;
+        settings.speed = 1e-9;
+        Assembly at_once = e.assembly, in_calls = e.assembly;
+        PlatenWork work, work_in_calls;
+        advance(at_once, e.team, settings, 0, 6, work);
+        StepSequence steps(in_calls, e.team);
+        for (int k = 0; k < 6; k += 2) steps.advance(settings, k, 2, work_in_calls);
+        expect_same(in_calls, at_once, 0.0, kernels->name);
+        EXPECT_EQ(work.loading, work_in_calls.loading);
+    }
+}
+
 TEST(Packs, LeaveFinelyMeshedGrainsLooseAndAgreeWithTheReadableStages) {
     SpecimenSpec spec = fixtures::rectangle(0.02, 0.04);
     spec.triangles_per_grain = 40;
