@@ -58,7 +58,8 @@ std::vector<Span> spans_of_contact_packs(const Assembly& assembly) {
     return spans;
 }
 
-// Orders the packs of contacts by the place of what they join, in which order assemble() makes them; those of contacts made later come to where they are.
+// Orders the packs of contacts by the place of what they join, in which order assemble() makes them; those of contacts made later come to
+// where they are.
 void order_contact_packs(Assembly& assembly, std::vector<Span>& spans) {
     std::vector<ContactPack>& packs = assembly.packs.contacts;
     std::vector<std::int32_t> place;
@@ -122,9 +123,11 @@ int steps_of_a_sweep(double bytes, const std::vector<std::int32_t>& begin) {
 double bytes_of_a_step(const Assembly& assembly) {
     const Packs& packs = assembly.packs;
     const auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
+    constexpr double kBytesOfAPack = sizeof(ContactPack) + kMostLanes * (3 * sizeof(double) + 2 * sizeof(std::uint32_t));   // offset, tangent, lines
+    const double contacts = kBytesOfAPack * static_cast<double>(packs.contacts.size());
     const double rigid = packs.rigid_end > 0 ? bytes(packs.rigid) + bytes(assembly.slots_of_bodies) + bytes(packs.rigid_forces) : 0.0;
     return 5.0 * bytes(assembly.nodes.velocity) + bytes(assembly.nodes.mass) + bytes(packs.scale) + bytes(packs.lines) + bytes(packs.inverse_cross) +
-           4.0 * bytes(packs.along) + static_cast<double>(packs.contacts.size()) * (sizeof(ContactPack) + kMostLanes * (3 * sizeof(double) + 2 * sizeof(std::uint32_t))) + rigid;
+           4.0 * bytes(packs.along) + contacts + rigid;
 }
 
 void cut_into_bands(Assembly& assembly) {
@@ -134,7 +137,8 @@ void cut_into_bands(Assembly& assembly) {
     const auto grains = static_cast<std::int32_t>(packs.grains.size()), units = grains + packs.rigid_end;
     Span row;   // with nodes of the loading platen
     for (const int node : assembly.platens[0].nodes) row.add(pack_of_node(packs, node));
-    const bool all_have_units = std::all_of(packs.loose_bodies.begin(), packs.loose_bodies.end(), [&](int b) { return assembly.bodies[b].kind == BodyKind::plate; });
+    const auto is_plate = [&](int body) { return assembly.bodies[body].kind == BodyKind::plate; };
+    const bool all_have_units = std::all_of(packs.loose_bodies.begin(), packs.loose_bodies.end(), is_plate);   // or a band by its contacts
     const Cuts cuts = all_have_units ? cut(units, spans, row) : Cuts{{0, units}, {0, static_cast<std::int32_t>(spans.size())}};
 
     Bands& bands = packs.bands;

@@ -64,8 +64,8 @@ void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, 
 Reactions platen_reactions(const Assembly& assembly);
 double loading_reaction(const Assembly& assembly);
 
-/// Steps in several calls, between which nobody else changes nodes, bonds, contacts, platens or pressure: what a block of steps has to look up before its first one
-/// is looked up once.
+/// Steps in several calls, between which nobody else changes nodes, bonds, contacts, platens or pressure: what a block of steps has to look
+/// up before its first one is looked up once.
 class StepSequence {
 public:
     StepSequence(Assembly& assembly, Team& team) : assembly_(assembly), team_(team) {}
