@@ -54,13 +54,13 @@ struct KernelArrays {
     const GrainPack* grain_packs = nullptr;
     const PackForces* pack_forces = nullptr;
     ContactPack* contact_packs = nullptr;
-    const Body* bodies = nullptr;
+    const RigidBody* rigid_bodies = nullptr;
     std::array<KernelLaw, contact_roles> laws;
     const double *reference = nullptr, *inverse_mass = nullptr, *loading_mode = nullptr, *mass = nullptr;
     double *displacement = nullptr, *velocity = nullptr, *force = nullptr;
     double *un = nullptr, *us = nullptr, *Fn = nullptr, *Fs = nullptr, *max_un = nullptr, *max_us = nullptr, *damage = nullptr;
     double *fracture = nullptr, *friction = nullptr;
-    const double *offset = nullptr, *tangent_x = nullptr, *tangent_y = nullptr, *along = nullptr, *area = nullptr;
+    const double *offset = nullptr, *tangent_x = nullptr, *tangent_y = nullptr, *normal_x = nullptr, *normal_y = nullptr, *along = nullptr, *area = nullptr;
     const std::uint32_t *line_a = nullptr, *line_b = nullptr;
     const std::uint8_t *shared = nullptr, *bare = nullptr;
     const std::int32_t* slots_of_bodies = nullptr;

@@ -47,11 +47,16 @@ FELDSPAR_INLINE void load_motion(double* const (&line)[kWidth], Side& side) {
     side.velocity = {q.q[2], q.q[3]};
 }
 
-// A rigid body's field has the turning speed as its only gradient: L = (0, -w; w, 0).
-template <bool rigid>
+// What hangs on both sides of a contact, and which normal its law has.
+enum class Frame { triangles, rigid, rigid_own_normal };
+
+// A rigid body's field has the turning speed as its only gradient: L = (0, -w; w, 0). How far it has turned, rad, stands in the place of yy.
+template <Frame frame>
 FELDSPAR_INLINE void load_gradient(double* const (&line)[kWidth], Side& side) {
-    if constexpr (rigid) {
+    if constexpr (frame != Frame::triangles) {
         for (int lane = 0; lane < kWidth; ++lane) side.yx[lane] = line[lane][6];
+        if constexpr (frame == Frame::rigid_own_normal)
+            for (int lane = 0; lane < kWidth; ++lane) side.yy[lane] = line[lane][7];
     } else {
         double* high[kWidth];
         for (int lane = 0; lane < kWidth; ++lane) high[lane] = line[lane] + 4;
@@ -174,8 +179,25 @@ struct PointForces {
     return {Fn, Fs};
 }
 
-template <bool rigid, bool plain>
+// A vector turned by an angle: by the series of cosine and sine, to 1e-17 within a quarter; beyond, lane by lane.
+FELDSPAR_INLINE Real2 turned(Real2 v, Real angle) {
+    Real c{}, s{};
+    if (any(absolute(angle) > 0.25)) [[unlikely]] {
+        for (int lane = 0; lane < kWidth; ++lane) {
+            c[lane] = __builtin_cos(angle[lane]);
+            s[lane] = __builtin_sin(angle[lane]);
+        }
+    } else {
+        const Real x = angle * angle;
+        c = 1.0 - x * (1.0 / 2.0) * (1.0 - x * (1.0 / 12.0) * (1.0 - x * (1.0 / 30.0) * (1.0 - x * (1.0 / 56.0) * (1.0 - x * (1.0 / 90.0) * (1.0 - x * (1.0 / 132.0))))));
+        s = angle * (1.0 - x * (1.0 / 6.0) * (1.0 - x * (1.0 / 20.0) * (1.0 - x * (1.0 / 42.0) * (1.0 - x * (1.0 / 72.0) * (1.0 - x * (1.0 / 110.0))))));
+    }
+    return {c * v.x - s * v.y, s * v.x + c * v.y};
+}
+
+template <Frame frame, bool plain>
 FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelStep& step, ContactPack& pack, int pack_index, Chunk chunk) {
+    constexpr bool rigid = frame != Frame::triangles;
     const KernelArrays a = arrays;   // a copy that nobody else can change: its pointers stay in registers
     const int constants = kMostLanes * pack_index + chunk.begin;
     double *line_a[kWidth], *line_b[kWidth];
@@ -190,22 +212,28 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     const Real distance = square_root(dot(line, line));
     Real inverse = 1.0 / distance;
     begin_now(inverse);   // the gradients are loaded meanwhile, not before
-    load_gradient<rigid>(line_a, A);
-    load_gradient<rigid>(line_b, B);
-    const Real2 n = inverse * line, s = {-n.y, n.x};
+    load_gradient<frame>(line_a, A);
+    load_gradient<frame>(line_b, B);
+    const Real2 m = inverse * line, across_m = {-m.y, m.x};   // the line of centres, on which the reference point lies
     const Real tx = load(a.tangent_x + constants), ty = load(a.tangent_y + constants);
-    const Real2 t = tx * n + ty * s;
-    const Real along_n = 0.5 * distance + load(a.offset + constants), from_b = along_n - distance;
+    const Real2 t = tx * m + ty * across_m;
+    const Real along_m = 0.5 * distance + load(a.offset + constants), from_b = along_m - distance;
+    Real2 n = m, s = across_m;   // of the law
+    if constexpr (frame == Frame::rigid_own_normal) {
+        const int normal = pack.first_normal + chunk.begin;
+        n = turned({load(a.normal_x + normal), load(a.normal_y + normal)}, 0.5 * (A.yy + B.yy));
+        s = {-n.y, n.x};
+    }
 
     // Relative velocity on the edge's line: v0 + w v1, w from the reference point.
     Real2 v0, v1;
     if constexpr (rigid) {   // L r = w rot90(r)
-        v0 = B.velocity - A.velocity + (B.yx * from_b - A.yx * along_n) * s;
+        v0 = B.velocity - A.velocity + (B.yx * from_b - A.yx * along_m) * across_m;
         const Real turn = B.yx - A.yx;
         v1 = {-turn * t.y, turn * t.x};
     } else {
-        const Real2 an = {A.xx * n.x + A.xy * n.y, A.yx * n.x + A.yy * n.y}, bn = {B.xx * n.x + B.xy * n.y, B.yx * n.x + B.yy * n.y};
-        v0 = B.velocity - A.velocity + from_b * bn - along_n * an;
+        const Real2 am = {A.xx * m.x + A.xy * m.y, A.yx * m.x + A.yy * m.y}, bm = {B.xx * m.x + B.xy * m.y, B.yx * m.x + B.yy * m.y};
+        v0 = B.velocity - A.velocity + from_b * bm - along_m * am;
         const Real xx = B.xx - A.xx, xy = B.xy - A.xy, yx = B.yx - A.yx, yy = B.yy - A.yy;
         v1 = {xx * t.x + xy * t.y, yx * t.x + yy * t.y};
     }
@@ -251,13 +279,13 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
         }
     }
 
-    // On B: force F, and W = sum of w F. Arms: along n to the reference point, then w along t.
+    // On B: force F, and W = sum of w F. Arms: along m to the reference point, then w along t.
     const Real2 F = Fn_sum * n + Fs_sum * s, W = Fn_moment * n + Fs_moment * s;
     const Real2 minus_F = {-F.x, -F.y};
     const int contact = pack.first_contact + chunk.begin;
     const auto takes_part = [&](int lane) FELDSPAR_LAMBDA { return plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U)); };
     if constexpr (rigid) {   // a short line a side: F and the turning moment
-        const Real across = cross(t, W);
+        const Real across = cross(t, W), at_reference = frame == Frame::rigid ? Fs_sum : cross(m, F);   // moments: of W, and of F over its arm
         alignas(64) double nowhere[8];
         double *short_a[kWidth], *short_b[kWidth];
         for (int lane = 0; lane < kWidth; ++lane) {
@@ -265,11 +293,11 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
             short_a[lane] = takes_part(lane) ? forces : nowhere;
             short_b[lane] = takes_part(lane) ? forces + 4 : nowhere;
         }
-        store_quads(short_a, {{minus_F.x, minus_F.y, -(along_n * Fs_sum + across), Real{}}});
-        store_quads(short_b, {{F.x, F.y, from_b * Fs_sum + across, Real{}}});
+        store_quads(short_a, {{minus_F.x, minus_F.y, -(along_m * at_reference + across), Real{}}});
+        store_quads(short_b, {{F.x, F.y, from_b * at_reference + across, Real{}}});
     } else {
         const Real Wxx = W.x * t.x, Wxy = W.x * t.y, Wyx = W.y * t.x, Wyy = W.y * t.y;
-        const Real2 at_a = along_n * n, at_b = from_b * n;
+        const Real2 at_a = along_m * m, at_b = from_b * m;
         const auto apart = [&](const std::uint32_t* lines_of, int lane) FELDSPAR_LAMBDA { return a.shared[lines_of[constants + lane] / sizeof(SideLine)] != 0; };
         alignas(64) double slot_a[plain ? 1 : kWidth][8], slot_b[plain ? 1 : kWidth][8];   // of sides that must leave their line alone
         if constexpr (!plain)
@@ -289,13 +317,13 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     }
 }
 
-template <bool rigid>
+template <Frame frame>
 FELDSPAR_INLINE void contacts_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
     if (pack.plain) {
-        for (int first = 0; first < kMostLanes; first += kWidth) contacts_of_chunk<rigid, true>(a, step, pack, index, Chunk{first, kWidth});
+        for (int first = 0; first < kMostLanes; first += kWidth) contacts_of_chunk<frame, true>(a, step, pack, index, Chunk{first, kWidth});
     } else if (pack.active != 0) {
         for (int first = 0; first < pack.lanes; first += kWidth)
-            contacts_of_chunk<rigid, false>(a, step, pack, index, Chunk{first, pack.lanes - first < kWidth ? pack.lanes - first : kWidth});
+            contacts_of_chunk<frame, false>(a, step, pack, index, Chunk{first, pack.lanes - first < kWidth ? pack.lanes - first : kWidth});
     }
 }
 
@@ -310,10 +338,12 @@ void contacts(const KernelArrays& a, const KernelStep& step, int begin, int end)
         }
         line_a += kMostLanes;
         line_b += kMostLanes;
-        if (pack.rigid) {
-            contacts_of_pack<true>(a, step, pack, i);
+        if (!pack.rigid) {
+            contacts_of_pack<Frame::triangles>(a, step, pack, i);
+        } else if (pack.first_normal < 0) {
+            contacts_of_pack<Frame::rigid>(a, step, pack, i);
         } else {
-            contacts_of_pack<false>(a, step, pack, i);
+            contacts_of_pack<Frame::rigid_own_normal>(a, step, pack, i);
         }
     }
 }
@@ -401,7 +431,7 @@ FELDSPAR_INLINE void add_contact_forces(double* lines, int count, Real2 centre, 
     lines_of_edge(lines, count, lines, line);
     Side side;   // F in the place of the centre, M behind it
     load_motion(line, side);
-    load_gradient<false>(line, side);
+    load_gradient<Frame::triangles>(line, side);
     const Real2 F = side.centre, r = centre - xi, e1 = inverse * (xj - xi), e2 = inverse * (xk - xi);
     const Real2 Mx = {side.velocity.x + r.x * F.x, side.xx + r.x * F.y}, My = {side.velocity.y + r.y * F.x, side.xy + r.y * F.y};
     const Real2 gj = e2.y * Mx - e2.x * My, gk = e1.x * My - e1.y * Mx;
@@ -617,21 +647,21 @@ FELDSPAR_INLINE Quad move_rigid(const KernelStep& step, Quad V, Quad F, Quad inv
     }
 }
 
-FELDSPAR_INLINE void write_rigid_line(const KernelArrays& a, int body, const Body& b, Quad u, Quad v) {
-    double* line = doubles(a.lines + a.line_of_first_body + body);
-    const double* X = a.reference + 2 * b.first_node;
-    const double turning = v[2] / b.radius_m;
+FELDSPAR_INLINE void write_rigid_line(const KernelArrays& a, int number, const RigidBody& body, Quad u, Quad v) {
+    double* line = doubles(a.lines + a.line_of_first_body + number);
+    const double* X = a.reference + 2 * body.first_node;
+    const double turning = v[2] * body.inverse_radius;
     store_quad(line, Quad{X[0] + u[0], X[1] + u[1], v[0], v[1]});
-    store_quad(line + 4, Quad{0.0, -turning, turning, 0.0});
+    store_quad(line + 4, Quad{0.0, -turning, turning, u[2] * body.inverse_radius});
 }
 
 template <bool local>
 FELDSPAR_INLINE void rigid_bodies(const KernelArrays& a, const KernelStep& step, int begin, int end) {
     for (int i = begin; i < end; ++i) {
-        const Body& body = a.bodies[i];
+        const RigidBody& body = a.rigid_bodies[i];
         Quad F{};   // Fx, Fy, moment
         for (int s = body.slot_begin; s < body.slot_end; ++s) F += load_quad(&a.rigid_forces[a.slots_of_bodies[s]].force.x);
-        F[2] /= body.radius_m;
+        F[2] *= body.inverse_radius;
         const int node = 2 * body.first_node;
         const Quad inverse_mass = load_quad(a.inverse_mass + node);
         const double m = a.mass[body.first_node], turn_mass = a.mass[body.first_node + 1];
@@ -656,8 +686,8 @@ void rigid(const KernelArrays& a, const KernelStep& step, int begin, int end) {
 
 void rigid_lines(const KernelArrays& a, int begin, int end) {
     for (int i = begin; i < end; ++i) {
-        const int node = 2 * a.bodies[i].first_node;
-        write_rigid_line(a, i, a.bodies[i], load_quad(a.displacement + node), load_quad(a.velocity + node));
+        const int node = 2 * a.rigid_bodies[i].first_node;
+        write_rigid_line(a, i, a.rigid_bodies[i], load_quad(a.displacement + node), load_quad(a.velocity + node));
     }
 }
 

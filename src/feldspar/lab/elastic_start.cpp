@@ -83,10 +83,11 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
     Array<Vec2> force_before = nodes.force, velocity_before = nodes.velocity;
     PlatenWork none;
     Relaxation result;
+    StepSequence steps(assembly, team);   // in between nodes are only read
     while (result.steps < maximum_steps && !(stop && stop())) {
         force_before = nodes.force;
         velocity_before = nodes.velocity;
-        advance(assembly, team, settings, -1, 1, none);
+        steps.advance(settings, -1, 1, none);
         ++result.steps;
 
         double stiffness = 0.0, inertia = 0.0, force = 0.0;

@@ -214,10 +214,15 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
         for (int k = 0; k < nv; ++k) owner[{cell.vertices[k], cell.vertices[(k + 1) % nv]}] = {g, k};
     }
     struct Facing {
+        int place;       // sum of those of the two grains, in the order of packs or rigid bodies
         double height;   // twice that of the edge's middle
         int ga, ka, gb, kb;
     };
     std::vector<Facing> facing;
+    std::vector<int> place(cells.cells.size());
+    std::iota(place.begin(), place.end(), 0);
+    for (int p = 0; p < std::ssize(assembly.packs.grains); ++p)
+        for (int lane = 0; lane < assembly.packs.grains[p].lanes; ++lane) place[assembly.packs.grains[p].grain[lane]] = p;
     for (int g = 0; g < std::ssize(cells.cells); ++g) {
         const Cell& cell = cells.cells[g];
         const int nv = static_cast<int>(cell.vertices.size());
@@ -226,11 +231,11 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
             const int from = cell.vertices[k], to = cell.vertices[(k + 1) % nv];
             const auto other = owner.find({to, from});
             if (other == owner.end()) throw NumericalError("the tessellation is not conforming");
-            facing.push_back({cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
+            facing.push_back({place[g] + place[other->second.first], cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
         }
     }
-    // From bottom to top, as the packs of grains are: the contiguous share of a thread is a band of the specimen.
-    std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return l.height < r.height; });
+    // From bottom to top, as the packs of grains are: a contiguous share is a band of the specimen (model/bands.hpp).
+    std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return std::pair{l.place, l.height} < std::pair{r.place, r.height}; });
     for (const Facing& f : facing) add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb);
     lay_out_bonds(assembly);
 }
@@ -275,13 +280,20 @@ void add_across_contact(Assembly& assembly, const AcrossContact& across, Contact
     add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
 }
 
-// Grain by grain, so that a sweep over the contacts goes through the particles once.
-void add_contacts_of_particles(Assembly& assembly, const Filling& filling, ContactNormal normal) {
+// From the first particles to the last, so that a sweep over the contacts goes through the particles once; those inside grains and those
+// across edges in turn, a full pack of either.
+void add_contacts_of_particles(Assembly& assembly, Filling filling, ContactNormal normal) {
+    const auto in_order = [](auto& all) { std::stable_sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.a + l.b < r.a + r.b; }); };
+    in_order(filling.inside);
+    in_order(filling.across);
     auto inside = filling.inside.begin();
     auto across = filling.across.begin();
-    for (int g = 0; g + 1 < std::ssize(filling.particle_begin); ++g) {
-        for (; inside != filling.inside.end() && inside->a < filling.particle_begin[g + 1]; ++inside) add_inside_contact(assembly, *inside);
-        for (; across != filling.across.end() && across->cell_a <= g; ++across) add_across_contact(assembly, *across, normal);
+    while (inside != filling.inside.end() || across != filling.across.end()) {
+        const bool inside_first = across == filling.across.end() || (inside != filling.inside.end() && inside->a + inside->b < across->a + across->b);
+        for (int lane = 0; lane < kMostLanes; ++lane) {
+            if (inside_first && inside != filling.inside.end()) add_inside_contact(assembly, *inside++);
+            if (!inside_first && across != filling.across.end()) add_across_contact(assembly, *across++, normal);
+        }
     }
 }
 
@@ -473,7 +485,7 @@ double Assembly::memory_bytes() const {
                  bytes(origins) + bytes(points) + bytes(bonds.un_m) * 9.0 + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) +
                  bytes(pressure_edges) + bytes(body_work);
     sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.line_of_edge) + bytes(packs.lines) + bytes(packs.inverse_cross) +
-           bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0;
+           bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0 + bytes(packs.normal_x) * 2.0 + bytes(packs.rigid);
     return sum;
 }
 

@@ -50,13 +50,16 @@ std::optional<Topology> topology_of(const GrainMesh& mesh, int g) {
     return topology;
 }
 
+bool has_own_normal(const Contact& contact) { return contact.edge_normal != Vec2{}; }
+
 // Contacts c and c + 1 may be lanes of one pack.
 bool alike(const Assembly& assembly, int c) {
     const Contact &l = assembly.contacts[c], &r = assembly.contacts[c + 1];
-    return l.points == r.points && l.material == r.material && l.flexible == r.flexible;
+    return l.points == r.points && l.material == r.material && l.flexible == r.flexible && has_own_normal(l) == has_own_normal(r) && l.plate == r.plate &&
+           (!l.plate || l.b.body == r.b.body);
 }
 
-bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape || contact.edge_normal != Vec2{}; }
+bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape; }
 
 }  // namespace
 
@@ -86,10 +89,7 @@ std::vector<GrainPack> pack_grains(const GrainMesh& mesh) {
     }
     std::vector<std::size_t> order(packs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
-        const bool l_full = packs[l].lanes == kMostLanes, r_full = packs[r].lanes == kMostLanes;
-        return l_full != r_full ? l_full : heights[l] < heights[r];
-    });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return heights[l] < heights[r]; });
     std::vector<GrainPack> ordered;
     int node = 0, edge = 0, triangle = 0;
     for (const std::size_t i : order) {
@@ -152,6 +152,38 @@ void index_grain_packs(Assembly& assembly) {
     packs.inverse_cross.assign(static_cast<std::size_t>(lines), 0.0);
 }
 
+namespace {
+
+// Consecutive contacts whose bonds stand as the layout of a pack asks.
+void find_contact_packs(Assembly& assembly) {
+    Packs& packs = assembly.packs;
+    packs.contacts.clear();
+    const int contacts = static_cast<int>(assembly.contacts.size());
+    for (int c = 0; c < contacts;) {
+        const Contact& first = assembly.contacts[c];
+        ContactPack pack;
+        pack.first_contact = c;
+        pack.lanes = 1;
+        pack.points = first.points;
+        pack.first_state = assembly.points[first.first_point].state;
+        pack.material = first.material;
+        pack.rigid = !first.flexible;
+        // The lanes' points stand right if those of the first point are consecutive and those of the second follow.
+        const auto stands = [&](int lane, int lanes) {
+            const Contact& contact = assembly.contacts[c + lane];
+            for (int j = 0; j < contact.points; ++j)
+                if (assembly.points[contact.first_point + j].state != pack.first_state + j * lanes + lane) return false;
+            return true;
+        };
+        const int spacing = first.points > 1 ? assembly.points[first.first_point + 1].state - pack.first_state : kMostLanes;
+        while (pack.lanes < spacing && c + pack.lanes < contacts && alike(assembly, c + pack.lanes - 1) && stands(pack.lanes, spacing)) ++pack.lanes;
+        packs.contacts.push_back(pack);
+        c += pack.lanes;
+    }
+}
+
+}  // namespace
+
 void index_contact_packs(Assembly& assembly) {
     Packs& packs = assembly.packs;
     const int contacts = static_cast<int>(assembly.contacts.size());
@@ -202,66 +234,81 @@ void index_contact_packs(Assembly& assembly) {
         packs.along[point.state] = point.along_m;
         packs.area[point.state] = point.area_m2;
     }
-    packs.contacts.clear();
     packs.loose_contacts.clear();
-    for (auto* array : {&packs.offset, &packs.tangent_x, &packs.tangent_y}) array->clear();
+    packs.rigid.clear();
+    for (int b = 0; b < packs.rigid_end; ++b) {
+        const Body& body = assembly.bodies[b];
+        packs.rigid.push_back({body.first_node, body.slot_begin, body.slot_end, 1.0 / body.radius_m});
+    }
+    find_contact_packs(assembly);
+    cut_into_bands(assembly);
+    for (auto* array : {&packs.offset, &packs.tangent_x, &packs.tangent_y, &packs.normal_x, &packs.normal_y}) array->clear();
     for (auto* array : {&packs.line_a, &packs.line_b}) array->clear();
-    for (int c = 0; c < contacts;) {
-        const Contact& first = assembly.contacts[c];
-        ContactPack pack{c, 1, first.points, assembly.points[first.first_point].state, first.material, !first.flexible, false, false, 0};
-        // The lanes' points stand as the layout asks if those of the first point are consecutive and those of the second follow.
-        const auto stands = [&](int lane, int lanes) {
-            const Contact& contact = assembly.contacts[c + lane];
-            for (int j = 0; j < contact.points; ++j)
-                if (assembly.points[contact.first_point + j].state != pack.first_state + j * lanes + lane) return false;
-            return true;
-        };
-        const int spacing = first.points > 1 ? assembly.points[first.first_point + 1].state - pack.first_state : kMostLanes;
-        while (pack.lanes < spacing && c + pack.lanes < contacts && alike(assembly, c + pack.lanes - 1) && stands(pack.lanes, spacing)) ++pack.lanes;
+    for (ContactPack& pack : packs.contacts) {
+        const bool own_normal = has_own_normal(assembly.contacts[pack.first_contact]);
+        if (own_normal) pack.first_normal = static_cast<std::int32_t>(packs.normal_x.size());
         for (int lane = 0; lane < kMostLanes; ++lane) {   // lanes beyond the last repeat it: harmless to read
-            const Contact& contact = assembly.contacts[c + std::min(lane, pack.lanes - 1)];
+            const Contact& contact = assembly.contacts[pack.first_contact + std::min(lane, pack.lanes - 1)];
             packs.offset.push_back(contact.offset_m);
             packs.tangent_x.push_back(contact.tangent.x);
             packs.tangent_y.push_back(contact.tangent.y);
+            if (own_normal) {
+                packs.normal_x.push_back(contact.edge_normal.x);
+                packs.normal_y.push_back(contact.edge_normal.y);
+            }
             const std::int32_t a = packs.line_of(assembly, contact.a.body, contact.a.edge), b = packs.line_of(assembly, contact.b.body, contact.b.edge);
             packs.line_a.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(a)));
             packs.line_b.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(b)));
         }
-        packs.contacts.push_back(pack);
-        c += pack.lanes;
     }
     for (auto* array : {&packs.line_a, &packs.line_b}) array->resize(array->size() + kMostLanes * kFetchAhead, 0);
+}
+
+namespace {
+
+// Which lanes take part, and what that allows for.
+void sort_out_contacts(Assembly& assembly, int p) {
+    Packs& packs = assembly.packs;
+    ContactPack& pack = packs.contacts[p];
+    const double* damage = &assembly.bonds.damage[pack.first_state];
+    pack.intact = std::all_of(damage, damage + pack.lanes * pack.points, [](double D) { return D == 0.0; });
+    if (pack.rigid && pack.plain) return;   // only flexible sides fall back from one block to the next
+    pack.active = 0;
+    pack.plain = pack.lanes == kMostLanes;
+    for (int lane = 0; lane < pack.lanes; ++lane) {
+        const Contact& contact = assembly.contacts[pack.first_contact + lane];
+        const bool takes_part = !contact.dropped && !is_loose(contact);
+        if (takes_part) pack.active = static_cast<std::uint8_t>(pack.active | 1U << lane);
+        if (!contact.dropped && !takes_part) packs.loose_contacts.push_back(pack.first_contact + lane);
+        const std::size_t at = static_cast<std::size_t>(kMostLanes * p + lane);
+        pack.plain = pack.plain && takes_part && !packs.shared[packs.line_a[at] / sizeof(SideLine)] && !packs.shared[packs.line_b[at] / sizeof(SideLine)];
+    }
+}
+
+}  // namespace
+
+int pack_of_node(const Packs& packs, int node) {
+    const auto behind = std::upper_bound(packs.grains.begin(), packs.grains.end(), node, [](int n, const GrainPack& pack) { return n < pack.first_node; });
+    if (behind == packs.grains.begin()) return -1;
+    const GrainPack& pack = *(behind - 1);
+    return node < pack.first_node + pack.nodes() * pack.lanes ? static_cast<int>(&pack - packs.grains.data()) : -1;
 }
 
 void sort_out_packs(Assembly& assembly) {
     Packs& packs = assembly.packs;
     std::fill(packs.forces.begin(), packs.forces.end(), PackForces::own);
     for (const Platen& platen : assembly.platens)
-        for (const int node : platen.nodes) {
-            const auto behind = std::upper_bound(packs.grains.begin(), packs.grains.end(), node, [](int n, const GrainPack& pack) { return n < pack.first_node; });
-            if (behind == packs.grains.begin()) continue;
-            const GrainPack& pack = *(behind - 1);
-            if (node < pack.first_node + pack.nodes() * pack.lanes) packs.forces[static_cast<std::size_t>(&pack - packs.grains.data())] = PackForces::kept;
-        }
+        for (const int node : platen.nodes)
+            if (const int pack = pack_of_node(packs, node); pack >= 0) packs.forces[pack] = PackForces::kept;
     if (assembly.pressure_Pa != 0.0)
         for (std::size_t b = 0; b < assembly.bodies.size(); ++b)
             if (packs.pack_of_body[b] >= 0 && assembly.bodies[b].pressure_begin < assembly.bodies[b].pressure_end)
                 packs.forces[packs.pack_of_body[b]] = PackForces::on_top_of_others;
     packs.loose_contacts.clear();
-    for (std::size_t p = 0; p < packs.contacts.size(); ++p) {
-        ContactPack& pack = packs.contacts[p];
-        pack.active = 0;
-        pack.plain = pack.lanes == kMostLanes;
-        for (int lane = 0; lane < pack.lanes; ++lane) {
-            const Contact& contact = assembly.contacts[pack.first_contact + lane];
-            const bool takes_part = !contact.dropped && !is_loose(contact);
-            if (takes_part) pack.active = static_cast<std::uint8_t>(pack.active | 1U << lane);
-            if (!contact.dropped && !takes_part) packs.loose_contacts.push_back(pack.first_contact + lane);
-            const std::size_t at = kMostLanes * p + static_cast<std::size_t>(lane);
-            pack.plain = pack.plain && takes_part && !packs.shared[packs.line_a[at] / sizeof(SideLine)] && !packs.shared[packs.line_b[at] / sizeof(SideLine)];
-        }
-        const double* damage = &assembly.bonds.damage[pack.first_state];
-        pack.intact = std::all_of(damage, damage + pack.lanes * pack.points, [](double D) { return D == 0.0; });
+    for (PackRanges& band : packs.bands.ranges) {
+        band.loose_contacts.begin = static_cast<int>(packs.loose_contacts.size());
+        for (int p = band.contacts.begin; p < band.contacts.end; ++p) sort_out_contacts(assembly, p);
+        band.loose_contacts.end = static_cast<int>(packs.loose_contacts.size());
     }
 }
 

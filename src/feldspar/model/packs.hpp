@@ -9,15 +9,15 @@
 //     point j of lane l       first_state + j x lanes + l      bonds (Bonds), along, area
 //
 // Grains are grouped by topology: the number of vertices, and whether the shortest edge of the ring is collapsed
-// (specimen theory, section 4). Vertices are counted from behind the collapsed edge, so that it is the last one. Full packs are ordered by
-// height, so that the contiguous share of a thread is a band of the specimen; the few that are not full stand at the end.
+// (specimen theory, section 4). Vertices are counted from behind the collapsed edge, so that it is the last one. Packs of grains are ordered
+// by height, and those of contacts by the places of the grains that they join, so that a contiguous share is a band of the specimen.
 //
 // A grain edge has one line of 64 bytes between its grain and its contact: the grain leaves in it how the edge moves, the contact
-// reads that, and leaves in it what the edge feels. Rigid bodies have a line each, for how they move, and a short line
+// reads that, and leaves in it what the edge feels. Rigid bodies have a line each, for how they move and have turned, and a short line
 // for each of their contacts' forces.
 //
-// What is not in a pack (finely meshed grains, plates, contacts at plates or with a normal of their own, contacts on the fall-back
-// shape functions) is loose, and goes through the readable form of the same stage.
+// What is not in a pack (finely meshed grains, plates, contacts at plates, contacts on the fall-back shape functions) is loose, and goes
+// through the readable form of the same stage.
 #pragma once
 
 #include <array>
@@ -26,6 +26,7 @@
 
 #include "feldspar/base/array.hpp"
 #include "feldspar/base/vec2.hpp"
+#include "feldspar/model/bands.hpp"
 
 namespace feldspar {
 
@@ -61,13 +62,14 @@ struct GrainPack {
 /// The grains of the mesh that have a common topology, in packs; numbers of nodes, edges and triangles from 0 on.
 std::vector<GrainPack> pack_grains(const GrainMesh& mesh);
 
-/// Consecutive contacts with equally many points of one material.
+/// Consecutive contacts with equally many points of one material; all with a normal of their own, or none; if at a plate, all at the same.
 struct ContactPack {
     std::int32_t first_contact = 0;
     std::int32_t lanes = 0;
     std::int32_t points = 0;
     std::int32_t first_state = 0;
     std::int32_t material = 0;
+    std::int32_t first_normal = -1;   ///< of a pack whose contacts have a normal of their own: into Packs::normal_x, normal_y
     bool rigid = false;          ///< both sides are rigid bodies
     bool intact = false;         ///< no point of it has any damage
     bool plain = false;          ///< all lanes are taken, take part, and may leave their forces in the lines that they read
@@ -122,6 +124,13 @@ struct alignas(32) RigidForces {
     double unused = 0.0;
 };
 
+/// What the step of a rigid body needs of it.
+struct RigidBody {
+    std::int32_t first_node = 0;               ///< its centre; the turn follows
+    std::int32_t slot_begin = 0, slot_end = 0; ///< into Assembly::slots_of_bodies
+    double inverse_radius = 0.0;               ///< 1/m, of the contact circle
+};
+
 /// An edge with several contacts: they leave their forces in their own slots, which are summed before the grain looks at them.
 struct SharedEdge {
     std::int32_t pack = -1;
@@ -136,6 +145,7 @@ struct Packs {
     std::vector<std::int32_t> pack_of_body;          ///< -1: in none
     std::vector<std::int32_t> loose_bodies;          ///< not in a grain pack and not rigid: plates, finely meshed grains
     std::int32_t rigid_end = 0;                      ///< bodies [0, rigid_end) are rigid
+    Array<RigidBody> rigid;                          ///< these
     Array<double> scale;                             ///< of each triangle: 1 / (4 x area), 1/m2
     std::vector<std::int32_t> line_of_edge;          ///< of each GrainEdge of a flexible body
     std::int32_t line_of_first_body = 0;
@@ -147,8 +157,10 @@ struct Packs {
     std::vector<std::int32_t> shared_slots;
 
     std::vector<ContactPack> contacts;
-    std::vector<std::int32_t> loose_contacts;
+    std::vector<std::int32_t> loose_contacts;        ///< in the order of their packs
+    Bands bands;
     Array<double> offset, tangent_x, tangent_y;      ///< kMostLanes a pack
+    Array<double> normal_x, normal_y;                ///< kMostLanes a pack of contacts with a normal of their own: Contact::edge_normal
     Array<std::uint32_t> line_a, line_b;             ///< kMostLanes a pack: distance in bytes from the first line; some more at the end
     Array<double> along, area;                       ///< as bonds
     Array<RigidForces> rigid_forces;                 ///< 2 x contact + side; none without rigid bodies
@@ -158,6 +170,9 @@ struct Packs {
     /// Where a contact on this edge of this body finds how it moves.
     std::int32_t line_of(const Assembly& assembly, int body, int edge) const;
 };
+
+/// The pack of grains that holds a node; -1: none.
+int pack_of_node(const Packs& packs, int node);
 
 /// Makes the packs of grains of an assembly that has its nodes in their order; once.
 void index_grain_packs(Assembly& assembly);

@@ -194,6 +194,7 @@ void attach_platen_rows(Assembly& assembly, const Specimen& specimen) {
         return std::abs(assembly.nodes.reference[i].x - centre) < std::abs(assembly.nodes.reference[j].x - centre);
     });
     assembly.nodes.inverse_mass[*held].x = 0.0;
+    index_contacts(assembly);
 }
 
 void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const PlateContact& contact) {

@@ -1,6 +1,7 @@
 #include "feldspar/step/advance_packs.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "feldspar/model/attachment.hpp"
 
@@ -51,7 +52,7 @@ void grains_of_packs(Assembly& assembly, const KernelArrays& arrays, const Kerne
 }
 
 // How the edges of a grain that is in no pack move: the linear velocity fields of the triangles behind them, at the centre.
-void write_lines(Assembly& assembly, const Body& grain) {
+void write_lines_of(Assembly& assembly, const Body& grain) {
     const Nodes& nodes = assembly.nodes;
     const Vec2 centre = nodes.position(grain.centre_node);
     for (int e = grain.edge_begin; e < grain.edge_end; ++e) {
@@ -94,47 +95,38 @@ void take_over(Assembly& assembly, const Body& grain) {
     }
 }
 
-// What one thread does of a stage. Loose things are few; they are shared out as well.
-class Share {
+// The stages over ranges of the packs.
+class Stages {
 public:
-    Share(Assembly& assembly, const Team& team, const StepSettings& settings, const KernelArrays& arrays, int thread)
-        : assembly_(assembly), settings_(settings), arrays_(arrays) {
-        const Packs& packs = assembly.packs;
-        const auto share = [&](const auto& all) { return team.share(static_cast<int>(std::ssize(all)), thread); };
-        contacts_ = share(packs.contacts);
-        loose_contacts_ = share(packs.loose_contacts);
-        grains_ = share(packs.grains);
-        loose_bodies_ = share(packs.loose_bodies);
-        rigid_ = team.share(packs.rigid_end, thread);
-    }
+    Stages(Assembly& assembly, const StepSettings& settings, const KernelArrays& arrays) : assembly_(assembly), settings_(settings), arrays_(arrays) {}
 
-    void lines() const {
-        settings_.kernels->grain_lines(arrays_, grains_.begin, grains_.end);
-        settings_.kernels->rigid_lines(arrays_, rigid_.begin, rigid_.end);
-        for_each_loose_body([&](const Body& body, int) { write_lines(assembly_, body); });
+    void lines(const PackRanges& part) const {
+        settings_.kernels->grain_lines(arrays_, part.grains.begin, part.grains.end);
+        settings_.kernels->rigid_lines(arrays_, part.rigid.begin, part.rigid.end);
+        for_each_loose_body(part, [&](const Body& body, int) { write_lines_of(assembly_, body); });
     }
-    void contacts(const KernelStep& step) const {
-        settings_.kernels->contacts(arrays_, step, contacts_.begin, contacts_.end);
-        for (int i = loose_contacts_.begin; i < loose_contacts_.end; ++i) {
+    void contacts(const KernelStep& step, const PackRanges& part) const {
+        settings_.kernels->contacts(arrays_, step, part.contacts.begin, part.contacts.end);
+        for (int i = part.loose_contacts.begin; i < part.loose_contacts.end; ++i) {
             const int c = assembly_.packs.loose_contacts[i];
             contact_forces(assembly_, {c, c + 1}, settings_, step.step);
             hand_over(assembly_, c);
         }
     }
-    void bodies(const KernelStep& step) const {
-        grains_of_packs(assembly_, arrays_, step, settings_, grains_);
-        settings_.kernels->rigid(arrays_, step, rigid_.begin, rigid_.end);
-        for_each_loose_body([&](const Body& body, int b) {
+    void bodies(const KernelStep& step, const PackRanges& part) const {
+        grains_of_packs(assembly_, arrays_, step, settings_, part.grains);
+        settings_.kernels->rigid(arrays_, step, part.rigid.begin, part.rigid.end);
+        for_each_loose_body(part, [&](const Body& body, int b) {
             if (body.kind == BodyKind::flexible) take_over(assembly_, body);
             body_forces(assembly_, {b, b + 1}, settings_);
-            write_lines(assembly_, body);
+            write_lines_of(assembly_, body);
         });
     }
 
 private:
     template <class Visit>
-    void for_each_loose_body(Visit visit) const {
-        for (int i = loose_bodies_.begin; i < loose_bodies_.end; ++i) {
+    void for_each_loose_body(const PackRanges& part, Visit visit) const {
+        for (int i = part.loose_bodies.begin; i < part.loose_bodies.end; ++i) {
             const int b = assembly_.packs.loose_bodies[i];
             visit(assembly_.bodies[b], b);
         }
@@ -143,30 +135,65 @@ private:
     Assembly& assembly_;
     const StepSettings& settings_;
     const KernelArrays& arrays_;
-    IndexRange contacts_, loose_contacts_, grains_, loose_bodies_, rigid_;
 };
+
+PackRanges whole(const Packs& packs) {
+    const auto all = [](const auto& list) { return IndexRange{0, static_cast<int>(std::ssize(list))}; };
+    return {all(packs.contacts), all(packs.loose_contacts), all(packs.grains), {0, packs.rigid_end}, all(packs.loose_bodies)};
+}
+
+// What a thread takes of these ranges. Loose things are few; they are shared out as well.
+PackRanges share_of(const Team& team, const PackRanges& all, int thread) {
+    const auto part = [&](IndexRange range) {
+        const IndexRange share = team.share(range.end - range.begin, thread);
+        return IndexRange{range.begin + share.begin, range.begin + share.end};
+    };
+    return {part(all.contacts), part(all.loose_contacts), part(all.grains), part(all.rigid), part(all.loose_bodies)};
+}
 
 }  // namespace
 
-void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work) {
+void write_lines(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays) {
+    const Stages stages(assembly, settings, arrays);
+    team.run([&](int thread) { stages.lines(share_of(team, whole(assembly.packs), thread)); });
+}
+
+// A sweep of several steps goes from the bottom to the top in rounds. In round r, step s takes the contacts of band r - 2 s, then the bodies of
+// band r - 2 s - 1: their contacts, of that band and the next, have had their turn in rounds r - 1 and r, and the bodies that the contacts
+// need have made step s - 1 in rounds r - 1 and r - 2 (model/bands.hpp). What one round does of a stage does not depend on each other.
+// With a single band this is one step after the other.
+void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays, long long first_step, int count, PlatenWork& work) {
+    const Bands& cut = assembly.packs.bands;
+    const int at_once = settings.sweep_steps > 0 ? settings.sweep_steps : cut.steps;
+    const PackRanges everything = whole(assembly.packs);
+    const std::span<const PackRanges> bands = at_once > 1 ? std::span(cut.ranges) : std::span(&everything, 1);
+    const int last_band = static_cast<int>(bands.size()) - 1, platen_band = at_once > 1 ? cut.platen : 0;
     const double travel = settings.dt * settings.speed;
-    sort_out_packs(assembly);
-    const KernelArrays arrays(assembly);
+    const Stages stages(assembly, settings, arrays);
     team.run([&](int thread) {
-        const Share share(assembly, team, settings, arrays, thread);
         KernelStep step = kernel_step(settings);
-        share.lines();   // whatever was done to the nodes since the last block
-        team.barrier();
-        for (int k = 0; k < count; ++k) {
-            step.step = first_step + k;
-            step.keep_forces = k + 1 == count;
-            share.contacts(step);
+        // Calls stage(band) for all steps [begin, end) that have a band so far along, and waits for the others.
+        const auto in_turn = [&](int begin, int end, int along, auto stage) {
+            const int from = begin + std::max(0, (along - last_band + 1) / 2), to = std::min(end, begin + along / 2 + 1);
+            if (along < 0 || from >= to) return;
+            for (int k = from; k < to; ++k) {
+                step.step = first_step + k;
+                step.keep_forces = k + 1 == count;
+                stage(share_of(team, bands[along - 2 * (k - begin)], thread));
+            }
             team.barrier();
-            share.bodies(step);
-            team.barrier();
-            // The platen pushes with the opposite of its reaction along its mode. Meanwhile the others may go on: its node forces stay
-            // as they are until the barrier after the next contact stage.
-            if (thread == 0) work.loading -= platen_reactions(assembly).loading * assembly.platens[0].mode.y * travel;
+        };
+        for (int begin = 0; begin < count; begin += at_once) {
+            const int end = std::min(count, begin + at_once), rounds = last_band + 2 * (end - begin);
+            for (int round = 0; round < rounds; ++round) {
+                in_turn(begin, end, round, [&](const PackRanges& part) { stages.contacts(step, part); });
+                in_turn(begin, end, round - 1, [&](const PackRanges& part) { stages.bodies(step, part); });
+                // The platen pushes with the opposite of its reaction along its mode. Meanwhile the others may go on: its node forces stay
+                // as they are until the barrier after the next contact stage.
+                const int since = round - 1 - platen_band;
+                if (thread == 0 && since >= 0 && since % 2 == 0 && since / 2 < end - begin)
+                    work.loading -= loading_reaction(assembly) * assembly.platens[0].mode.y * travel;
+            }
         }
     });
 }

@@ -8,7 +8,10 @@ namespace feldspar {
 /// The settings as the kernels see them.
 KernelStep kernel_step(const StepSettings& settings);
 
-/// @param settings  names the kernels
-void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work);
+/// Writes how everything moves into the lines of packs that are sorted out.
+void write_lines(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays);
+
+/// `count` steps from lines that are written.
+void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays, long long first_step, int count, PlatenWork& work);
 
 }  // namespace feldspar

@@ -2,13 +2,20 @@
 
 namespace feldspar {
 
+namespace {
+
 // Nodes under a platen, and the node of a plate, feel their forces and, imposed in y, do not obey them: their sum is what the
 // specimen does to the platen.
-Reactions platen_reactions(const Assembly& assembly) {
-    std::array<double, 2> sum{};
-    for (int side = 0; side < 2; ++side)
-        for (const int node : assembly.platens[side].nodes) sum[side] += assembly.nodes.force[node].y;
-    return {sum[0], sum[1]};
+double reaction(const Assembly& assembly, const Platen& platen) {
+    double sum = 0.0;
+    for (const int node : platen.nodes) sum += assembly.nodes.force[node].y;
+    return sum;
 }
+
+}  // namespace
+
+double loading_reaction(const Assembly& assembly) { return reaction(assembly, assembly.platens[0]); }
+
+Reactions platen_reactions(const Assembly& assembly) { return {loading_reaction(assembly), reaction(assembly, assembly.platens[1])}; }
 
 }  // namespace feldspar

@@ -6,10 +6,12 @@
 //   find_contacts      (between steps) makes and drops frictional contacts, chooses the fall-back shape functions
 //
 // advance() runs both for a number of steps on a team, with a barrier after each stage. What stands in packs goes through the kernels of
-// fast/, the rest, or all of it if so wanted, through the readable stages declared here.
+// fast/, the rest, or all of it if so wanted, through the readable stages declared here. A specimen larger than the caches takes several
+// steps in one sweep, band by band.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "feldspar/base/parallel.hpp"
@@ -34,6 +36,7 @@ struct StepSettings {
     Strength strength = Strength::real;
     double speed = 0.0;                    ///< v: platen motion per unit of time
     const Kernels* kernels = &best_kernels();   ///< of the packs; none: the readable stages only
+    int sweep_steps = 0;                   ///< steps that a sweep over the bands takes (model/bands.hpp); 0: as many as pay
 };
 
 /// Work of the platens on the body, J, accumulated every step.
@@ -59,8 +62,24 @@ void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, 
 
 /// Stage 3: ordered sums.
 Reactions platen_reactions(const Assembly& assembly);
+double loading_reaction(const Assembly& assembly);
 
-/// `count` steps; accumulates the platens' work.
+/// Steps in several calls, between which nobody else changes nodes, bonds, contacts, platens or pressure: what a block of steps has to look
+/// up before its first one is looked up once.
+class StepSequence {
+public:
+    StepSequence(Assembly& assembly, Team& team) : assembly_(assembly), team_(team) {}
+
+    /// `count` steps; accumulates the platens' work.
+    void advance(const StepSettings& settings, long long first_step, int count, PlatenWork& work);
+
+private:
+    Assembly& assembly_;
+    Team& team_;
+    std::optional<KernelArrays> arrays_;   // once the packs are sorted out and their lines tell how everything moves
+};
+
+/// A sequence of one call.
 void advance(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work);
 
 /// Forces at the present state without moving anything: one step of zero length.

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "feldspar/base/rng.hpp"
@@ -214,7 +215,7 @@ TEST_P(OneStep, IsThatOfTheReadableStages) {
         }
 }
 
-TEST_P(OneStep, HasTheSameBitsForAnyNumberOfThreads) {
+TEST_P(OneStep, HasTheSameBitsForAnyNumberOfThreadsAndStepsOfASweep) {
     const TestSetup setup = make();
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
@@ -226,15 +227,17 @@ TEST_P(OneStep, HasTheSameBitsForAnyNumberOfThreads) {
     settings.speed = 1e-9;
     for (const Kernels* kernels : kernels_here()) {
         settings.kernels = kernels;
+        settings.sweep_steps = 1;
         Assembly one = e.assembly;
         PlatenWork one_work;
         advance(one, e.team, settings, 0, 5, one_work);
-        for (const int threads : {2, 3}) {
+        for (const auto& [threads, sweep_steps] : {std::pair{2, 1}, std::pair{3, 1}, std::pair{1, 2}, std::pair{1, 5}, std::pair{2, 5}, std::pair{3, 3}}) {
+            settings.sweep_steps = sweep_steps;
             Assembly several = e.assembly;
             Team team(threads);
             PlatenWork work;
             advance(several, team, settings, 0, 5, work);
-            expect_same(several, one, 0.0, std::string(kernels->name) + " with " + std::to_string(threads) + " threads");
+            expect_same(several, one, 0.0, fmt::format("{} with {} threads, {} steps a sweep", kernels->name, threads, sweep_steps));
             EXPECT_EQ(work.loading, one_work.loading);
         }
     }
@@ -333,6 +336,95 @@ TEST(Packs, HoldEveryGrainOfTheCommonTopologyOnce) {
         }
     EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), std::ssize(seen));
     EXPECT_TRUE(assembly.packs.loose_bodies.empty());
+}
+
+// What a body waits for, and what a contact waits for, lies where model/bands.hpp says.
+void expect_narrow_bands(const Assembly& assembly) {
+    const std::vector<PackRanges>& bands = assembly.packs.bands.ranges;
+    const auto band_of = [&](IndexRange PackRanges::*range, int i) {
+        const auto at = std::find_if(bands.begin(), bands.end(), [&](const PackRanges& band) { return (band.*range).begin <= i && i < (band.*range).end; });
+        EXPECT_NE(at, bands.end());
+        return static_cast<int>(at - bands.begin());
+    };
+    const auto band_of_body = [&](int body) {
+        if (assembly.bodies[body].kind == BodyKind::rigid) return band_of(&PackRanges::rigid, body);
+        if (assembly.packs.pack_of_body[body] >= 0) return band_of(&PackRanges::grains, assembly.packs.pack_of_body[body]);
+        const auto& loose = assembly.packs.loose_bodies;
+        return band_of(&PackRanges::loose_bodies, static_cast<int>(std::find(loose.begin(), loose.end(), body) - loose.begin()));
+    };
+    int seen = 0;
+    for (int p = 0; p < std::ssize(assembly.packs.contacts); ++p) {
+        const ContactPack& pack = assembly.packs.contacts[p];
+        const int band = band_of(&PackRanges::contacts, p);
+        for (int c = pack.first_contact; c < pack.first_contact + pack.lanes; ++c, ++seen)
+            for (const ContactSide& side : {assembly.contacts[c].a, assembly.contacts[c].b}) {
+                const int of_body = band_of_body(side.body);
+                EXPECT_TRUE(of_body == band || of_body == band - 1) << "contact " << c << " in band " << band << ", body in " << of_body;
+            }
+    }
+    EXPECT_EQ(seen, std::ssize(assembly.contacts));
+}
+
+TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
+    for (const TestKind test : {TestKind::uniaxial_compression, TestKind::biaxial, TestKind::brazilian})
+        for (const ModelSpec& model : {fixtures::model(GrainKind::flexible), fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}) {
+            const SpecimenSpec spec = test == TestKind::brazilian ? fixtures::disc(0.04) : fixtures::rectangle(0.02, 0.08);
+            TestSetup setup = fixtures::setup(spec, test, model);
+            setup.test.sigma3_Pa = test == TestKind::biaxial ? 2e6 : 0.0;
+            setup.test.membrane_plates = 16;
+            const RunControl control = fixtures::threads(1);
+            Experiment e(setup, control);
+            expect_narrow_bands(e.assembly);
+            EXPECT_GT(e.assembly.packs.bands.ranges.size(), model.kind == GrainKind::flexible ? 2U : 6U) << name(test) << ", " << name(model.kind);
+            EXPECT_EQ(e.assembly.packs.bands.steps, 1);   // it fits into the cache
+            mix_contacts(e.assembly);
+            expect_narrow_bands(e.assembly);
+        }
+}
+
+TEST(Packs, HoldContactsWithANormalOfTheirOwnHoweverFarBodiesHaveTurned) {
+    const ModelSpec model = fixtures::model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge);
+    TestSetup setup = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, model);
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    stir(e.assembly);
+    RandomStream random(7, "turned");
+    for (const Body& body : e.assembly.bodies)   // a quarter of a radian parts the series from the rest
+        if (body.kind == BodyKind::rigid) e.assembly.nodes.displacement[body.centre_node + 1].x = body.radius_m * 3.0 * (random.uniform() - 0.5);
+    StepSettings settings = e.settings;
+    settings.speed = 1e-9;
+    settings.kernels = nullptr;
+    Assembly readable = e.assembly;
+    PlatenWork work;
+    advance(readable, e.team, settings, 0, 1, work);
+    for (const Kernels* kernels : kernels_here()) {
+        settings.kernels = kernels;
+        Assembly fast = e.assembly;
+        advance(fast, e.team, settings, 0, 1, work);
+        expect_same(fast, readable, 1e-9, kernels->name);
+        for (const int c : fast.packs.loose_contacts) EXPECT_TRUE(fast.contacts[c].plate);
+    }
+}
+
+TEST(StepSequence, GoesOnWhereItsLastCallEnded) {
+    const TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    choose_step(e);
+    stir(e.assembly);
+    for (const Kernels* kernels : kernels_here()) {
+        StepSettings settings = e.settings;
+        settings.kernels = kernels;
+        settings.speed = 1e-9;
+        Assembly at_once = e.assembly, in_calls = e.assembly;
+        PlatenWork work, work_in_calls;
+        advance(at_once, e.team, settings, 0, 6, work);
+        StepSequence steps(in_calls, e.team);
+        for (int k = 0; k < 6; k += 2) steps.advance(settings, k, 2, work_in_calls);
+        expect_same(in_calls, at_once, 0.0, kernels->name);
+        EXPECT_EQ(work.loading, work_in_calls.loading);
+    }
 }
 
 TEST(Packs, LeaveFinelyMeshedGrainsLooseAndAgreeWithTheReadableStages) {
