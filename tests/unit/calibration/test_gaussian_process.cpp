@@ -1,0 +1,90 @@
+// The surrogate: what it recovers, how sure it is, and what packings in common are worth.
+#include <gtest/gtest.h>
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+
+#include "feldspar/calibration/gaussian_process.hpp"
+#include "feldspar/calibration/search.hpp"
+
+namespace feldspar {
+namespace {
+
+double smooth(const std::vector<double>& x) { return 2.0 + 1.5 * x[0] - 0.8 * x[1] + 0.6 * x[0] * x[1] + 0.2 * std::sin(3.0 * x[1]); }
+
+TEST(GaussianProcess, RecoversASmoothFunction) {
+    std::vector<Observation> seen;
+    for (const auto& x : evenly(2, 40)) seen.push_back({x, seen.size() % 4, smooth(x)});
+    const GaussianProcess process(seen);
+    double largest = 0.0;
+    for (const auto& x : evenly(2, 50, 100)) {
+        const Belief belief = process.at(x);
+        largest = std::max(largest, std::abs(belief.mean - smooth(x)));
+        EXPECT_LT(std::abs(belief.mean - smooth(x)), 5.0 * std::sqrt(belief.variance) + 1e-3);
+    }
+    EXPECT_LT(largest, 0.02);   // a percent of the function's range
+    EXPECT_LT(process.noise_variance(), 1e-3);
+    EXPECT_LT(process.packing_variance(), 1e-3);
+}
+
+TEST(GaussianProcess, AStraightLineIsFollowedBeyondWhatWasSeen) {
+    std::vector<Observation> seen;
+    for (int i = 0; i < 8; ++i) seen.push_back({{0.05 * i}, 0, 1.0 + 2.0 * 0.05 * i});
+    const Belief belief = GaussianProcess(seen).at({1.0});
+    EXPECT_NEAR(belief.mean, 3.0, 0.1);
+    EXPECT_GT(belief.variance, GaussianProcess(seen).at({0.2}).variance);
+}
+
+TEST(GaussianProcess, TellsPackingsFromNoise) {
+    boost::random::mt19937_64 engine(3);
+    boost::random::normal_distribution<double> normal;
+    std::vector<double> packing(6);
+    for (double& effect : packing) effect = 0.3 * normal(engine);
+    std::vector<Observation> seen;
+    for (const auto& x : evenly(2, 90)) {
+        const std::uint64_t seed = seen.size() % packing.size();
+        seen.push_back({x, seed, smooth(x) + packing[seed] + 0.02 * normal(engine)});
+    }
+    const GaussianProcess process(seen);
+    EXPECT_NEAR(std::sqrt(process.noise_variance()), 0.02, 0.02);
+    EXPECT_GT(std::sqrt(process.packing_variance()), 0.1);
+    // the difference of two points is known far better than the level, which so few packings leave open
+    const double difference = process.at({0.8, 0.5}).mean - process.at({0.2, 0.5}).mean;
+    EXPECT_NEAR(difference, smooth({0.8, 0.5}) - smooth({0.2, 0.5}), 0.03);
+    const double level_deviation = std::sqrt(process.at({0.5, 0.5}).variance);
+    EXPECT_GT(level_deviation, 0.05);
+    EXPECT_LT(std::abs(process.at({0.5, 0.5}).mean - smooth({0.5, 0.5})), 3.0 * level_deviation);
+}
+
+TEST(GaussianProcess, BelievingMakesSureWithoutMovingTheMean) {
+    std::vector<Observation> seen;
+    for (const auto& x : evenly(1, 4)) seen.push_back({x, seen.size(), 1.0 + x[0] * x[0]});
+    GaussianProcess process(seen);
+    const Belief before = process.at({0.95});
+    process.believe({0.95});
+    const Belief after = process.at({0.95});
+    EXPECT_LT(after.variance, before.variance);
+    EXPECT_NEAR(after.mean, before.mean, 1e-6 * std::abs(before.mean));
+}
+
+TEST(GaussianProcess, OneObservationAndEqualOnesAreEnough) {
+    EXPECT_NEAR(GaussianProcess({{{0.5}, 1, 7.0}}).at({0.5}).mean, 7.0, 1e-9);
+    EXPECT_NEAR(GaussianProcess({{{0.2}, 1, 7.0}, {{0.8}, 1, 7.0}, {{0.5}, 2, 7.0}}).at({0.4}).mean, 7.0, 1e-6);
+}
+
+TEST(Search, PointsFillTheCubeEvenly) {
+    const auto points = evenly(3, 64);
+    for (int axis = 0; axis < 3; ++axis) {
+        int lower = 0;
+        for (const auto& x : points) {
+            EXPECT_GT(x[axis], 0.0);
+            EXPECT_LT(x[axis], 1.0);
+            lower += x[axis] < 0.5;
+        }
+        EXPECT_NEAR(lower, 32, 2);   // a Sobol sequence is balanced but for its first point
+    }
+}
+
+}  // namespace
+}  // namespace feldspar

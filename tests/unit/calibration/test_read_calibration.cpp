@@ -1,0 +1,78 @@
+// Files of targets and unknowns: defaults, and what is said of mistakes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibration_files.hpp"
+#include "feldspar/base/error.hpp"
+
+namespace feldspar {
+namespace {
+
+class ReadCalibration : public ::testing::Test {
+protected:
+    InputError mistake(const std::string& text) const {
+        try {
+            (void)folder_.read(text);
+        } catch (const InputError& error) {
+            return error;
+        }
+        ADD_FAILURE() << "no error for\n" << text;
+        return InputError({}, "");
+    }
+    CalibrationFolder folder_;
+};
+
+TEST_F(ReadCalibration, RangesFollowFromTheRock) {
+    const Calibration calibration = folder_.read("[targets]\nE = \"25 GPa\"\nUCS = { value = \"120 MPa\", tolerance = \"4 %\" }\nBTS = { value = \"9 MPa\", standard_deviation = \"1.5 MPa\" }\n"
+                                                 "friction_angle = \"50 deg\"\n[[unknown]]\nkey = \"material.contact.Kn\"\n[[unknown]]\nkey = \"material.grain.E\"\n" + strength_unknowns);
+    ASSERT_EQ(calibration.unknowns.size(), 7u);
+    const Unknown &Kn = calibration.unknowns[0], &E = calibration.unknowns[1], &sigma_nt = calibration.unknowns[2];
+    EXPECT_TRUE(Kn.elastic);
+    EXPECT_LT(Kn.low, 18e13);   // Table 1's value lies inside
+    EXPECT_GT(Kn.high, 18e13);
+    EXPECT_DOUBLE_EQ(E.low, 20e9);
+    EXPECT_FALSE(sigma_nt.elastic);
+    EXPECT_DOUBLE_EQ(sigma_nt.low, 4.5e6);
+    EXPECT_EQ(calibration.targets[1].tolerance, 0.04 * 120e6);
+    EXPECT_EQ(calibration.targets[2].tolerance, 1.5e6);
+    EXPECT_DOUBLE_EQ(calibration.targets[3].value, 50.0);   // degrees
+    EXPECT_EQ(calibration.seeds.size(), 10u);
+    EXPECT_EQ(calibration.confirm_seeds.size(), 10u);
+
+    const Job job = calibration.job_with({18e13, 26e9, 8e6, 3.0, 0.4, 20.0, 40.0});
+    EXPECT_DOUBLE_EQ(job.variants.front().contact.tau_Pa, 24e6);
+    EXPECT_DOUBLE_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
+    EXPECT_DOUBLE_EQ(job.variants.front().grain.E_Pa, 26e9);
+}
+
+TEST_F(ReadCalibration, ValuesAndParametersAreInverse) {
+    Unknown unknown;
+    unknown.low = 4.0;
+    unknown.high = 400.0;
+    EXPECT_DOUBLE_EQ(unknown.value_at(0.5), 40.0);
+    EXPECT_DOUBLE_EQ(unknown.x_of(40.0), 0.5);
+    unknown.logarithmic = false;
+    EXPECT_DOUBLE_EQ(unknown.value_at(0.25), 103.0);
+    EXPECT_DOUBLE_EQ(unknown.value_at(2.0), 400.0);   // never beyond the range
+}
+
+TEST_F(ReadCalibration, MistakesAreSaid) {
+    const std::string targets = "[targets]\nUCS = \"120 MPa\"\n", mu = "[[unknown]]\nkey = \"material.contact.mu\"\n";
+    EXPECT_NE(mistake("[targets]\nUSC = \"120 MPa\"\n" + mu).suggestion().find("UCS"), std::string::npos);
+    EXPECT_EQ(mistake("[targets]\nUCS = \"120 GPa/m\"\n" + mu).place().line, 3);
+    EXPECT_NE(mistake(targets).problem().find("unknown"), std::string::npos);
+    EXPECT_NE(mistake(targets + mu + mu).problem().find("twice"), std::string::npos);
+    EXPECT_NE(mistake(targets + "[[unknown]]\nkey = \"material.contact.Kn\"\n").place().key.find("range"), std::string::npos);
+    EXPECT_NE(mistake(targets + "[[unknown]]\nkey = \"material.grain.nu\"\n").problem().find("neither is a target"), std::string::npos);
+    EXPECT_NE(mistake("[targets]\nE = \"25 GPa\"\n" + mu).problem().find("none is a target"), std::string::npos);
+    EXPECT_NE(mistake(targets + "[[unknown]]\nkey = \"material.contact.mu\"\nrange = [0.5, 0.2]\n").problem().find("empty"), std::string::npos);
+    EXPECT_NE(mistake(targets + "[[unknown]]\nkey = \"material.contact.sigma_nt\"\nrange = [\"5 MPa\", \"10 kPa\"]\n").problem().find("units"), std::string::npos);
+    EXPECT_NE(mistake(targets + "[[unknown]]\nkey = \"material.contact.muu\"\nrange = [0.1, 0.2]\n").suggestion().find("mu"), std::string::npos);
+    EXPECT_NE(mistake("confirm_seeds = [3]\n" + targets + mu).problem().find("learns from"), std::string::npos);
+    EXPECT_NE(mistake("[targets]\nsigma1 = [{ sigma3 = \"7 MPa\", value = \"150 MPa\" }]\n" + mu).problem().find("no biaxial test"), std::string::npos);
+    EXPECT_NE(mistake("[targets]\nUCS = { value = \"1 MPa\", tolerance = \"1 %\", standard_deviation = \"1 MPa\" }\n" + mu).problem().find("beside"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace feldspar
