@@ -122,7 +122,8 @@ private:
                 }
         Learner aimed = *elastic_learner_;
         aimed.aim_at(aims);
-        const std::vector<double> x = best_point(aimed, elastic_.size());
+        // near by: what E and nu lose until half of the strength depends on the constants too
+        const std::vector<double> x = best_point(aimed, elastic_.size(), x_elastic);
         const std::vector<Belief> after = aimed.beliefs(x);
         for (std::size_t q = 0; q < quantities_.size(); ++q) {
             const std::size_t e = index_of(elastic_learner_->quantities(), quantities_[q].name);

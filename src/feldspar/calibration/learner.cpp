@@ -6,10 +6,16 @@
 #include <set>
 
 namespace feldspar {
+namespace {
+
+constexpr double largest_nu = 0.5;
+
+}  // namespace
 
 void Learner::observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, double value) {
     const bool logarithmic = quantities_[quantity].logarithmic;
     if (!std::isfinite(value) || (logarithmic && value <= 0.0)) return;
+    if (quantities_[quantity].name == "nu" && (value <= 0.0 || value >= largest_nu)) return;   // of a specimen that is broken at half of its strength
     seen_[quantity].push_back({x, seed, logarithmic ? std::log(value) : value});
 }
 

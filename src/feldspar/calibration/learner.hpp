@@ -24,7 +24,7 @@ public:
     const std::vector<Observable>& quantities() const { return quantities_; }
     const std::vector<Target>& targets() const { return targets_; }
 
-    /// A quantity seen on one packing. What is not a positive number of a logarithmic quantity teaches nothing.
+    /// A quantity seen on one packing. What is not a positive number of a logarithmic quantity teaches nothing, nor a nu that no solid has.
     void observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, double value);
 
     /// Multiplies (or, of a quantity that is not logarithmic, adds to) all that was seen of a quantity: when what it follows from besides x has changed.

@@ -71,7 +71,9 @@ private:
     }
 
     void read_seeds() {
-        result_.seeds = root_.has("seeds") ? read_seed_list(root_, "seeds") : result_.base.job().seeds;
+        if (root_.has("seeds")) result_.seeds = read_seed_list(root_, "seeds");
+        else
+            for (std::uint64_t seed = 1; seed <= 20; ++seed) result_.seeds.push_back(seed);
         if (root_.has("confirm_seeds")) result_.confirm_seeds = read_seed_list(root_, "confirm_seeds");
         else
             for (std::uint64_t seed = 1001; seed <= 1010; ++seed) result_.confirm_seeds.push_back(seed);

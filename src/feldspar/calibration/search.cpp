@@ -12,15 +12,19 @@ namespace {
 
 constexpr std::size_t candidates_everywhere = 1024, candidates_nearby = 384;
 constexpr int samples = 48;               // of what may be true, for the expected improvement
-constexpr double towards_middle = 1e-3;   // misfit a point pays at the end of a range: decides between equals only
+constexpr double homesickness = 0.12;     // misfit that a parameter pays for a whole range away from home: 0.17 tolerances from the middle to an end
 
-double off_middle(const std::vector<double>& x) {
-    double sum = 0.0;
-    for (const double value : x) sum += (2.0 * value - 1.0) * (2.0 * value - 1.0);
-    return sum;
-}
+// What best_point() makes small.
+struct Cost {
+    const Learner& learner;
+    std::vector<double> home;
 
-double cost(const Learner& learner, const std::vector<double>& x) { return learner.at(x).misfit + towards_middle * off_middle(x); }
+    double operator()(const std::vector<double>& x) const {
+        double away = 0.0;
+        for (std::size_t i = 0; i < x.size(); ++i) away += (x[i] - home[i]) * (x[i] - home[i]);
+        return learner.at(x).misfit + homesickness * away;
+    }
+};
 
 }  // namespace
 
@@ -34,9 +38,14 @@ std::vector<std::vector<double>> evenly(std::size_t dimensions, std::size_t coun
     return points;
 }
 
-std::vector<double> best_point(const Learner& learner, std::size_t dimensions) {
+std::vector<double> best_point(const Learner& learner, std::size_t dimensions, std::vector<double> home) {
+    if (home.empty()) home.assign(dimensions, 0.5);
+    Cost cost{learner, std::move(home)};
     std::vector<std::pair<double, std::vector<double>>> ranked;
-    for (std::vector<double>& x : evenly(dimensions, 2 * candidates_everywhere, 1)) ranked.emplace_back(cost(learner, x), std::move(x));
+    for (std::vector<double>& x : evenly(dimensions, 2 * candidates_everywhere, 1)) {
+        const double value = cost(x);
+        ranked.emplace_back(value, std::move(x));
+    }
     std::partial_sort(ranked.begin(), ranked.begin() + 3, ranked.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
     std::pair<double, std::vector<double>> best = ranked.front();
     for (int start = 0; start < 3; ++start) {
@@ -46,14 +55,13 @@ std::vector<double> best_point(const Learner& learner, std::size_t dimensions) {
         search.set_xtol_abs(1e-4);
         search.set_maxeval(150 * static_cast<int>(dimensions));
         search.set_initial_step(0.05);
-        search.set_min_objective([](const std::vector<double>& x, std::vector<double>&, void* data) { return cost(*static_cast<const Learner*>(data), x); },
-                                 const_cast<Learner*>(&learner));
+        search.set_min_objective([](const std::vector<double>& x, std::vector<double>&, void* data) { return (*static_cast<const Cost*>(data))(x); }, &cost);
         std::vector<double> x = ranked[static_cast<std::size_t>(start)].second;
         double value = 0.0;
         try {
             search.optimize(x, value);
         } catch (const nlopt::roundoff_limited&) {   // as good as it gets
-            value = cost(learner, x);
+            value = cost(x);
         }
         if (value < best.first) best = {value, x};
     }

@@ -37,7 +37,7 @@ TEST_F(ReadCalibration, RangesFollowFromTheRock) {
     EXPECT_EQ(calibration.targets[1].tolerance, 0.04 * 120e6);
     EXPECT_EQ(calibration.targets[2].tolerance, 1.5e6);
     EXPECT_DOUBLE_EQ(calibration.targets[3].value, 50.0);   // degrees
-    EXPECT_EQ(calibration.seeds.size(), 10u);
+    EXPECT_EQ(calibration.seeds.size(), 20u);
     EXPECT_EQ(calibration.confirm_seeds.size(), 10u);
 
     const Job job = calibration.job_with({18e13, 26e9, 8e6, 3.0, 0.4, 20.0, 40.0});
