@@ -19,6 +19,7 @@ constexpr std::size_t everywhere = 4096;       // sets that are looked at
 constexpr double evenly_spread = 0.2887;       // standard deviation of a parameter that may be anything: 1 / sqrt(12)
 constexpr double not_determined = 0.5;         // of that: beyond it the data do not say much of a combination
 constexpr double takes_part = 0.35;            // of a direction: an unknown with less has no say in it
+constexpr double nearly_all = 0.75;            // of an unknown lies in such directions: it is open by itself
 
 double mean(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()); }
 
@@ -103,23 +104,32 @@ void find_inseparable(const WeighedSets& sets, const Calibration& calibration, c
     for (Eigen::Index i = 0; i < n; ++i)
         result.unknowns[part[static_cast<std::size_t>(i)]].determined = std::clamp(1.0 - std::sqrt(spread(i, i)) / evenly_spread, 0.0, 1.0);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(spread);
-    for (Eigen::Index k = n; k-- > 0;) {
-        const double deviation = std::sqrt(std::max(0.0, solver.eigenvalues()[k]));
-        if (deviation < not_determined * evenly_spread) break;
+    std::vector<Eigen::Index> open;   // directions
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index k = n; k-- > 0 && std::sqrt(std::max(0.0, solver.eigenvalues()[k])) >= not_determined * evenly_spread;) {
+        open.push_back(k);
+        share += solver.eigenvectors().col(k).cwiseAbs2();
+    }
+    const auto unknown_at = [&](Eigen::Index i) -> const Unknown& { return calibration.unknowns[part[static_cast<std::size_t>(i)]]; };
+    std::vector<std::string> free;
+    for (Eigen::Index i = 0; i < n; ++i)
+        if (share[i] > nearly_all) free.push_back(unknown_at(i).name);
+    if (!free.empty())
+        result.findings.push_back(fmt::format("The targets say little of {}: nearly every value in the range does, {}.", fmt::join(free, " and "),
+                                              free.size() == static_cast<std::size_t>(n) ? "as long as the others follow" : "with others that go with it"));
+    for (const Eigen::Index k : open) {
+        const double deviation = std::sqrt(solver.eigenvalues()[k]);
         Eigen::VectorXd direction = solver.eigenvectors().col(k);
         Eigen::Index strongest = 0;
         direction.cwiseAbs().maxCoeff(&strongest);
         if (direction[strongest] < 0.0) direction = -direction;
         std::vector<std::string> names, changes;
         for (Eigen::Index i = 0; i < n; ++i) {
-            if (std::abs(direction[i]) < takes_part) continue;
-            const Unknown& unknown = calibration.unknowns[part[static_cast<std::size_t>(i)]];
-            names.push_back(unknown.name);
-            changes.push_back(change(unknown, deviation * direction[i]));
+            if (std::abs(direction[i]) < takes_part || share[i] > nearly_all) continue;
+            names.push_back(unknown_at(i).name);
+            changes.push_back(change(unknown_at(i), deviation * direction[i]));
         }
-        if (names.size() == 1)
-            result.findings.push_back(fmt::format("The targets say little of {}: {} changes none of them by more than its tolerance.", names.front(), changes.front()));
-        else
+        if (names.size() > 1)
             result.findings.push_back(fmt::format("The targets cannot tell {} apart: {} together change none of them by more than its tolerance.", fmt::join(names, ", "), fmt::join(changes, ", ")));
     }
 }

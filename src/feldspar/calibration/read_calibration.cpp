@@ -37,6 +37,8 @@ const std::vector<TargetKind> target_kinds{
     {"sigma1", Dimension::stress, 0.03},
 };
 
+double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+
 // Of a default range: what the rock's numbers say of a contact's.
 struct RangeRule {
     const char* key;
@@ -224,9 +226,10 @@ private:
         if (table.has("range")) read_range(table, unknown);
         else if (!unknown.times.empty() && ratio_rule(unknown.key)) std::tie(unknown.low, unknown.high) = *ratio_rule(unknown.key);
         else if (unknown.times.empty() && rule != rules.end() && std::isfinite(rule->low)) {
-            unknown.low = rule->low;
-            unknown.high = rule->high;
-            unknown.unit = unit_of(unknown.key);
+            const UserUnit unit = unit_of(unknown.key);
+            unknown.low = six_digits(rule->low / unit.in_SI);
+            unknown.high = six_digits(rule->high / unit.in_SI);
+            unknown.unit = unit.name;
         } else {
             table.fail("range", "is missing: neither the key nor the targets say what is usual", "range = [lowest, highest]");
         }
@@ -236,11 +239,16 @@ private:
         return unknown;
     }
 
-    static std::string unit_of(const std::string& key) {
-        if (key.ends_with(".E") || key.ends_with(".sigma_nt") || key.ends_with(".tau")) return "Pa";
-        if (key.ends_with(".Kn")) return "Pa/m";
-        if (key.ends_with(".Gfn") || key.ends_with(".Gfs")) return "N/m";
-        return {};
+    struct UserUnit {
+        const char* name;
+        double in_SI;
+    };
+    static UserUnit unit_of(const std::string& key) {
+        if (key.ends_with(".E")) return {"GPa", 1e9};
+        if (key.ends_with(".sigma_nt") || key.ends_with(".tau")) return {"MPa", 1e6};
+        if (key.ends_with(".Kn")) return {"GPa/m", 1e9};
+        if (key.ends_with(".Gfn") || key.ends_with(".Gfs")) return {"N/m", 1.0};
+        return {"", 1.0};
     }
 
     void read_range(const TableReader& table, Unknown& unknown) const {
@@ -277,12 +285,6 @@ Calibration parse_calibration(const std::string& text, const std::filesystem::pa
 Calibration read_calibration(const std::filesystem::path& file) { return parse_calibration(read_toml_file(file, "calibration"), file); }
 
 std::string Target::label() const { return name == "sigma1" ? fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6) : name; }
-
-namespace {
-
-double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
-
-}  // namespace
 
 double Unknown::value_at(double x) const {
     const double inside = std::clamp(x, 0.0, 1.0);

@@ -27,7 +27,7 @@ public:
             if (stop_after > 0 && requests_ > stop_after) throw Interrupted();
             std::set<std::pair<TestKind, double>> tests;
             std::vector<double>& own = values.emplace_back();
-            const Rock rock{request.values[0], request.values[1], request.values[2], request.values[3], request.values[4], request.values[5]};
+            const Rock rock{1e9 * request.values[0], 1e6 * request.values[1], request.values[2], request.values[3], request.values[4], request.values[5]};
             for (const std::size_t q : request.quantities) {
                 tests.insert({observables[q].test, observables[q].sigma3_Pa});
                 own.push_back(mean(rock, observables[q].name, request.elastic) * scatter(observables[q].name, request.seed) * noise(observables[q].name, request));
@@ -92,7 +92,7 @@ TEST_F(CalibrateRock, FindsWhatIsHiddenWithinItsBudget) {
         EXPECT_LE(result.runs, 300);
         std::vector<double> best;
         for (const UnknownOutcome& unknown : result.unknowns) best.push_back(unknown.best);
-        const Rock found{best[0], best[1], best[2], best[3], best[4], best[5]};
+        const Rock found{1e9 * best[0], 1e6 * best[1], best[2], best[3], best[4], best[5]};
         // the true means, without any packing: within the tolerances that a user gets, and half again for the scatter of ten packings
         EXPECT_NEAR(FormulaLaboratory::mean(found, "E") / FormulaLaboratory::mean(rock, "E"), 1.0, 0.01);
         EXPECT_NEAR(FormulaLaboratory::mean(found, "UCS") / FormulaLaboratory::mean(rock, "UCS"), 1.0, 0.045);

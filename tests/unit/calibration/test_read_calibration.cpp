@@ -29,18 +29,19 @@ TEST_F(ReadCalibration, RangesFollowFromTheRock) {
     ASSERT_EQ(calibration.unknowns.size(), 7u);
     const Unknown &Kn = calibration.unknowns[0], &E = calibration.unknowns[1], &sigma_nt = calibration.unknowns[2];
     EXPECT_TRUE(Kn.elastic);
-    EXPECT_LT(Kn.low, 18e13);   // Table 1's value lies inside
-    EXPECT_GT(Kn.high, 18e13);
-    EXPECT_DOUBLE_EQ(E.low, 20e9);
+    EXPECT_LT(Kn.low, 18e4);   // Table 1's value lies inside
+    EXPECT_GT(Kn.high, 18e4);
+    EXPECT_EQ(Kn.unit, "GPa/m");
+    EXPECT_DOUBLE_EQ(E.low, 20.0);
     EXPECT_FALSE(sigma_nt.elastic);
-    EXPECT_DOUBLE_EQ(sigma_nt.low, 4.5e6);
+    EXPECT_DOUBLE_EQ(sigma_nt.low, 4.5);
     EXPECT_EQ(calibration.targets[1].tolerance, 0.04 * 120e6);
     EXPECT_EQ(calibration.targets[2].tolerance, 1.5e6);
     EXPECT_DOUBLE_EQ(calibration.targets[3].value, 50.0);   // degrees
     EXPECT_EQ(calibration.seeds.size(), 20u);
     EXPECT_EQ(calibration.confirm_seeds.size(), 10u);
 
-    const Job job = calibration.job_with({18e13, 26e9, 8e6, 3.0, 0.4, 20.0, 40.0});
+    const Job job = calibration.job_with({18e4, 26.0, 8.0, 3.0, 0.4, 20.0, 40.0});
     EXPECT_DOUBLE_EQ(job.variants.front().contact.tau_Pa, 24e6);
     EXPECT_DOUBLE_EQ(job.variants.front().contact.Gfs_J_m2, 800.0);
     EXPECT_DOUBLE_EQ(job.variants.front().grain.E_Pa, 26e9);
