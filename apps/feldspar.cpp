@@ -5,7 +5,10 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "feldspar/output/results.hpp"
@@ -63,16 +66,22 @@ std::string version_text() {
     return fmt::format("feldspar {} ({}, {})", provenance.version, provenance.commit, provenance.compiler);
 }
 
+template <class Options>
+void add_thread_options(CLI::App& command, Options& options, const std::string& threads, const std::string& at_once) {
+    const auto add = [&](const char* flag, std::optional<int>& value, const std::string& what, const char* type) {
+        command.add_option(flag, value, what)->type_name(type)->check(CLI::Range(1, 256));
+    };
+    add("--threads", options.threads, "number of threads of the whole program (default: " + threads + ")", "N");
+    add("--at-once", options.at_once, "at most so many side by side (default: " + at_once + ")", "K");
+}
+
+constexpr const char* all_cores = "one for each core";
+constexpr const char* job_or_all_cores = "as the job says, else one for each core";
+constexpr const char* by_size = "as suits their size";
+
 void add_job_options(CLI::App& command, JobOptions& options) {
     command.add_option("job", options.job, "the job file")->required()->type_name("JOB.toml");
-    command.add_option("--threads", options.threads, "number of threads of the whole program (default: as the job says, else one for each core)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 256));
-    command.add_option("--at-once", options.at_once,
-                       "at most so many tests side by side (default: as the job says, else one for each thread, but large specimens one "
-                       "after the other)")
-        ->type_name("K")
-        ->check(CLI::Range(1, 256));
+    add_thread_options(command, options, job_or_all_cores, "as the job says, else one for each thread, but large specimens one after the other");
     command.add_option("--seed", options.seeds, "run all tests on this packing instead of the job's seeds; may be repeated")
         ->type_name("S")
         ->allow_extra_args(false)
@@ -122,132 +131,170 @@ void add_made_study_options(CLI::App& command, Options& options, const char* pac
     command.add_option("job", options.job, "the job file")->required()->type_name("JOB.toml");
     command.add_option("--seeds", options.packings, packings)->type_name("N")->check(CLI::Range(1, 1000));
     command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")->type_name("NAME")->allow_extra_args(false);
-    command.add_option("--threads", options.threads, "number of threads of the whole program (default: as the job says, else one for each core)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 256));
-    command.add_option("--at-once", options.at_once, "at most so many runs side by side (default: as suits their size)")->type_name("K")->check(CLI::Range(1, 256));
+    add_thread_options(command, options, job_or_all_cores, by_size);
 }
 
-int run_program(int argc, char** argv) {
-    CLI::App app("A laboratory for rock fracture with the flexible particle model.", "feldspar");
-    app.footer(examples);
-    app.require_subcommand(1);
-    app.set_version_flag("--version", version_text);
-    app.failure_message([](const CLI::App*, const CLI::Error& error) {
-        return fmt::format("feldspar: {}\n  'feldspar --help' shows the commands with examples\n", error.what());
+// The commands, each with what it does. What follows from the command line lives in the action, as long as it may be called.
+class CommandLine {
+public:
+    using Action = std::function<ExitCode()>;
+
+    explicit CommandLine(std::string text) : text_(std::move(text)) {
+        app_.footer(examples);
+        app_.require_subcommand(1);
+        app_.set_version_flag("--version", version_text);
+        app_.failure_message([](const CLI::App*, const CLI::Error& error) {
+            return fmt::format("feldspar: {}\n  'feldspar --help' shows the commands with examples\n", error.what());
+        });
+    }
+
+    CLI::App& add(const char* name, const char* what) { return *app_.add_subcommand(name, what); }
+
+    /// What a command does; of a command inside another before that of the other.
+    void does(CLI::App& command, Action action) { actions_.emplace_back(&command, std::move(action)); }
+
+    /// New options that know the whole command line, for provenance.
+    template <class Options>
+    std::shared_ptr<Options> options() const {
+        auto options = std::make_shared<Options>();
+        options->command_line = text_;
+        return options;
+    }
+
+    int run(int argc, char** argv) {
+        try {
+            app_.parse(argc, argv);
+        } catch (const CLI::ParseError& error) {
+            return app_.exit(error) == 0 ? static_cast<int>(ExitCode::success) : static_cast<int>(ExitCode::input);
+        }
+        for (const auto& [command, action] : actions_)
+            if (command->parsed()) return guarded(action);
+        return static_cast<int>(ExitCode::input);   // not reached: one command is required
+    }
+
+private:
+    CLI::App app_{"A laboratory for rock fracture with the flexible particle model.", "feldspar"};
+    std::string text_;   // the whole command line
+    std::vector<std::pair<CLI::App*, Action>> actions_;
+};
+
+void add_run(CommandLine& line) {
+    const auto options = line.options<RunOptions>();
+    CLI::App& command = line.add("run", "run all tests of a job");
+    add_job_options(command, *options);
+    command.add_option("--out", options->out, "a new directory for the results (default: results/<job>-<n>)")->type_name("DIR");
+    line.does(command, [options] { return run_command(*options); });
+}
+
+void add_check(CommandLine& line) {
+    const auto options = std::make_shared<JobOptions>();
+    CLI::App& command = line.add("check", "build everything, print counts, memory and expected time, and stop");
+    add_job_options(command, *options);
+    line.does(command, [options] { return check_command(*options); });
+}
+
+void add_study(CommandLine& line) {
+    const auto options = line.options<StudyOptions>();
+    CLI::App& command = line.add("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted");
+    command.require_subcommand(0, 1);
+    add_thread_options(command, *options, all_cores, by_size);
+    add_slurm_options(command, *options);
+    add_study_options(command, *options);
+    const auto inside = [&](const char* name, const char* what, ExitCode (*does)(const StudyOptions&)) -> CLI::App& {
+        CLI::App& own = *command.add_subcommand(name, what);
+        add_study_options(own, *options);
+        line.does(own, [options, does] {
+            if (options->study.empty()) throw InputError({}, "study: a study file is required", "feldspar study STUDY.toml");
+            return does(*options);
+        });
+        return own;
+    };
+    inside("status", "how much of the study is done", study_status_command);
+    inside("table", "print the study's points, or its runs, as CSV", study_table_command)
+        .add_flag("--runs", options->runs, "a row a run, in SI units, instead of a row a point");
+    inside("gather", "take what the elements of a job array have left into the ledger; STUDY.toml or its results' directory", study_gather_command);
+
+    const auto element = line.options<ElementOptions>();
+    CLI::App& element_command = *command.add_subcommand("element", "what an element of a job array runs")->group("");   // not the user's to call
+    element_command.add_option("plan", element->plan)->required();
+    element_command.add_option("group", element->group)->required();
+    line.does(element_command, [element] { return study_element_command(*element); });
+    line.does(command, [options] {
+        if (options->study.empty()) throw InputError({}, "study: a study file is required", "feldspar study STUDY.toml");
+        return study_command(*options);
     });
+}
 
-    RunOptions run;
-    run.command_line = joined(argc, argv);
-    CLI::App* run_app = app.add_subcommand("run", "run all tests of a job");
-    add_job_options(*run_app, run);
-    run_app->add_option("--out", run.out, "a new directory for the results (default: results/<job>-<n>)")->type_name("DIR");
-
-    JobOptions check;
-    CLI::App* check_app = app.add_subcommand("check", "build everything, print counts, memory and expected time, and stop");
-    add_job_options(*check_app, check);
-
-    StudyOptions study;
-    study.command_line = run.command_line;
-    CLI::App* study_app = app.add_subcommand("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted");
-    CLI::App* status_app = study_app->add_subcommand("status", "how much of the study is done");
-    CLI::App* table_app = study_app->add_subcommand("table", "print the study's points, or its runs, as CSV");
-    CLI::App* gather_app = study_app->add_subcommand("gather", "take what the elements of a job array have left into the ledger; STUDY.toml or its results' directory");
-    for (CLI::App* command : {study_app, status_app, table_app, gather_app}) add_study_options(*command, study);
-    add_slurm_options(*study_app, study);
-    ElementOptions element;
-    element.command_line = run.command_line;
-    CLI::App* element_app = study_app->add_subcommand("element", "what an element of a job array runs")->group("");   // not the user's to call
-    element_app->add_option("plan", element.plan)->required();
-    element_app->add_option("group", element.group)->required();
-    study_app->require_subcommand(0, 1);
-    study_app->add_option("--threads", study.threads, "number of threads of the whole program (default: one for each core)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 256));
-    study_app->add_option("--at-once", study.at_once, "at most so many runs side by side (default: as suits their size)")
-        ->type_name("K")
-        ->check(CLI::Range(1, 256));
-    table_app->add_flag("--runs", study.runs, "a row a run, in SI units, instead of a row a point");
-
-    CalibrateOptions calibrate;
-    calibrate.command_line = run.command_line;
-    CLI::App* calibrate_app = app.add_subcommand("calibrate", "laboratory numbers in, contact parameters out; goes on where it was interrupted");
-    calibrate_app->add_option("calibration", calibrate.calibration, "the file with targets and unknowns")->required()->type_name("TARGETS.toml");
-    calibrate_app->add_option("--results", calibrate.results, "directory of the ledger and the runs (default: as the file says)")->type_name("DIR");
-    calibrate_app->add_option("--budget", calibrate.budget, "at most so many runs (default: as the file says)")->type_name("N")->check(CLI::Range(20, 100'000));
-    calibrate_app->add_option("--threads", calibrate.threads, "number of threads of the whole program (default: one for each core)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 256));
-    calibrate_app->add_option("--at-once", calibrate.at_once, "at most so many runs side by side (default: as suits their size)")
-        ->type_name("K")
-        ->check(CLI::Range(1, 256));
-    calibrate_app->add_flag("--insist", calibrate.insist, "run even if the targets contradict each other");
-
-    EnvelopeCommandOptions envelope;
-    envelope.command_line = run.command_line;
-    CLI::App* envelope_app = app.add_subcommand("envelope", "strength envelope: UCS, biaxial series, DTS and BTS on several packings, with Mohr-Coulomb and Hoek-Brown");
-    add_made_study_options(*envelope_app, envelope, "number of packings (default: the job's seeds if there are several, else 5)");
-    envelope_app->add_option("--sigma3", envelope.sigma3, "confining stresses, such as \"2 MPa\" \"5 MPa\" (default: the job's biaxial tests, else 2.5, 5, 10 and 15 % of the expected strength)")
+void add_envelope(CommandLine& line) {
+    const auto options = line.options<EnvelopeCommandOptions>();
+    CLI::App& command = line.add("envelope", "strength envelope: UCS, biaxial series, DTS and BTS on several packings, with Mohr-Coulomb and Hoek-Brown");
+    add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 5)");
+    command.add_option("--sigma3", options->sigma3, "confining stresses, such as \"2 MPa\" \"5 MPa\" (default: the job's biaxial tests, else 2.5, 5, 10 and 15 % of the expected strength)")
         ->type_name("STRESS");
-    envelope_app->add_flag("--with-tension", envelope.with_tension, "the Hoek-Brown parabola goes through the direct tensile strengths too");
-    envelope_app->add_option("--results", envelope.results, "directory of the results (default: results/<job>-envelope); goes on with what is there")->type_name("DIR");
+    command.add_flag("--with-tension", options->with_tension, "the Hoek-Brown parabola goes through the direct tensile strengths too");
+    command.add_option("--results", options->results, "directory of the results (default: results/<job>-envelope); goes on with what is there")->type_name("DIR");
+    line.does(command, [options] { return envelope_command(*options); });
+}
 
-    ConvergeCommandOptions converge;
-    converge.command_line = run.command_line;
-    CLI::App* converge_app = app.add_subcommand("converge", "does the answer depend on grain size, specimen size, mesh, loading rate or the number of packings?");
-    add_made_study_options(*converge_app, converge, "number of packings (default: the job's seeds if there are several, else 3)");
-    converge_app->add_option("--test", converge.tests, "only the job's tests of this kind (default: uniaxial, direct tension and Brazilian); may be repeated")
+void add_converge(CommandLine& line) {
+    const auto options = line.options<ConvergeCommandOptions>();
+    CLI::App& command = line.add("converge", "does the answer depend on grain size, specimen size, mesh, loading rate or the number of packings?");
+    add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 3)");
+    command.add_option("--test", options->tests, "only the job's tests of this kind (default: uniaxial, direct tension and Brazilian); may be repeated")
         ->type_name("KIND")
         ->allow_extra_args(false);
-    converge_app->add_option("--within", converge.within, "a change that does not matter (default: 5 %)")->type_name("SHARE");
-    converge_app->add_option("--results", converge.results, "directory of the results (default: results/<job>-converge); goes on with what is there")->type_name("DIR");
+    command.add_option("--within", options->within, "a change that does not matter (default: 5 %)")->type_name("SHARE");
+    command.add_option("--results", options->results, "directory of the results (default: results/<job>-converge); goes on with what is there")->type_name("DIR");
+    line.does(command, [options] { return converge_command(*options); });
+}
 
+void add_claims(CommandLine& line) {
+    const auto options = std::make_shared<ClaimsOptions>();
+    CLI::App& command = line.add("claims", "hold claims about a model against what studies have found; runs nothing");
+    command.add_option("folder", options->folder, "the folder with claims.toml and the study files")->required()->type_name("FOLDER");
+    command.add_option("--results", options->results, "directory of the ledger (default: as the studies say)")->type_name("DIR");
+    command.add_option("--claim", options->claims, "only this claim, by its id; may be repeated")->type_name("ID")->allow_extra_args(false);
+    command.add_option("--csv", options->csv, "write every comparison to this file, too")->type_name("FILE");
+    command.add_option("--markdown", options->markdown, "write the verdicts and their numbers to this file, too")->type_name("FILE");
+    line.does(command, [options] { return claims_command(*options); });
+}
+
+void add_calibrate(CommandLine& line) {
+    const auto options = line.options<CalibrateOptions>();
+    CLI::App& command = line.add("calibrate", "laboratory numbers in, contact parameters out; goes on where it was interrupted");
+    command.add_option("calibration", options->calibration, "the file with targets and unknowns")->required()->type_name("TARGETS.toml");
+    command.add_option("--results", options->results, "directory of the ledger and the runs (default: as the file says)")->type_name("DIR");
+    command.add_option("--budget", options->budget, "at most so many runs (default: as the file says)")->type_name("N")->check(CLI::Range(20, 100'000));
+    add_thread_options(command, *options, all_cores, by_size);
+    command.add_flag("--insist", options->insist, "run even if the targets contradict each other");
+    line.does(command, [options] { return calibrate_command(*options); });
+}
+
+struct NewOptions {
     std::string kind;
     std::optional<std::string> file;
-    CLI::App* new_app = app.add_subcommand("new", "print a commented job to start from");
-    CLI::Option* kind_option =
-        new_app->add_option("kind", kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")
-            ->type_name("KIND");
-    CLI::Option* file_option = new_app->add_option("--out", file, "write it to this new file instead")->type_name("FILE");
     bool presets = false;
-    new_app->add_flag("--presets", presets, "print the materials that a job may name instead")
-        ->excludes(kind_option)
-        ->excludes(file_option);
+};
 
-    ClaimsOptions claims;
-    CLI::App* claims_app = app.add_subcommand("claims", "hold claims about a model against what studies have found; runs nothing");
-    claims_app->add_option("folder", claims.folder, "the folder with claims.toml and the study files")->required()->type_name("FOLDER");
-    claims_app->add_option("--results", claims.results, "directory of the ledger (default: as the studies say)")->type_name("DIR");
-    claims_app->add_option("--claim", claims.claims, "only this claim, by its id; may be repeated")->type_name("ID")->allow_extra_args(false);
-    claims_app->add_option("--csv", claims.csv, "write every comparison to this file, too")->type_name("FILE");
-    claims_app->add_option("--markdown", claims.markdown, "write the verdicts and their numbers to this file, too")->type_name("FILE");
-
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? static_cast<int>(ExitCode::success) : static_cast<int>(ExitCode::input);
-    }
-    return guarded([&] {
-        if (*run_app) return run_command(run);
-        if (*check_app) return check_command(check);
-        if (*claims_app) return claims_command(claims);
-        if (*element_app) return study_element_command(element);
-        if (*study_app && study.study.empty()) throw InputError({}, "study: a study file is required", "feldspar study STUDY.toml");
-        if (*status_app) return study_status_command(study);
-        if (*table_app) return study_table_command(study);
-        if (*gather_app) return study_gather_command(study);
-        if (*study_app) return study_command(study);
-        if (*calibrate_app) return calibrate_command(calibrate);
-        if (*envelope_app) return envelope_command(envelope);
-        if (*converge_app) return converge_command(converge);
-        if (presets) return presets_command();
-        if (kind.empty())
-            throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory");
-        return new_command(kind, file);
+void add_new(CommandLine& line) {
+    const auto options = std::make_shared<NewOptions>();
+    CLI::App& command = line.add("new", "print a commented job to start from");
+    CLI::Option* kind = command.add_option("kind", options->kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")->type_name("KIND");
+    CLI::Option* file = command.add_option("--out", options->file, "write it to this new file instead")->type_name("FILE");
+    command.add_flag("--presets", options->presets, "print the materials that a job may name instead")->excludes(kind)->excludes(file);
+    line.does(command, [options] {
+        if (options->presets) return presets_command();
+        if (options->kind.empty()) throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory");
+        return new_command(options->kind, options->file);
     });
 }
 
 }  // namespace
 }  // namespace feldspar
 
-int main(int argc, char** argv) { return feldspar::run_program(argc, argv); }
+int main(int argc, char** argv) {
+    using namespace feldspar;
+    CommandLine line(joined(argc, argv));
+    for (auto* add : {add_run, add_check, add_new, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
+    return line.run(argc, argv);
+}
