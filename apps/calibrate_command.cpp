@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/calibration/calibration_files.hpp"
+#include "feldspar/calibration/calibration_report.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 
@@ -40,7 +41,8 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     const RunDirectory directory = RunDirectory::open(calibration.results);
     directory.write_text("calibration.json", calibration_json(calibration, result, control.provenance));
     directory.write_text("calibrated.toml", calibrated_job(calibration, result));
-    fmt::print("\n{}\nJob with the best set: {}\n", calibration_text(result), (calibration.results / "calibrated.toml").string());
+    write_calibration_report(calibration, result, control.provenance, calibration_page(calibration));
+    fmt::print("\n{}\nJob with the best set: {}\nReport: {}\n", calibration_text(result), (calibration.results / "calibrated.toml").string(), calibration_page(calibration).string());
     return ExitCode::success;
 }
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/calibration/calibration_files.hpp"
 #include "feldspar/calibration/insight.hpp"
 #include "feldspar/calibration/search.hpp"
 
@@ -42,6 +43,7 @@ public:
             result.complete = false;
         }
         result.runs = laboratory_.used();
+        result.way = way_;
         return result;
     }
 
@@ -246,24 +248,30 @@ private:
         std::vector<std::string> words;
         for (const std::size_t u : part) {
             const Unknown& unknown = calibration_.unknowns[u];
-            words.push_back(fmt::format("{} = {:.4g} {}", unknown.name, unknown.value_at(best_[u]), unknown.unit));
-            while (words.back().back() == ' ') words.back().pop_back();
+            words.push_back(unknown.name + " = " + unknown_text(unknown, unknown.value_at(best_[u])));
         }
         return fmt::format("{}", fmt::join(words, ", "));
     }
 
-    void tell(const Learner& learner, const std::vector<std::size_t>& part) const {
+    // Says where it stands, and keeps that.
+    void tell(const Learner& learner, const std::vector<std::size_t>& part) {
         std::vector<double> x;
         for (const std::size_t u : part) x.push_back(best_[u]);
         const Prediction prediction = learner.at(x);
-        double worst = 0.0;
-        std::string which;
+        double worst = 0.0, doubt = 0.0;
+        std::string which, doubtful;
         for (std::size_t t = 0; t < learner.targets().size(); ++t) {
             const double off = std::abs(prediction.values[t] - learner.targets()[t].value) / learner.targets()[t].tolerance;
+            const double doubt_here = prediction.deviations[t] / learner.targets()[t].tolerance;
+            if (doubt_here >= doubt) {
+                doubt = doubt_here;
+                doubtful = learner.targets()[t].label();
+            }
             if (off < worst) continue;
             worst = off;
             which = learner.targets()[t].label();
         }
+        way_.push_back({laboratory_.used(), &part == &elastic_, worst, which, doubt, doubtful, values_at(best_)});
         note(fmt::format("{} runs; best so far {}; farthest from its target: {}, {:.2g} times its tolerance", laboratory_.used(), set_text(part), which, worst));
     }
 
@@ -300,7 +308,7 @@ private:
             outcome.at_an_end = best_[u] < 0.01 || best_[u] > 0.99;
             result.unknowns.push_back(outcome);
         }
-        result.sensitivity.assign(result.targets.size(), std::vector<double>(calibration_.unknowns.size(), 0.0));
+        result.sensitivity.assign(result.targets.size(), std::vector<double>(calibration_.unknowns.size(), std::nan("")));
         if (elastic_learner_) look_into(*elastic_learner_, calibration_, elastic_, best_, result);
         if (strength_learner_) look_into(*strength_learner_, calibration_, strength_, best_, result);
         result.job = calibration_.job_with(values_at(best_));
@@ -320,6 +328,7 @@ private:
     std::vector<std::size_t> elastic_, strength_;   // unknowns
     std::vector<double> middle_, best_;             // of all unknowns, 0 ... 1
     std::optional<Learner> elastic_learner_, strength_learner_;
+    std::vector<WayPoint> way_;
     std::size_t turn_ = 0;                          // of the packings
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,7 +21,8 @@ struct TargetOutcome {
     double deviation = 0.0;       ///< standard deviation of that
     MeanInterval confirmed;       ///< on fresh packings; for values that follow from several strengths by the jackknife
     bool met = false;             ///< confirmed within the tolerance
-    double lowest = 0.0, highest = 0.0;   ///< what the ranges allow while all other targets are met; not-a-number if they never are
+    /// What the ranges allow while all other targets are met; not-a-number if they never are.
+    double lowest = std::numeric_limits<double>::quiet_NaN(), highest = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What became of an unknown.
@@ -32,11 +34,25 @@ struct UnknownOutcome {
     bool at_an_end = false;         ///< of its range: a wider one may serve better
 };
 
+/// Where a calibration stood when it had learned from so many runs.
+struct WayPoint {
+    int runs = 0;
+    bool elastic = false;       ///< while the elastic constants were sought: only E and nu are looked at
+    double farthest = 0.0;      ///< how far the farthest target is predicted from what is wanted, in its tolerances
+    std::string target;         ///< which one that is
+    double doubt = 0.0;         ///< the largest standard deviation of a prediction, in tolerances
+    std::string doubtful;       ///< of which target
+    std::vector<double> best;   ///< of all unknowns, in their units
+};
+
 struct CalibrationResult {
     std::vector<UnknownOutcome> unknowns;
     std::vector<TargetOutcome> targets;
-    std::vector<std::vector<double>> sensitivity;   ///< [target][unknown]: relative change of the one over relative change of the other, at the best set
+    /// [target][unknown]: relative change of the one over relative change of the other, at the best set; not-a-number where it was not looked
+    /// at: elastic unknowns are found by E and nu alone.
+    std::vector<std::vector<double>> sensitivity;
     std::vector<std::string> findings;              ///< in words: what cannot be told apart, what cannot be had together, what lies at an end
+    std::vector<WayPoint> way;                      ///< one for each time that something was learned
     Job job;                                        ///< the base job with the best set: ready to run
     int runs = 0;                                   ///< used, confirmation included, those that were done before too
     bool complete = false;                          ///< false: interrupted

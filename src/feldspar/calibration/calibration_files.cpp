@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -14,32 +15,35 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-bool is_stress(const Target& target) {
-    for (const char* name : {"UCS", "DTS", "BTS", "cohesion", "sigma_ci", "sigma1"})
-        if (target.name == name) return true;
-    return false;
-}
-
 std::string with_unit(double value, const std::string& unit) { return unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit); }
 
-std::string range_text(double low, double high, const std::string& unit) {
-    return std::isfinite(low) && std::isfinite(high) ? fmt::format("{:.4g} ... {}", low, with_unit(high, unit)) : "-";
+std::string range_text(const Unknown& unknown, double low, double high) {
+    if (!std::isfinite(low) || !std::isfinite(high)) return "-";
+    return fmt::format("{:.4g} ... {}", low, unknown_text(unknown, high));
 }
 
 }  // namespace
 
+UserQuantity user_quantity(const Target& target) {
+    if (target.name == "sigma1") return user_quantity(fmt::format("sigma1_at_sigma3_{:g}MPa_Pa", target.sigma3_Pa / 1e6));
+    if (target.name == "sigma_ci") return user_quantity("sigma_ci_crack_count_Pa");
+    return user_quantity(property_of_laboratory(target.name));
+}
+
+std::string unit_word(const Unknown& unknown) { return unknown.unit.substr(std::min(unknown.unit.size(), unknown.unit.find_first_not_of(' '))); }
+
 std::string target_text(const Target& target, double value) {
     if (!std::isfinite(value)) return "-";
-    if (target.name == "E") return fmt::format("{:.4g} GPa", value / 1e9);
-    if (is_stress(target)) return fmt::format("{:.4g} MPa", value / 1e6);
-    if (target.name == "friction_angle") return fmt::format("{:.4g} deg", value);
-    return fmt::format("{:.4g}", value);
+    const UserQuantity quantity = user_quantity(target);
+    return with_unit(value * quantity.factor, quantity.unit);
 }
+
+std::string unknown_text(const Unknown& unknown, double value) { return std::isfinite(value) ? with_unit(value, unit_word(unknown)) : "-"; }
 
 std::string calibration_text(const CalibrationResult& result) {
     std::vector<Row> unknowns{{"unknown", "best", "as good (90 %)", "range"}};
     for (const UnknownOutcome& u : result.unknowns)
-        unknowns.push_back({u.unknown.name, with_unit(u.best, u.unknown.unit), range_text(u.low, u.high, u.unknown.unit), range_text(u.unknown.low, u.unknown.high, u.unknown.unit)});
+        unknowns.push_back({u.unknown.name, unknown_text(u.unknown, u.best), range_text(u.unknown, u.low, u.high), range_text(u.unknown, u.unknown.low, u.unknown.high)});
     std::vector<Row> targets{{"target", "wanted", "tolerance", "predicted", "confirmed", "95 % interval", "packings", ""}};
     for (const TargetOutcome& t : result.targets)
         targets.push_back({t.target.label(), target_text(t.target, t.target.value), "± " + target_text(t.target, t.target.tolerance),
@@ -70,6 +74,12 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
                                    {"reachable_low", number(outcome.lowest)}, {"reachable_high", number(outcome.highest)}, {"sensitivity", sensitivity}});
     }
     json["findings"] = result.findings;
+    json["way"] = Json::array();
+    for (const WayPoint& point : result.way) {
+        Json best = Json::object();
+        for (std::size_t u = 0; u < point.best.size(); ++u) best[calibration.unknowns[u].name] = number(point.best[u]);
+        json["way"].push_back({{"runs", point.runs}, {"elastic", point.elastic}, {"farthest", number(point.farthest)}, {"target", point.target}, {"doubt", number(point.doubt)}, {"doubtful", point.doubtful}, {"best", best}});
+    }
     json["seeds"] = calibration.seeds;
     json["confirm_seeds"] = calibration.confirm_seeds;
     json["provenance"] = {{"version", provenance.version}, {"commit", provenance.commit}, {"machine", provenance.machine}, {"started", provenance.started},

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "feldspar/calibration/calibrate.hpp"
+#include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
 
@@ -18,5 +19,14 @@ std::string calibrated_job(const Calibration& calibration, const CalibrationResu
 
 /// "25.8 GPa" of a target, with the unit that a user reads.
 std::string target_text(const Target& target, double value);
+
+/// What a target is called and measured in.
+UserQuantity user_quantity(const Target& target);
+
+/// "8.8 MPa" of an unknown, given in its own unit; "-" for not-a-number.
+std::string unknown_text(const Unknown& unknown, double value);
+
+/// The unit of an unknown without the blank that may precede it.
+std::string unit_word(const Unknown& unknown);
 
 }  // namespace feldspar

@@ -159,8 +159,8 @@ void find_conflicts(const WeighedSets& sets, const Learner& learner, Calibration
         }
         reachable[t] = least <= 1.0;
         if (TargetOutcome* outcome = outcome_of(t)) {
-            outcome->lowest = lowest;
-            outcome->highest = highest;
+            outcome->lowest = std::fmin(outcome->lowest, lowest);   // E and nu hang on the unknowns of both parts
+            outcome->highest = std::fmax(outcome->highest, highest);
         }
         if (!reachable[t]) result.findings.push_back(fmt::format("{} cannot be reached anywhere in the ranges, whatever the other targets.", targets[t].label()));
     }

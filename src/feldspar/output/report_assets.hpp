@@ -14,6 +14,7 @@ extern const char* const asset_report_js;   ///< tables and the page as a whole
 extern const char* const asset_envelope_js;  ///< strength envelopes (study/envelope_files.cpp)
 extern const char* const asset_converge_js;  ///< convergence (study/converge_files.cpp)
 extern const char* const asset_study_js;     ///< points of a study (study/study_report.cpp)
+extern const char* const asset_calibration_js;   ///< calibration (calibration/calibration_report.cpp)
 extern const char* const asset_uPlot_iife_min_js;
 extern const char* const asset_uPlot_min_css;
 

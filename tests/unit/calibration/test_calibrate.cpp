@@ -4,11 +4,16 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "calibration_files.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/calibration/calibrate.hpp"
+#include "feldspar/calibration/calibration_files.hpp"
+#include "feldspar/calibration/calibration_report.hpp"
 
 namespace feldspar {
 namespace {
@@ -148,6 +153,84 @@ TEST_F(CalibrateRock, AnInterruptionIsSaid) {
 TEST_F(CalibrateRock, TooFewRunsAreRefused) {
     FormulaLaboratory laboratory;
     EXPECT_THROW((void)calibrate(read(targets_of(rocks[0]), 60), laboratory, {}), InputError);
+}
+
+// The data that a page holds.
+nlohmann::json data_of(const std::string& page) {
+    const std::string open = "<script type=\"application/json\" id=\"data\">";
+    const std::size_t from = page.find(open) + open.size();
+    return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
+TEST_F(CalibrateRock, ItsPageHoldsWhatWasLearned) {
+    const Calibration calibration = read("# no </script> here\n" + targets_of(rocks[0]));
+    FormulaLaboratory laboratory;
+    const CalibrationResult result = calibrate(calibration, laboratory, {});
+    const std::filesystem::path file = calibration.file.parent_path() / "page.html";
+    write_calibration_report(calibration, result, collect_provenance("feldspar calibrate targets.toml", 4), file);
+    std::ifstream stream(file);
+    std::stringstream text;
+    text << stream.rdbuf();
+    const std::string page = text.str();
+    EXPECT_NE(page.find("no \\u003c/script> here"), std::string::npos);
+    EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));   // nothing to be fetched
+    EXPECT_EQ(page.find("=\"http"), std::string::npos);
+    EXPECT_EQ(page.find("{{"), std::string::npos);                     // every mark is filled in
+    EXPECT_NE(page.find("\"calibrated.toml\""), std::string::npos);
+
+    const nlohmann::json data = data_of(page);
+    EXPECT_EQ(data["runs"], result.runs);
+    ASSERT_EQ(data["targets"].size(), 5u);
+    EXPECT_EQ(data["targets"][0]["unit"], "GPa");
+    EXPECT_NEAR(data["targets"][0]["wanted"].get<double>(), 23.5, 1e-6);
+    EXPECT_EQ(data["targets"][4]["unit"], "deg");
+    ASSERT_EQ(data["unknowns"].size(), 6u);
+    EXPECT_EQ(data["unknowns"][1]["unit"], "MPa");
+    EXPECT_NEAR(data["unknowns"][1]["best"].get<double>(), result.unknowns[1].best, 1e-4);
+    EXPECT_GE(data["unknowns"][1]["at"][1], 0.0);
+    EXPECT_LE(data["unknowns"][1]["at"][1], 1.0);
+    EXPECT_EQ(data["findings"].size(), result.findings.size());
+
+    // sensitivities by closed form: DTS goes with sigma_nt, E with that of the grains; what was not looked at is no number
+    EXPECT_NEAR(data["sensitivity"][0][0].get<double>(), 1.0, 0.05);
+    EXPECT_NEAR(data["sensitivity"][2][1].get<double>(), 1.0, 0.15);
+    EXPECT_TRUE(data["sensitivity"][0][1].is_null());
+    EXPECT_TRUE(data["sensitivity"][1][0].is_null());
+}
+
+TEST_F(CalibrateRock, KeepsTheWayThere) {
+    const Calibration calibration = read(targets_of(rocks[0]));
+    FormulaLaboratory laboratory;
+    const CalibrationResult result = calibrate(calibration, laboratory, {});
+    ASSERT_GE(result.way.size(), 2u);
+    EXPECT_TRUE(result.way.front().elastic);
+    for (std::size_t i = 1; i < result.way.size(); ++i) {
+        EXPECT_FALSE(result.way[i].elastic);
+        EXPECT_GT(result.way[i].runs, result.way[i - 1].runs);
+        EXPECT_GE(result.way[i].farthest, 0.0);
+        EXPECT_FALSE(result.way[i].target.empty());
+        EXPECT_GT(result.way[i].doubt, 0.0);
+        EXPECT_FALSE(result.way[i].doubtful.empty());
+    }
+    EXPECT_LT(result.way.back().runs, result.runs);   // then it was confirmed
+    ASSERT_EQ(result.way.back().best.size(), result.unknowns.size());
+    for (std::size_t u = 0; u < result.unknowns.size(); ++u) EXPECT_EQ(result.way.back().best[u], result.unknowns[u].best);
+    const nlohmann::json json = nlohmann::json::parse(calibration_json(calibration, result, {}));
+    EXPECT_EQ(json["way"].size(), result.way.size());
+    EXPECT_EQ(json["way"].back()["best"]["mu"], result.unknowns[3].best);
+}
+
+TEST_F(CalibrateRock, ReadsInUnitsOfTheLaboratory) {
+    const Calibration calibration = read(targets_of(rocks[0]));
+    EXPECT_EQ(target_text(calibration.targets[0], 23.5e9), "23.5 GPa");
+    EXPECT_EQ(target_text(calibration.targets[4], 46.0), "46 deg");
+    EXPECT_EQ(unknown_text(calibration.unknowns[0], 25.0), "25 GPa");
+    EXPECT_EQ(unknown_text(calibration.unknowns[1], 9.04), "9.04 MPa");
+    EXPECT_EQ(unknown_text(calibration.unknowns[2], 3.4), "3.4");
+    EXPECT_EQ(unknown_text(calibration.unknowns[1], std::nan("")), "-");
+    Unknown written = calibration.unknowns[1];
+    written.unit = " MPa";   // as it is read from "9 MPa"
+    EXPECT_EQ(unknown_text(written, 9.0), "9 MPa");
 }
 
 }  // namespace

@@ -87,7 +87,8 @@ function writeState(missing, failures) {
       failures.map((f) => h("tr", {}, failures.some((g) => g.point) ? td(f.point) : null, td(kindText(f.test, f.sigma3_MPa), false, "kind"), td(String(f.seed), true), td(f.reason))))));
 }
 
-function writeSource(p, job) {
+/** @param more  further names and values */
+function writeSource(p, job, more = []) {
   const list = h("dl", {}), add = (name, value) => list.append(h("dt", {}, name), h("dd", {}, value));
   page.append(h("h2", {}, "Provenance"), list);
   add("Program", "Feldspar " + p.version + ", commit " + p.commit);
@@ -95,4 +96,5 @@ function writeSource(p, job) {
   if (p.started) add("Written", p.started.replace("T", " ").replace("Z", " UTC"));
   if (p.machine) add("Machine", p.machine + "; " + plural(p.threads, "thread"));
   if (job) { add("Job file", job.file); add("Packings", "seeds " + job.seeds.join(", ")); }
+  for (const [name, value] of more) add(name, value);
 }
