@@ -75,5 +75,14 @@ TEST_F(ReadCalibration, MistakesAreSaid) {
     EXPECT_NE(mistake("[targets]\nUCS = { value = \"1 MPa\", tolerance = \"1 %\", standard_deviation = \"1 MPa\" }\n" + mu).problem().find("beside"), std::string::npos);
 }
 
+TEST(ExamplesOfCalibrations, Read) {
+    for (const char* name : {"augig.toml", "transjurane.toml"}) {
+        const Calibration calibration = read_calibration(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples/calibration" / name);
+        EXPECT_EQ(calibration.targets.size(), 6u) << name;
+        EXPECT_TRUE(contradictions(calibration.targets).empty()) << name;
+        EXPECT_EQ(observables_for(calibration).size(), 5u) << name;   // E, nu, UCS, BTS and a confined strength
+    }
+}
+
 }  // namespace
 }  // namespace feldspar
