@@ -17,6 +17,12 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 std::string with_unit(double value, const std::string& unit) { return unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit); }
 
+// A mean that is less sure than its tolerance may have met it by luck.
+std::string verdict_on(const TargetOutcome& t) {
+    if (!t.met) return "not met";
+    return t.confirmed.half_width() <= t.target.tolerance ? "met" : "met, but the mean is less sure than that";
+}
+
 std::string range_text(const Unknown& unknown, double low, double high) {
     if (!std::isfinite(low) || !std::isfinite(high)) return "-";
     return fmt::format("{:.4g} ... {}", low, unknown_text(unknown, high));
@@ -48,7 +54,7 @@ std::string calibration_text(const CalibrationResult& result) {
     for (const TargetOutcome& t : result.targets)
         targets.push_back({t.target.label(), target_text(t.target, t.target.value), "± " + target_text(t.target, t.target.tolerance),
                            target_text(t.target, t.predicted) + " ± " + target_text(t.target, t.deviation), target_text(t.target, t.confirmed.mean),
-                           "± " + target_text(t.target, t.confirmed.half_width()), std::to_string(t.confirmed.count), t.met ? "met" : "not met"});
+                           "± " + target_text(t.target, t.confirmed.half_width()), std::to_string(t.confirmed.count), verdict_on(t)});
     std::string text = aligned(unknowns, 1) + "\n" + aligned(targets, 1);
     if (!result.findings.empty()) text += "\n";
     for (const std::string& finding : result.findings) text += finding + "\n";
