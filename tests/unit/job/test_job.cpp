@@ -7,6 +7,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/job/toml_reader.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "../../table7.hpp"
 #include "sample_job.hpp"
@@ -317,12 +318,13 @@ TEST(Examples, AreJobs) {
          std::filesystem::recursive_directory_iterator(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples")) {
         if (entry.path().extension() != ".toml") continue;
         SCOPED_TRACE(entry.path().filename().string());
+        if (parse_toml(read_toml_file(entry.path(), "job"), entry.path().string()).contains("targets")) continue;   // a calibration: tests/unit/calibration
         ++found;
         Job job;
         ASSERT_NO_THROW(job = read_job(entry.path()));
         expect_round_trip(job.text);
     }
-    EXPECT_GE(found, 2);
+    EXPECT_GE(found, 5);
 }
 
 TEST(Examples, TheAugigGraniteIsTable7) {
