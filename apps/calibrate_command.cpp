@@ -20,12 +20,10 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
         throw InputError({options.calibration, 0, 0, "targets"}, "the targets contradict each other, so no run was made", "targets of one rock, or --insist to see how near one can come");
 
     Ledger ledger(calibration.results, Ledger::Access::write);
-    Job job;
-    job.threads = options.threads.value_or(0);
     Progress progress;
     progress.keep_log_short();
     ExecuteControl control;
-    control.threads = thread_count(job);
+    control.threads = thread_count(options.threads.value_or(0));
     control.at_once = options.at_once.value_or(0);
     control.keep = Keep::numbers;
     control.stop = &stop_requested();

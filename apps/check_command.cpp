@@ -140,7 +140,7 @@ private:
 ExitCode check_command(const JobOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
-    const int threads = thread_count(job);
+    const int threads = thread_count(job.threads);
     fmt::print("Job {} is sound: {} runs of {} tests{}, {} thread{}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
                job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", threads, threads == 1 ? "" : "s");
     Check(job, threads).run();

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "commands.hpp"
 #include "feldspar/study/claims.hpp"
+#include "feldspar/study/report_json.hpp"
 
 namespace feldspar {
 namespace {
@@ -20,20 +20,6 @@ std::vector<Claim> chosen(const ClaimList& list, const std::vector<std::string>&
     return claims;
 }
 
-/// Written aside and renamed, so that an earlier file stays whole.
-void write(const std::string& file, const std::string& text) {
-    const std::string aside = file + ".part";
-    std::ofstream stream(aside, std::ios::binary);
-    stream << text;
-    stream.close();
-    std::error_code failed;
-    if (stream) std::filesystem::rename(aside, file, failed);
-    if (!stream || failed) {
-        std::filesystem::remove(aside, failed);
-        throw OutputError(file + " cannot be written");
-    }
-}
-
 }  // namespace
 
 ExitCode claims_command(const ClaimsOptions& options) {
@@ -46,8 +32,8 @@ ExitCode claims_command(const ClaimsOptions& options) {
     std::vector<ClaimResult> results;
     for (const Claim& claim : claims) results.push_back(evaluate(claim, studies));
     fmt::print("{}", claims_text(results));
-    if (options.csv) write(*options.csv, claims_csv(results));
-    if (options.markdown) write(*options.markdown, claims_markdown(list, results));
+    if (options.csv) write_beside(*options.csv, claims_csv(results));
+    if (options.markdown) write_beside(*options.markdown, claims_markdown(list, results));
     return ExitCode::success;
 }
 

@@ -135,8 +135,8 @@ ExitCode presets_command();
 /// Reads the job and applies the command line to it.
 Job job_with_options(const JobOptions& options);
 
-/// The number of threads to use: as the job says, or one for each core that the program may use. Warns on stderr when there are
+/// The number of threads to use: as wanted, or, with 0, one for each core that the program may use. Warns on stderr when there are
 /// fewer cores.
-int thread_count(const Job& job);
+int thread_count(int wanted);
 
 }  // namespace feldspar

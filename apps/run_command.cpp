@@ -59,7 +59,7 @@ void check_space(const std::optional<std::string>& out, const Job& job, const st
 class Campaign {
 public:
     Campaign(const Job& job, const RunOptions& options)
-        : job_(job), runs_(planned_runs(job)), specimens_(job), threads_(thread_count(job)), sharing_(job.at_once, threads_) {
+        : job_(job), runs_(planned_runs(job)), specimens_(job), threads_(thread_count(job.threads)), sharing_(job.at_once, threads_) {
         RunDirectory::check(options.out, job.name);
         check_space(options.out, job, runs_);
         provenance_ = collect_provenance(options.command_line, threads_);
@@ -311,13 +311,12 @@ Job job_with_options(const JobOptions& options) {
     return job;
 }
 
-int thread_count(const Job& job) {
+int thread_count(int wanted) {
     const int cores = usable_cores();
-    if (job.threads == 0) return cores;
-    if (job.threads > cores)
-        fmt::print(stderr, "warning: {} threads on {} core{} will wait for each other\n", job.threads, cores,
-                   cores == 1 ? "" : "s");
-    return job.threads;
+    if (wanted == 0) return cores;
+    if (wanted > cores)
+        fmt::print(stderr, "warning: {} threads on {} core{} will wait for each other\n", wanted, cores, cores == 1 ? "" : "s");
+    return wanted;
 }
 
 ExitCode run_command(const RunOptions& options) {

@@ -25,7 +25,6 @@ public:
         for (const RunRecord& record : ledger.find(ids)) ended_ += record.state == RunState::done;
         first_ = ended_;
         progress_.keep_log_short();
-        progress_.keep_log_short();
     }
 
     int runs() const { return static_cast<int>(numbers_.size()); }

@@ -11,16 +11,6 @@
 #include "running_study.hpp"
 
 namespace feldspar {
-namespace {
-
-int threads_for(const StudyOptions& options) {
-    Job job;
-    job.threads = options.threads.value_or(0);
-    return thread_count(job);
-}
-
-}  // namespace
-
 Study study_with_options(const StudyOptions& options) {
     Study study = read_study(options.study);
     if (options.results) study.results = *options.results;
@@ -32,7 +22,7 @@ ExitCode study_command(const StudyOptions& options) {
     const Study study = study_with_options(options);
     if (options.on == "slurm") return study_on_slurm(study, options);
     Ledger ledger(study.results, Ledger::Access::write);
-    const Execution execution = run_study(study, ledger, {threads_for(options), options.at_once.value_or(0), options.command_line});
+    const Execution execution = run_study(study, ledger, {thread_count(options.threads.value_or(0)), options.at_once.value_or(0), options.command_line});
 
     const std::vector<PointResults> points = point_results(study, ledger);
     write_study_report(study, points, study_page(study));

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -19,29 +18,6 @@
 
 namespace feldspar {
 namespace {
-
-std::string number(double value) {
-    if (!std::isfinite(value)) return "-";
-    const double size = std::abs(value);
-    return size >= 99.95   ? fmt::format("{:.1f}", value)
-           : size >= 9.995 ? fmt::format("{:.2f}", value)
-                           : fmt::format("{:.3f}", value);
-}
-
-// Words broken into lines of about a hundred characters, each behind the indent.
-std::string wrapped(const std::string& text, const std::string& indent) {
-    constexpr std::size_t longest = 110;
-    std::string result, line;
-    std::istringstream words(text);
-    for (std::string word; words >> word;) {
-        if (!line.empty() && indent.size() + line.size() + 1 + word.size() > longest) {
-            result += indent + line + "\n";
-            line.clear();
-        }
-        line += (line.empty() ? "" : " ") + word;
-    }
-    return result + indent + line + "\n";
-}
 
 // A property as a row: strengths under confinement carry their sigma_3 in their name and come last, by sigma_3.
 struct Entry {
@@ -68,7 +44,7 @@ std::string cracks_text(const TestResult& result) {
 
 // What stops a number from being the strength: nothing, or a word behind it.
 std::string peak_text(const TestResult& result) {
-    const std::string value = number(result.properties.peak_stress_Pa / 1e6);
+    const std::string value = table_number(result.properties.peak_stress_Pa / 1e6);
     return result.properties.peak_reached ? value : "> " + value;
 }
 
@@ -87,8 +63,8 @@ std::string median_and_range(const PropertySummary& properties, const std::strin
     if (found == properties.values.end()) return "-";
     const PropertyStatistics& s = found->second;
     const double factor = user_quantity(property).factor;
-    if (s.seeds.size() < 2) return number(s.median * factor);
-    return fmt::format("{} ({}..{})", number(s.median * factor), number(s.minimum * factor), number(s.maximum * factor));
+    if (s.seeds.size() < 2) return table_number(s.median * factor);
+    return fmt::format("{} ({}..{})", table_number(s.median * factor), table_number(s.minimum * factor), table_number(s.maximum * factor));
 }
 
 std::string compared_table(const Job& job, const std::vector<VariantSummary>& summaries) {
@@ -108,7 +84,7 @@ std::string compared_table(const Job& job, const std::vector<VariantSummary>& su
     for (const std::string& property : present) {
         const auto known = std::find_if(job.laboratory.begin(), job.laboratory.end(),
                                         [&](const auto& entry) { return property_of_laboratory(entry.first) == property; });
-        laboratory.push_back(known == job.laboratory.end() ? "" : number(laboratory_in_user_units(known->first, known->second)));
+        laboratory.push_back(known == job.laboratory.end() ? "" : table_number(laboratory_in_user_units(known->first, known->second)));
     }
     if (!job.laboratory.empty()) rows.push_back(laboratory);
     return aligned(rows, 1) + "median (minimum..maximum) over the packings; strengths are positive magnitudes\n";
@@ -127,7 +103,7 @@ std::string cost_table(const std::vector<VariantSummary>& summaries) {
         rows.push_back({summary.variant->name});
         for (TestKind kind : kinds) {
             const auto own = summary.ms_per_step.find(kind), first = summaries.front().ms_per_step.find(kind);
-            std::string cell = own == summary.ms_per_step.end() ? "-" : number(own->second);
+            std::string cell = own == summary.ms_per_step.end() ? "-" : table_number(own->second);
             if (own != summary.ms_per_step.end() && first != summaries.front().ms_per_step.end())
                 cell += fmt::format(" ({:.2f} x)", own->second / first->second);
             rows.back().push_back(cell);
@@ -159,15 +135,15 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
         const PropertyStatistics& s = properties.values.at(property);
         Row row{quantity.label,
                 quantity.unit,
-                number(s.median * quantity.factor),
-                number(s.minimum * quantity.factor),
-                number(s.maximum * quantity.factor),
+                table_number(s.median * quantity.factor),
+                table_number(s.minimum * quantity.factor),
+                table_number(s.maximum * quantity.factor),
                 std::to_string(s.seeds.size()),
                 "",
                 ""};
         if (const auto found = laboratory_name.find(property); found != laboratory_name.end()) {
             const double measured = laboratory_in_user_units(found->second, job.laboratory.at(found->second));
-            row[6] = number(measured);
+            row[6] = table_number(measured);
             if (measured != 0.0) row[7] = fmt::format("{:+.1f} %", 100.0 * (s.median * quantity.factor / measured - 1.0));
         }
         rows.push_back(std::move(row));
@@ -176,7 +152,7 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
     const ModelSpec& model = job.variants.front().model;
     text += fmt::format("median, minimum, maximum over n packings; {}strengths are positive magnitudes\n",
                         model.kind == GrainKind::flexible ? fmt::format("plane {}; ", name(model.plane)) : "");
-    if (!properties.envelope_method.empty()) text += wrapped(properties.envelope_method, "");
+    if (!properties.envelope_method.empty()) text += wrapped_text(properties.envelope_method);
     return text;
 }
 
@@ -194,7 +170,7 @@ std::string test_table(std::span<const TestResult> results) {
         return text + "the verdicts in words are in the report\n";
     for (const TestResult& r : results) {
         text += fmt::format("\n{}, seed {}{}\n", title(r.test), r.seed, r.interrupted ? " (interrupted)" : "");
-        text += wrapped(r.evidence.verdict, "  ");
+        text += wrapped_text(r.evidence.verdict, "  ");
     }
     return text;
 }

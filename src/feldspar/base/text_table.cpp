@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 namespace feldspar {
 
@@ -26,6 +28,26 @@ std::string aligned(const std::vector<Row>& rows, std::size_t left) {
     text += std::string(total, '-') + "\n";
     for (std::size_t r = 1; r < rows.size(); ++r) line(rows[r]);
     return text;
+}
+
+std::string table_number(double value) {
+    if (!std::isfinite(value)) return "-";
+    const double size = std::abs(value);
+    return size >= 99.95 ? fmt::format("{:.1f}", value) : size >= 9.995 ? fmt::format("{:.2f}", value) : fmt::format("{:.3f}", value);
+}
+
+std::string wrapped_text(const std::string& text, const std::string& indent) {
+    constexpr std::size_t longest = 110;
+    std::string result, line;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (!line.empty() && indent.size() + line.size() + 1 + word.size() > longest) {
+            result += indent + line + "\n";
+            line.clear();
+        }
+        line += (line.empty() ? "" : " ") + word;
+    }
+    return result + indent + line + "\n";
 }
 
 }  // namespace feldspar

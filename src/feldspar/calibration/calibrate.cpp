@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <set>
 
@@ -23,13 +24,18 @@ constexpr std::size_t most_elastic_rounds = 4;
 constexpr double good_share = 0.5;                    // of a tolerance: how near the prediction, and how small the doubt about it, is to be
 constexpr double test_share = 0.3;                    // a test is worth a run where the doubt it removes is this share of a tolerance
 
+std::vector<std::size_t> numbers_below(std::size_t count) {
+    std::vector<std::size_t> numbers(count);
+    std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+    return numbers;
+}
+
 class Calibrate {
 public:
     Calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note)
         : calibration_(calibration), laboratory_(laboratory), note_(note), quantities_(observables_for(calibration)) {
         for (std::size_t u = 0; u < calibration.unknowns.size(); ++u) (calibration.unknowns[u].elastic ? elastic_ : strength_).push_back(u);
-        middle_.assign(calibration.unknowns.size(), 0.5);
-        best_ = middle_;
+        best_.assign(calibration.unknowns.size(), 0.5);
     }
 
     CalibrationResult operator()() {
@@ -63,6 +69,12 @@ private:
         std::vector<double> all = best_;
         for (std::size_t i = 0; i < part.size(); ++i) all[part[i]] = x[i];
         return all;
+    }
+
+    std::vector<double> best_of(const std::vector<std::size_t>& part) const {
+        std::vector<double> x;
+        for (const std::size_t u : part) x.push_back(best_[u]);
+        return x;
     }
 
     std::uint64_t next_seed() { return calibration_.seeds[turn_++ % calibration_.seeds.size()]; }
@@ -101,8 +113,7 @@ private:
 
     void see_elastic(const std::vector<std::vector<double>>& points) {
         std::vector<Request> requests;
-        std::vector<std::size_t> all;
-        for (std::size_t q = 0; q < elastic_learner_->quantities().size(); ++q) all.push_back(q);
+        const std::vector<std::size_t> all = numbers_below(elastic_learner_->quantities().size());
         for (const auto& x : points) requests.push_back({values_at(whole(elastic_, x)), next_seed(), all, true});
         see(requests, points, *elastic_learner_);
     }
@@ -110,8 +121,7 @@ private:
     // E and nu at half of the strength are not those before damage: aims the elastic constants so that the former meet the targets.
     void correct_elastic() {
         if (!elastic_learner_ || !strength_learner_) return;
-        std::vector<double> x_elastic;
-        for (const std::size_t u : elastic_) x_elastic.push_back(best_[u]);
+        const std::vector<double> x_elastic = best_of(elastic_);
         const std::vector<Belief> before = elastic_learner_->beliefs(x_elastic);
         const std::vector<Belief> at_half = strength_learner_->beliefs(best_point(*strength_learner_, strength_.size()));
         std::vector<Target> aims = elastic_learner_->targets();
@@ -147,8 +157,7 @@ private:
     void find_strength() {
         strength_learner_.emplace(quantities_, calibration_.targets);
         Learner& learner = *strength_learner_;
-        std::vector<std::size_t> all;
-        for (std::size_t q = 0; q < quantities_.size(); ++q) all.push_back(q);
+        const std::vector<std::size_t> all = numbers_below(quantities_.size());
         const std::size_t tests = static_cast<std::size_t>(confirmation_runs()) / calibration_.confirm_seeds.size();
         const int for_learning = runs_left() - confirmation_runs();
         const std::size_t affordable = static_cast<std::size_t>(std::max(0, for_learning / 2)) / tests;
@@ -255,8 +264,7 @@ private:
 
     // Says where it stands, and keeps that.
     void tell(const Learner& learner, const std::vector<std::size_t>& part) {
-        std::vector<double> x;
-        for (const std::size_t u : part) x.push_back(best_[u]);
+        const std::vector<double> x = best_of(part);
         const Prediction prediction = learner.at(x);
         double worst = 0.0, doubt = 0.0;
         std::string which, doubtful;
@@ -276,9 +284,8 @@ private:
     }
 
     CalibrationResult confirm() {
-        note(fmt::format("confirming on {} fresh packings: {}", calibration_.confirm_seeds.size(), set_text(all_unknowns())));
-        std::vector<std::size_t> all;
-        for (std::size_t q = 0; q < quantities_.size(); ++q) all.push_back(q);
+        note(fmt::format("confirming on {} fresh packings: {}", calibration_.confirm_seeds.size(), set_text(numbers_below(calibration_.unknowns.size()))));
+        const std::vector<std::size_t> all = numbers_below(quantities_.size());
         std::vector<Request> requests;
         for (const std::uint64_t seed : calibration_.confirm_seeds) requests.push_back({values_at(best_), seed, all});
         const auto by_packing = laboratory_.see(requests, quantities_);
@@ -289,8 +296,7 @@ private:
         CalibrationResult result;
         const Learner* learner = strength_learner_ ? &*strength_learner_ : &*elastic_learner_;
         const std::vector<std::size_t>& part = strength_learner_ ? strength_ : elastic_;
-        std::vector<double> x;
-        for (const std::size_t u : part) x.push_back(best_[u]);
+        const std::vector<double> x = best_of(part);
         const Prediction prediction = learner->at(x);
         for (std::size_t t = 0; t < learner->targets().size(); ++t) {
             TargetOutcome outcome;
@@ -315,18 +321,12 @@ private:
         return result;
     }
 
-    std::vector<std::size_t> all_unknowns() const {
-        std::vector<std::size_t> all;
-        for (std::size_t u = 0; u < calibration_.unknowns.size(); ++u) all.push_back(u);
-        return all;
-    }
-
     const Calibration& calibration_;
     Laboratory& laboratory_;
     const std::function<void(const std::string&)>& note_;
     std::vector<Observable> quantities_;
     std::vector<std::size_t> elastic_, strength_;   // unknowns
-    std::vector<double> middle_, best_;             // of all unknowns, 0 ... 1
+    std::vector<double> best_;                      // of all unknowns, 0 ... 1
     std::optional<Learner> elastic_learner_, strength_learner_;
     std::vector<WayPoint> way_;
     std::size_t turn_ = 0;                          // of the packings

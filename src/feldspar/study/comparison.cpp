@@ -16,10 +16,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_packings = 100000;
 constexpr long long most_subsets = 2000;
 
-double student_quantile(double degrees_of_freedom) {
-    return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
-}
-
 /// Interval and chance of a change of `mean` with this standard error.
 void judge(Change& change, double standard_error, double degrees_of_freedom) {
     if (!(standard_error > 0.0)) {   // the packings agree to the last digit

@@ -9,7 +9,6 @@
 #include "feldspar/study/converge.hpp"
 #include "feldspar/study/report_json.hpp"
 #include "feldspar/study/study_table.hpp"
-#include "feldspar/study/words.hpp"
 
 namespace feldspar {
 

@@ -11,7 +11,6 @@
 #include "feldspar/study/envelope.hpp"
 #include "feldspar/study/report_json.hpp"
 #include "feldspar/study/study_table.hpp"
-#include "feldspar/study/words.hpp"
 
 namespace feldspar {
 
@@ -134,9 +133,8 @@ Json envelope_json(const PointResults& point, bool with_tension) {
 }
 
 /// The laboratory's points and what its line needs.
-Json laboratory_json(const Job& job) {
-    Json json = Json::object();
-    for (const auto& [key, value] : job.laboratory) json[user_quantity(property_of_laboratory(key)).name] = json_number(laboratory_in_user_units(key, value));
+Json laboratory_with_points(const Job& job) {
+    Json json = laboratory_json(job);
     json["confined"] = Json::array();
     for (const ConfinedStrength& c : job.laboratory_confined) json["confined"].push_back({json_number(c.sigma3_Pa * MPa), json_number(c.sigma1_Pa * MPa)});
     return json;
@@ -151,7 +149,7 @@ Json whole_json(const Study& study, std::span<const PointResults> points, bool w
             {"signs", "compression positive; strengths are positive magnitudes"},
             {"missing", missing_runs(points)},
             {"envelopes", envelopes},
-            {"laboratory", laboratory_json(job)},
+            {"laboratory", laboratory_with_points(job)},
             {"failures", failures_json(points)},
             {"provenance", provenance_json(provenance)}};
 }

@@ -11,13 +11,13 @@
 #include <set>
 
 #include "feldspar/lab/strength_envelope.hpp"
+#include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
 
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double MPa = 1e-6;   // times Pa
 
 using BySeed = std::map<std::uint64_t, double>;
 

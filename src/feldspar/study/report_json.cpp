@@ -39,6 +39,12 @@ Json failures_json(std::span<const PointResults> points) {
     return list;
 }
 
+Json laboratory_json(const Job& job) {
+    Json json = Json::object();
+    for (const auto& [key, value] : job.laboratory) json[user_quantity(property_of_laboratory(key)).name] = json_number(laboratory_in_user_units(key, value));
+    return json;
+}
+
 Json provenance_json(const Provenance& provenance) {
     return {{"version", provenance.version}, {"commit", provenance.commit},   {"machine", provenance.machine},           {"compiler", provenance.compiler},
             {"started", provenance.started}, {"threads", provenance.threads}, {"command_line", provenance.command_line}};

@@ -29,6 +29,9 @@ Json grades_json(std::span<const TestResult> results);
 /// [{point, test, sigma3_MPa, seed, reason}].
 Json failures_json(std::span<const PointResults> points);
 
+/// The laboratory's numbers of the job, by their names in user units.
+Json laboratory_json(const Job& job);
+
 Json provenance_json(const Provenance& provenance);
 
 /// "rigid, 2, 33.1 N/m"; "" without axes.

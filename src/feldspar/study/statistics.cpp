@@ -6,6 +6,8 @@
 
 namespace feldspar {
 
+double student_quantile(double degrees_of_freedom) { return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975); }
+
 MeanInterval mean_interval(std::span<const double> values) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const int count = static_cast<int>(values.size());
@@ -18,8 +20,7 @@ MeanInterval mean_interval(std::span<const double> values) {
     double squares = 0.0;
     for (const double value : values) squares += (value - result.mean) * (value - result.mean);
     result.standard_deviation = std::sqrt(squares / (count - 1));
-    const double quantile = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
-    const double half = quantile * result.standard_deviation / std::sqrt(static_cast<double>(count));
+    const double half = student_quantile(count - 1) * result.standard_deviation / std::sqrt(static_cast<double>(count));
     result.low = result.mean - half;
     result.high = result.mean + half;
     return result;

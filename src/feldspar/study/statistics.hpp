@@ -9,6 +9,9 @@
 
 namespace feldspar {
 
+/// How many standard errors an interval of 95 % reaches to each side. @param degrees_of_freedom  above 0
+double student_quantile(double degrees_of_freedom);
+
 /// The mean of a sample and its 95 % interval by Student's distribution. Without two values the interval is not-a-number.
 struct MeanInterval {
     int count = 0;

@@ -39,13 +39,6 @@ Json point_json(const PointResults& point, const std::vector<std::string>& prope
     return json;
 }
 
-/// The laboratory's numbers of the job, by their names in user units.
-Json laboratory_json(const Job& job) {
-    Json json = Json::object();
-    for (const auto& [key, value] : job.laboratory) json[user_quantity(property_of_laboratory(key)).name] = json_number(laboratory_in_user_units(key, value));
-    return json;
-}
-
 }  // namespace
 
 void write_study_report(const Study& study, std::span<const PointResults> points, const std::filesystem::path& file) {
