@@ -11,55 +11,17 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "../temporary_folder.hpp"
+
 namespace feldspar::testing_program {
 
 namespace fs = std::filesystem;
-
-inline std::string read_text(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void write_text(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
-
-/// An empty directory that goes away with the object.
-class Workplace {
-public:
-    Workplace() {
-        std::string name = (fs::temp_directory_path() / "feldspar-robustness-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
-        path_ = name;
-    }
-    Workplace(const Workplace&) = delete;
-    Workplace& operator=(const Workplace&) = delete;
-    ~Workplace() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-
-    const fs::path& path() const { return path_; }
-    fs::path operator/(const std::string& name) const { return path_ / name; }
-
-    /// Everything in it, by relative path.
-    std::set<std::string> entries() const {
-        std::set<std::string> names;
-        for (const auto& entry : fs::recursive_directory_iterator(path_))
-            names.insert(fs::relative(entry.path(), path_).generic_string());
-        return names;
-    }
-
-private:
-    fs::path path_;
-};
 
 struct Outcome {
     int code = -1;  ///< exit code; 128 + signal when a signal ended it
@@ -121,7 +83,7 @@ public:
     }
 
 private:
-    Workplace outputs_;
+    TemporaryFolder outputs_;
     pid_t child_ = -1;
 };
 

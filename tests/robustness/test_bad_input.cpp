@@ -58,7 +58,7 @@ std::vector<BadJob> bad_jobs() {
 
 void expect_refused(const std::string& command, const BadJob& bad) {
     SCOPED_TRACE(std::string(bad.what) + ", " + command);
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", bad.text);
     const Outcome outcome = run_program(place.path(), {command, "job.toml"});
     EXPECT_EQ(outcome.code, 2) << outcome.err;
@@ -80,7 +80,7 @@ TEST(BadInput, IsOneMessageAndNoFile) {
 }
 
 TEST(BadInput, DamagedPacking) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", replaced(small_job(), "thickness = \"80 mm\"", "packing = \"packing.txt\""));
     write_text(place / "packing.txt", "this is not a packing\n");
     const Outcome outcome = run_program(place.path(), {"run", "job.toml"});
@@ -90,7 +90,7 @@ TEST(BadInput, DamagedPacking) {
 }
 
 TEST(BadInput, JobsThatCannotBeRead) {
-    const Workplace place;
+    const TemporaryFolder place;
     fs::create_directory(place / "folder");
     for (const char* job : {"none-such.toml", "folder", "folder/none-such.toml", "", "none\nsuch"}) {
         SCOPED_TRACE(job);

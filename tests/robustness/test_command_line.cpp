@@ -7,7 +7,7 @@ namespace feldspar::testing_program {
 namespace {
 
 TEST(CommandLine, HelpAndVersion) {
-    const Workplace place;
+    const TemporaryFolder place;
     const Outcome help = run_program(place.path(), {"--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
@@ -20,7 +20,7 @@ TEST(CommandLine, HelpAndVersion) {
 }
 
 TEST(CommandLine, RefusesWhatItDoesNotKnow) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
     const std::vector<std::vector<std::string>> cases{{},
                                                       {"walk"},
@@ -60,7 +60,7 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
 }
 
 TEST(CommandLine, SaysHowManyTestsAtOnceAreAllowed) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
     const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--at-once", "300"});
     for (const char* part : {"--at-once", "300", "1", "256"}) EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
@@ -73,7 +73,7 @@ TEST(CommandLine, SaysHowManyTestsAtOnceAreAllowed) {
 }
 
 TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {
-    const Workplace place;
+    const TemporaryFolder place;
     for (const char* kind : {"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory"}) {
         const Outcome printed = run_program(place.path(), {"new", kind});
         EXPECT_EQ(printed.code, 0);
@@ -94,7 +94,7 @@ TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {
 }
 
 TEST(CommandLine, PrintsThePresets) {
-    const Workplace place;
+    const TemporaryFolder place;
     const Outcome printed = run_program(place.path(), {"new", "--presets"});
     EXPECT_EQ(printed.code, 0);
     for (const char* part : {"augig-inner-particles", "augig-table7", "Table 2", "1.08e4 GPa/m"})
@@ -109,7 +109,7 @@ std::string job_of_two_variants() {
 }
 
 TEST(CommandLine, ChecksEachVariantOnce) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", job_of_two_variants());
     const Outcome outcome = run_program(place.path(), {"check", "job.toml"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -119,7 +119,7 @@ TEST(CommandLine, ChecksEachVariantOnce) {
 }
 
 TEST(CommandLine, RunsVariantsPackingByPacking) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", job_of_two_variants());
     const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "out"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -137,7 +137,7 @@ TEST(CommandLine, RunsVariantsPackingByPacking) {
 }
 
 TEST(CommandLine, CheckPrintsAndWritesNothing) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml",
                small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"brazilian\"\n", "[1, 2]"));
     const Outcome outcome = run_program(place.path(), {"check", "job.toml"});
@@ -148,7 +148,7 @@ TEST(CommandLine, CheckPrintsAndWritesNothing) {
 }
 
 TEST(CommandLine, ARunLeavesItsResults) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = "
                                              "\"4 MPa\"\nseeds = [2]\n[[test]]\nkind = \"brazilian\"\nseeds = [2]\n",
                                              "[1, 2]"));
@@ -195,7 +195,7 @@ TEST(CommandLine, ARunLeavesItsResults) {
 }
 
 TEST(CommandLine, AnExistingDirectoryIsRefused) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
     fs::create_directory(place / "kept");
     write_text(place / "kept/summary.json", "mine\n");

@@ -19,7 +19,7 @@ void expect_interrupted(const Outcome& outcome, const fs::path& results) {
 
 TEST(Interruption, CtrlCDuringTheLoading) {
     for (int signal_number : {SIGINT, SIGTERM}) {
-        const Workplace place;
+        const TemporaryFolder place;
         write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2]", slow));
         Program program(place.path(), {"run", "job.toml", "--out", "results"});
         ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; }))
@@ -31,7 +31,7 @@ TEST(Interruption, CtrlCDuringTheLoading) {
 }
 
 TEST(Interruption, FinishedTestsAreKept) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n",
                                              "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20]"));
     Program program(place.path(), {"run", "job.toml", "--out", "results"});
@@ -48,7 +48,7 @@ TEST(Interruption, AtAnyMomentIsClean) {
     // also while specimens are made, or during the elastic start: then there may be no directory, but never half a one
     for (int delay_ms : {20, 60, 100, 150, 250}) {
         SCOPED_TRACE(delay_ms);
-        const Workplace place;
+        const TemporaryFolder place;
         write_text(place / "job.toml", replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", slow),
                                                 "kind = \"paper\"\nspeed = \"1e-12 m\"", "accuracy = \"0.05 %\""));
         Program program(place.path(), {"run", "job.toml", "--out", "results"});
@@ -63,7 +63,7 @@ TEST(Interruption, AtAnyMomentIsClean) {
 }
 
 TEST(Interruption, IgnoredHangUpsStayIgnored) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", slow));
     Program program(place.path(), {"run", "job.toml", "--out", "results"}, [] { signal(SIGHUP, SIG_IGN); });
     ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; }))

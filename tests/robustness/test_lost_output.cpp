@@ -15,7 +15,7 @@ const std::string many_seeds =
     "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30]";
 
 TEST(LostOutput, ADirectoryThatCannotBeMadeIsFoundBeforeTheRun) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
     write_text(place / "file", "a file\n");
     for (const char* out : {"file/results", "/proc/feldspar-results", "/dev/null/results"}) {
@@ -46,7 +46,7 @@ void expect_whole_results(const fs::path& results) {
 }
 
 TEST(LostOutput, AFileThatMayNotGrowEndsTheRunWithFour) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
     const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "results"}, [] {
         const rlimit limit{20000, 20000};  // bytes: the job fits, the histories and fields do not
@@ -60,7 +60,7 @@ TEST(LostOutput, AFileThatMayNotGrowEndsTheRunWithFour) {
 }
 
 TEST(LostOutput, ADirectoryThatVanishesEndsTheRunWithFour) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", many_seeds));
     Program program(place.path(), {"run", "job.toml", "--out", "results"});
     ASSERT_TRUE(program.wait_until([&] { return fs::exists(place / "results/summary.json"); })) << program.err_so_far();
@@ -102,7 +102,7 @@ private:
 };
 
 TEST(LostOutput, AFullDiskEndsTheRunWithFourAndKeepsWhatWasFinished) {
-    const Workplace place;
+    const TemporaryFolder place;
     const SmallDisk disk(place / "disk");
     if (!disk.mounted()) GTEST_SKIP() << "cannot mount a small disk: " << disk.reason();
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", many_seeds));
@@ -117,7 +117,7 @@ TEST(LostOutput, AFullDiskEndsTheRunWithFourAndKeepsWhatWasFinished) {
 }
 
 TEST(LostOutput, ADiskTooSmallForTheJobIsFoundBeforeTheRun) {
-    const Workplace place;
+    const TemporaryFolder place;
     const SmallDisk disk(place / "disk");
     if (!disk.mounted()) GTEST_SKIP() << "cannot mount a small disk: " << disk.reason();
     disk.fill();

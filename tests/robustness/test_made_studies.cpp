@@ -11,7 +11,7 @@ const std::string fast = "kind = \"adaptive\"\naccuracy = \"10 %\"\n";
 std::string laboratory() { return "[laboratory]\nUCS = \"120 MPa\"\nconfined = [[\"4 MPa\", \"150 MPa\"]]\n"; }
 
 TEST(Envelope, RunsSavesAndGoesOn) {
-    const Workplace place;
+    const TemporaryFolder place;
     // seven grains wide: with four, a confined specimen may never reach a peak
     const std::string job = replaced(replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", fast), "\"7 mm\"", "\"4 mm\""), "\"11 mm\"", "\"7 mm\"");
     write_text(place / "job.toml", job + laboratory());
@@ -40,7 +40,7 @@ TEST(Envelope, RunsSavesAndGoesOn) {
 }
 
 TEST(Envelope, RefusesWhatItCannotDo) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{"--sigma3", "5 mm"}, {"--sigma3", "0 MPa"}, {"--seeds", "0"}, {"--variant", "rigid"}}) {
         std::vector<std::string> command{"envelope", "job.toml"};
@@ -53,7 +53,7 @@ TEST(Envelope, RefusesWhatItCannotDo) {
 }
 
 TEST(Converge, RunsAndJudges) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", replaced(replaced(small_job("[[test]]\nkind = \"direct-tension\"\n", "[1]", fast), "\"7 mm\"", "\"5 mm\""), "\"11 mm\"", "\"5.3 mm\""));
     const Outcome outcome = run_program(place.path(), {"converge", "job.toml", "--seeds", "2"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;

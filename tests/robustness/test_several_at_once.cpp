@@ -25,7 +25,7 @@ std::string numbers_of(const fs::path& results) {
 }
 
 TEST(SeveralAtOnce, GiveTheBytesOfOneAfterTheOther) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job(three_tests, "[1, 2]"));   // tests of very different length: they end in another order
     ASSERT_EQ(run_program(place.path(), {"run", "job.toml", "--out", "one", "--threads", "1"}).code, 0);
     const std::vector<std::pair<const char*, const char*>> others{{"2", "1"}, {"2", "2"}};
@@ -50,7 +50,7 @@ TEST(SeveralAtOnce, GiveTheBytesOfOneAfterTheOther) {
 }
 
 TEST(SeveralAtOnce, StopTogetherAndKeepWhatTheyHave) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2, 3]", "kind = \"paper\"\nspeed = \"1e-12 m\"\n"));
     Program program(place.path(), {"run", "job.toml", "--out", "results", "--threads", "2", "--at-once", "2"});
     const auto loads = [&](const char* test) { return program.err_so_far().find(std::string(test) + ": loading") != std::string::npos; };
@@ -75,7 +75,7 @@ TEST(SeveralAtOnce, StopTogetherAndKeepWhatTheyHave) {
 
 // A specimen that is crushed before it is sheared, between two that are well.
 TEST(SeveralAtOnce, AFailureKeepsWhatTheOthersFind) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = \"5000 "
                                              "MPa\"\n[[test]]\nkind = \"direct-tension\"\n",
                                              "[1, 2]"));

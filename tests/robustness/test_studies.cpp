@@ -22,13 +22,13 @@ values = ["8 MPa", "9 MPa"]
 )";
 constexpr int runs_of_two_axes = 24;
 
-void write_study(const Workplace& place) {
+void write_study(const TemporaryFolder& place) {
     write_text(place / "job.toml", small_job());
     write_text(place / "study.toml", two_axes);
 }
 
 /// The numbers of every run that is done, but for those that tell of time.
-std::map<std::string, std::string> finished(const Workplace& place) {
+std::map<std::string, std::string> finished(const TemporaryFolder& place) {
     std::map<std::string, std::string> runs;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(place / "results/study/runs", error)) {
@@ -47,7 +47,7 @@ int done_now(const Outcome& outcome) {
 }
 
 TEST(Studies, KilledInTheMiddleOneFinishesWithExactlyTheMissingRuns) {
-    const Workplace killed, whole;
+    const TemporaryFolder killed, whole;
     write_study(killed);
     write_study(whole);
     Program program(killed.path(), {"study", "study.toml", "--threads", "2"});
@@ -67,7 +67,7 @@ TEST(Studies, KilledInTheMiddleOneFinishesWithExactlyTheMissingRuns) {
 }
 
 TEST(Studies, TwoAtOnceShareALedger) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_study(place);
     Program first(place.path(), {"study", "study.toml", "--threads", "1"}), second(place.path(), {"study", "study.toml", "--threads", "1"});
     const Outcome one = first.finish(), other = second.finish();
@@ -79,7 +79,7 @@ TEST(Studies, TwoAtOnceShareALedger) {
 }
 
 TEST(Studies, CtrlCLeavesTheRestToTheNextTime) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_study(place);
     Program program(place.path(), {"study", "study.toml", "--threads", "1"});
     ASSERT_TRUE(program.wait_until([&] { return !finished(place).empty(); })) << program.err_so_far();
@@ -92,7 +92,7 @@ TEST(Studies, CtrlCLeavesTheRestToTheNextTime) {
 }
 
 TEST(Studies, TablesAndStatusWithoutALedger) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_study(place);
     const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
     EXPECT_EQ(status.code, 0);
@@ -104,7 +104,7 @@ TEST(Studies, TablesAndStatusWithoutALedger) {
 }
 
 TEST(Studies, AMistakeLeavesNoFile) {
-    const Workplace place;
+    const TemporaryFolder place;
     write_study(place);
     write_text(place / "study.toml", replaced(two_axes, "sigma_nt\"\nvalues", "sigma_tn\"\nvalues"));
     const Outcome outcome = run_program(place.path(), {"study", "study.toml"});

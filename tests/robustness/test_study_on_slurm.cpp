@@ -81,7 +81,7 @@ public:
     }
 
 private:
-    Workplace place_;
+    TemporaryFolder place_;
 };
 
 // The records below a directory of results, by id, without what differs from machine to machine.

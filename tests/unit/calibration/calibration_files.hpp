@@ -1,13 +1,9 @@
-// A job and a calibration of it, in a directory that goes away.
+// A job and a calibration of it, in a folder that goes away.
 #pragma once
 
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
 #include <string>
 
-#include <stdlib.h>
-
+#include "../../temporary_folder.hpp"
 #include "feldspar/calibration/calibration.hpp"
 
 namespace feldspar {
@@ -51,25 +47,12 @@ key = "material.contact.Gfs"
 times = "material.contact.Gfn"
 )";
 
-class CalibrationFolder {
+/// With the job in it.
+class CalibrationFolder : public TemporaryFolder {
 public:
-    CalibrationFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "feldspar-calibration-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
-        path_ = name;
-        std::ofstream(path_ / "rock.toml", std::ios::binary) << rock_job;
-    }
-    CalibrationFolder(const CalibrationFolder&) = delete;
-    CalibrationFolder& operator=(const CalibrationFolder&) = delete;
-    ~CalibrationFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
+    CalibrationFolder() { write("rock.toml", rock_job); }
 
-    Calibration read(const std::string& text) const { return parse_calibration("job = \"rock.toml\"\n" + text, path_ / "targets.toml"); }
-
-private:
-    std::filesystem::path path_;
+    Calibration read(const std::string& text) const { return parse_calibration("job = \"rock.toml\"\n" + text, path() / "targets.toml"); }
 };
 
 }  // namespace feldspar

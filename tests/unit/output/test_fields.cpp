@@ -10,7 +10,7 @@
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/vtu_grid.hpp"
-#include "scratch_directory.hpp"
+#include "../../temporary_folder.hpp"
 #include "synthetic_result.hpp"
 
 namespace feldspar {
@@ -20,7 +20,7 @@ using namespace testing;
 
 class Fields : public ::testing::Test {
 protected:
-    ScratchDirectory scratch;
+    TemporaryFolder scratch;
     RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
     TestResult result = make_result();
 };
@@ -76,9 +76,9 @@ TEST_F(Fields, ArchiveReadsBack) {
 
 TEST_F(Fields, ArchiveOfTheSameResultsHasTheSameBytes) {
     write_hdf5(directory, result, make_job(), make_provenance());
-    const std::string before = read_file(directory.path() / "uniaxial-compression-s3.h5");
+    const std::string before = read_text(directory.path() / "uniaxial-compression-s3.h5");
     write_hdf5(directory, result, make_job(), make_provenance());
-    EXPECT_EQ(read_file(directory.path() / "uniaxial-compression-s3.h5"), before);
+    EXPECT_EQ(read_text(directory.path() / "uniaxial-compression-s3.h5"), before);
 }
 
 TEST_F(Fields, ArchiveOfATestWithoutAnythingIsWhole) {
@@ -131,7 +131,7 @@ std::vector<Number> vtu_array(const std::string& file, const std::string& name) 
 TEST_F(Fields, VtuReadsBack) {
     write_vtu(directory, result);
     const auto folder = directory.path() / "uniaxial-compression-s3-vtu";
-    const std::string grains = read_file(folder / "grains-001.vtu");
+    const std::string grains = read_text(folder / "grains-001.vtu");
     const GrainMesh& mesh = result.specimen->mesh;
     const Snapshot& snapshot = result.snapshots[1];
     const auto points = vtu_array<double>(grains, "Points");
@@ -150,7 +150,7 @@ TEST_F(Fields, VtuReadsBack) {
     EXPECT_GE(major, vtu_array<float>(grains, "sigma_3_MPa")[3]);
     EXPECT_GE(major, static_cast<float>(snapshot.stress_yy_Pa[3] * 1e-6));
 
-    const std::string cracks = read_file(folder / "cracks-002.vtu");
+    const std::string cracks = read_text(folder / "cracks-002.vtu");
     EXPECT_EQ(vtu_array<std::int32_t>(cracks, "mode"), (std::vector<std::int32_t>{0, 1}));
     EXPECT_EQ(vtu_array<std::int64_t>(cracks, "step"), (std::vector<std::int64_t>{550, 800}));
     EXPECT_EQ(vtu_array<float>(cracks, "opening_m").size(), 2U);
@@ -160,7 +160,7 @@ TEST_F(Fields, VtuReadsBack) {
 
 TEST_F(Fields, CollectionNamesEveryFileAtGrowingTimes) {
     write_vtu(directory, result);
-    const std::string collection = read_file(directory.path() / "uniaxial-compression-s3.pvd");
+    const std::string collection = read_text(directory.path() / "uniaxial-compression-s3.pvd");
     double before = -1.0;
     int entries = 0;
     for (std::size_t at = collection.find("<DataSet"); at != std::string::npos;
@@ -179,7 +179,7 @@ TEST_F(Fields, CollectionNamesEveryFileAtGrowingTimes) {
 TEST_F(Fields, TimesThatDoNotGrowBecomeNumbers) {
     result.snapshots[2].axial_strain = result.snapshots[1].axial_strain;
     write_vtu(directory, result);
-    const std::string collection = read_file(directory.path() / "uniaxial-compression-s3.pvd");
+    const std::string collection = read_text(directory.path() / "uniaxial-compression-s3.pvd");
     EXPECT_NE(collection.find("timestep=\"2\""), std::string::npos);
     EXPECT_NE(collection.find("timestep = number of the snapshot"), std::string::npos);
 }

@@ -9,7 +9,7 @@
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/variant_summary.hpp"
-#include "scratch_directory.hpp"
+#include "../../temporary_folder.hpp"
 #include "synthetic_result.hpp"
 
 namespace feldspar {
@@ -40,7 +40,7 @@ std::vector<std::uint8_t> from_base64(const std::string& text) {
 
 class Report : public ::testing::Test {
 protected:
-    ScratchDirectory scratch;
+    TemporaryFolder scratch;
     RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
     Job job = make_job();
     std::vector<TestResult> results = {make_result(), make_result(TestKind::uniaxial_compression, 4),
@@ -48,7 +48,7 @@ protected:
 
     std::string page(bool complete = true) {
         write_report(directory, job, results, make_properties(), make_provenance(), complete);
-        return read_file(directory.path() / "report.html");
+        return read_text(directory.path() / "report.html");
     }
 };
 

@@ -9,15 +9,12 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/results.hpp"
-#include "scratch_directory.hpp"
+#include "../../temporary_folder.hpp"
 
 namespace feldspar {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::count_entries;
-using testing::read_file;
-using testing::ScratchDirectory;
 
 /// The message of the InputError that `action` throws; empty if none.
 template <class Action>
@@ -41,14 +38,14 @@ int in_child(Action action) {
 }
 
 TEST(RunDirectory, MakesTheWantedDirectoryWithItsParents) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     const auto directory = RunDirectory::create(scratch.path() / "a" / "b", "job");
     EXPECT_TRUE(fs::is_directory(scratch.path() / "a" / "b"));
     EXPECT_EQ(directory.path(), scratch.path() / "a" / "b");
 }
 
 TEST(RunDirectory, RefusesWhatExists) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     fs::create_directory(scratch.path() / "old");
     std::ofstream(scratch.path() / "file") << "x";
     fs::create_symlink("nowhere", scratch.path() / "link");
@@ -62,13 +59,13 @@ TEST(RunDirectory, RefusesWhatExists) {
 }
 
 TEST(RunDirectory, CheckMakesNothing) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     EXPECT_EQ(refusal([&] { RunDirectory::check(scratch.path() / "a" / "b", "job"); }), "");
     EXPECT_EQ(count_entries(scratch.path()), 0);
 }
 
 TEST(RunDirectory, RefusesAPlaceThatIsNoDirectory) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     std::ofstream(scratch.path() / "file") << "x";
     EXPECT_NE(refusal([&] { RunDirectory::check(scratch.path() / "file" / "run", "job"); }).find("is not a directory"),
               std::string::npos);
@@ -76,7 +73,7 @@ TEST(RunDirectory, RefusesAPlaceThatIsNoDirectory) {
 }
 
 TEST(RunDirectory, RefusesAPlaceThatMayNotBeWritten) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     fs::create_directory(scratch.path() / "locked");
     fs::permissions(scratch.path(), fs::perms::owner_all | fs::perms::others_read | fs::perms::others_exec);
     fs::permissions(scratch.path() / "locked",
@@ -91,7 +88,7 @@ TEST(RunDirectory, RefusesAPlaceThatMayNotBeWritten) {
 }
 
 TEST(RunDirectory, CountsUpWithoutAWantedDirectory) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     const fs::path before = fs::current_path();
     fs::current_path(scratch.path());
     EXPECT_EQ(RunDirectory::create({}, "augig").path(), fs::path("results/augig-1"));
@@ -102,18 +99,18 @@ TEST(RunDirectory, CountsUpWithoutAWantedDirectory) {
 }
 
 TEST(RunDirectory, ReplacesAFileAsAWhole) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     const auto directory = RunDirectory::create(scratch.path() / "run", "job");
     directory.write_text("summary.json", "one");
     directory.write_text("summary.json", "two");
     directory.write_text("folder/part.vtu", "three");
-    EXPECT_EQ(read_file(directory.path() / "summary.json"), "two");
-    EXPECT_EQ(read_file(directory.path() / "folder/part.vtu"), "three");
+    EXPECT_EQ(read_text(directory.path() / "summary.json"), "two");
+    EXPECT_EQ(read_text(directory.path() / "folder/part.vtu"), "three");
     EXPECT_EQ(count_entries(directory.path()), 2);
 }
 
 TEST(RunDirectory, AFailedWriteKeepsTheEarlierFileAndLeavesNothingAside) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     const auto directory = RunDirectory::create(scratch.path() / "run", "job");
     directory.write_text("summary.json", "whole");
     EXPECT_THROW(directory.write("summary.json",
@@ -123,12 +120,12 @@ TEST(RunDirectory, AFailedWriteKeepsTheEarlierFileAndLeavesNothingAside) {
                                  }),
                  OutputError);
     EXPECT_THROW(directory.write("other.json", [](const fs::path&) {}), OutputError);  // nothing was written at all
-    EXPECT_EQ(read_file(directory.path() / "summary.json"), "whole");
+    EXPECT_EQ(read_text(directory.path() / "summary.json"), "whole");
     EXPECT_EQ(count_entries(directory.path()), 1);
 }
 
 TEST(RunDirectory, AFullDiskLeavesNoTruncatedFile) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     const auto directory = RunDirectory::create(scratch.path() / "run", "job");
     directory.write_text("history.csv", "whole");
     // a file-size limit acts like a disk that fills in the middle of a write; its signal would end the program
@@ -143,12 +140,12 @@ TEST(RunDirectory, AFullDiskLeavesNoTruncatedFile) {
         return 1;
     });
     EXPECT_EQ(code, 0);
-    EXPECT_EQ(read_file(directory.path() / "history.csv"), "whole");
+    EXPECT_EQ(read_text(directory.path() / "history.csv"), "whole");
     EXPECT_EQ(count_entries(directory.path()), 1);
 }
 
 TEST(RunDirectory, SaysThatTheDirectoryIsGone) {
-    const ScratchDirectory scratch;
+    const TemporaryFolder scratch;
     const auto directory = RunDirectory::create(scratch.path() / "run", "job");
     fs::remove_all(directory.path());
     for (const char* name : {"summary.json", "folder/part.vtu"}) {

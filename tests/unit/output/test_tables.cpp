@@ -10,7 +10,7 @@
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
-#include "scratch_directory.hpp"
+#include "../../temporary_folder.hpp"
 #include "synthetic_result.hpp"
 
 namespace feldspar {
@@ -21,12 +21,12 @@ using nlohmann::json;
 
 class Tables : public ::testing::Test {
 protected:
-    ScratchDirectory scratch;
+    TemporaryFolder scratch;
     RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
 
     json summary(const std::vector<TestResult>& results, bool complete = true) {
         write_summary(directory, make_job(), results, make_properties(), make_provenance(), complete);
-        return json::parse(read_file(directory.path() / "summary.json"));
+        return json::parse(read_text(directory.path() / "summary.json"));
     }
 };
 
@@ -61,7 +61,7 @@ TEST_F(Tables, SummaryKeepsVariantsApart) {
         for (const std::uint64_t seed : {3, 4}) results.push_back(make_result_of(variant, seed));
     results.back().ms_per_step = 4.0;
     write_summary(directory, job, results, make_properties(), make_provenance(), true);
-    const json read = json::parse(read_file(directory.path() / "summary.json"));
+    const json read = json::parse(read_text(directory.path() / "summary.json"));
     EXPECT_TRUE(read["properties"].empty());
     EXPECT_TRUE(read["envelope"]["fits"].empty());
     EXPECT_EQ(read["tests"][0]["variant"], "rigid, brittle");
@@ -101,7 +101,7 @@ TEST(BrokenShare, IsThatOfTheContactsBetweenGrains) {
 
 TEST_F(Tables, HistoryHasAHeaderThatSaysUnitsAndSigns) {
     write_history_csv(directory, make_result(), make_provenance());
-    const std::string text = read_file(directory.path() / "history-uniaxial-compression-s3.csv");
+    const std::string text = read_text(directory.path() / "history-uniaxial-compression-s3.csv");
     EXPECT_NE(text.find("# signs: compression positive"), std::string::npos);
     for (const HistoryColumn& column : history_columns()) {
         EXPECT_NE(text.find(std::string("#   ") + column.name + " [" + column.unit + "]"), std::string::npos) << column.name;
@@ -111,7 +111,7 @@ TEST_F(Tables, HistoryHasAHeaderThatSaysUnitsAndSigns) {
 TEST_F(Tables, HistoryReadsBackToTheLastBit) {
     const TestResult result = make_result();
     write_history_csv(directory, result, make_provenance());
-    std::istringstream stream(read_file(directory.path() / "history-uniaxial-compression-s3.csv"));
+    std::istringstream stream(read_text(directory.path() / "history-uniaxial-compression-s3.csv"));
     std::string line;
     while (std::getline(stream, line) && line.starts_with("#")) {
     }
@@ -135,7 +135,7 @@ TEST_F(Tables, HistoryReadsBackToTheLastBit) {
 TEST_F(Tables, HistoryDependsOnTheResultsAlone) {
     TestResult result = make_result();
     write_history_csv(directory, result, make_provenance());
-    const std::string before = read_file(directory.path() / "history-uniaxial-compression-s3.csv");
+    const std::string before = read_text(directory.path() / "history-uniaxial-compression-s3.csv");
     Provenance later = make_provenance();
     later.started = "2027-01-01T00:00:00Z";
     later.machine = "another machine";
@@ -144,7 +144,7 @@ TEST_F(Tables, HistoryDependsOnTheResultsAlone) {
     result.threads = 64;
     result.wall_s = 1.0;
     write_history_csv(directory, result, later);
-    EXPECT_EQ(read_file(directory.path() / "history-uniaxial-compression-s3.csv"), before);
+    EXPECT_EQ(read_text(directory.path() / "history-uniaxial-compression-s3.csv"), before);
 }
 
 TEST_F(Tables, SummaryHasEveryPromisedName) {

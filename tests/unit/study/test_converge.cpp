@@ -10,7 +10,7 @@
 #include "feldspar/study/converge.hpp"
 #include "feldspar/study/envelope.hpp"
 #include "feldspar/study/study_report.hpp"
-#include "small_study.hpp"
+#include "../../small_study.hpp"
 #include "synthetic_points.hpp"
 
 namespace feldspar {

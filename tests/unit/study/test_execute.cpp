@@ -6,7 +6,7 @@
 #include "feldspar/study/execute.hpp"
 #include "feldspar/study/point_results.hpp"
 #include "feldspar/study/study_table.hpp"
-#include "small_study.hpp"
+#include "../../small_study.hpp"
 
 namespace feldspar {
 namespace {

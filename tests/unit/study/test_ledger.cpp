@@ -9,7 +9,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/ledger.hpp"
-#include "small_study.hpp"
+#include "../../small_study.hpp"
 
 namespace feldspar {
 namespace {

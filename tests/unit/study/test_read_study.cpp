@@ -6,7 +6,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/study.hpp"
-#include "small_study.hpp"
+#include "../../small_study.hpp"
 
 namespace feldspar {
 namespace {

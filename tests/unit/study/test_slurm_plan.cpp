@@ -1,11 +1,10 @@
 // What goes to a Slurm cluster: groups, estimates, the plan on disk and its scripts. (In a fixture, Run alone is a function of GoogleTest.)
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 
+#include "../../temporary_folder.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/slurm.hpp"
 
@@ -43,16 +42,8 @@ seeds = [1, 2, 3]
 class SlurmPlanTest : public ::testing::Test {
 protected:
     SlurmPlanTest() {
-        std::string name = (fs::temp_directory_path() / "feldspar-plan-XXXXXX").string();
-        place_ = mkdtemp(name.data());
         study_ = study_of(parse_job(small_job, "small"), "small study", place_ / "results");
         for (const feldspar::Run& run : study_.runs) runs_.push_back(&run);
-    }
-    ~SlurmPlanTest() override { fs::remove_all(place_); }
-
-    static std::string text_of(const fs::path& file) {
-        std::ifstream stream(file);
-        return {std::istreambuf_iterator<char>(stream), {}};
     }
 
     // A record of a run that took so long.
@@ -65,7 +56,7 @@ protected:
         return record;
     }
 
-    fs::path place_;
+    TemporaryFolder place_;
     Study study_;
     std::vector<const feldspar::Run*> runs_;
 };
@@ -151,7 +142,7 @@ TEST_F(SlurmPlanTest, ScriptsSayWhatTheUserAsked) {
     options.group_minutes = 1e-6;
     options.sbatch = "--mem=2G --constraint=\"avx512\"";
     const SlurmPlan plan = write_plan(study_.results, study_, runs_, TimeEstimate{}, options, "/opt/it's here/feldspar");
-    const std::string array = text_of(plan.directory / "array.sh"), gather = text_of(plan.directory / "gather.sh");
+    const std::string array = read_text(plan.directory / "array.sh"), gather = read_text(plan.directory / "gather.sh");
     for (const char* line :
          {"#SBATCH --partition=short\n", "#SBATCH --account=rock\n", "#SBATCH --time=0:30:00\n", "#SBATCH --mem=2G --constraint=\"avx512\"\n",
           "#SBATCH --array=0-5%8\n", "#SBATCH --cpus-per-task=4\n", "#SBATCH --job-name=feldspar-small-study\n", "#SBATCH --requeue\n",
@@ -163,11 +154,11 @@ TEST_F(SlurmPlanTest, ScriptsSayWhatTheUserAsked) {
 }
 
 TEST_F(SlurmPlanTest, RubbishIsRefused) {
-    EXPECT_THROW(read_plan(place_), InputError);
-    std::ofstream(place_ / "plan.json") << "{}";
-    EXPECT_THROW(read_plan(place_), InputError);
-    std::ofstream(place_ / "plan.json") << "{\"feldspar_slurm_plan\": 1000}";
-    EXPECT_THROW(read_plan(place_), InputError);
+    EXPECT_THROW(read_plan(place_.path()), InputError);
+    place_.write("plan.json", "{}");
+    EXPECT_THROW(read_plan(place_.path()), InputError);
+    place_.write("plan.json", "{\"feldspar_slurm_plan\": 1000}");
+    EXPECT_THROW(read_plan(place_.path()), InputError);
 }
 
 }  // namespace
