@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "commands.hpp"
-#include "feldspar/study/claims.hpp"
+#include "feldspar/findings/claims.hpp"
 #include "feldspar/study/report_json.hpp"
 
 namespace feldspar {

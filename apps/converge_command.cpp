@@ -2,7 +2,7 @@
 
 #include "commands.hpp"
 #include "feldspar/base/units.hpp"
-#include "feldspar/study/converge.hpp"
+#include "feldspar/findings/converge.hpp"
 #include "interrupt.hpp"
 #include "running_study.hpp"
 

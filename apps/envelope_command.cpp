@@ -2,7 +2,7 @@
 
 #include "commands.hpp"
 #include "feldspar/base/units.hpp"
-#include "feldspar/study/envelope.hpp"
+#include "feldspar/findings/envelope.hpp"
 #include "interrupt.hpp"
 #include "running_study.hpp"
 

@@ -11,8 +11,8 @@ extern const char* const asset_page_js;     ///< theme, tables, pickers: what ev
 extern const char* const asset_viewer_js;   ///< failure pattern and crack rosette
 extern const char* const asset_compare_js;  ///< variants side by side
 extern const char* const asset_report_js;   ///< tables and the page as a whole
-extern const char* const asset_envelope_js;  ///< strength envelopes (study/envelope_files.cpp)
-extern const char* const asset_converge_js;  ///< convergence (study/converge_files.cpp)
+extern const char* const asset_envelope_js;  ///< strength envelopes (findings/envelope_files.cpp)
+extern const char* const asset_converge_js;  ///< convergence (findings/converge_files.cpp)
 extern const char* const asset_study_js;     ///< points of a study (study/study_report.cpp)
 extern const char* const asset_calibration_js;   ///< calibration (calibration/calibration_report.cpp)
 extern const char* const asset_uPlot_iife_min_js;

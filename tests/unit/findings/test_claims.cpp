@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/claims.hpp"
+#include "feldspar/findings/claims.hpp"
 
 namespace feldspar {
 namespace {

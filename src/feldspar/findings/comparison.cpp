@@ -1,4 +1,4 @@
-#include "feldspar/study/comparison.hpp"
+#include "feldspar/findings/comparison.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "feldspar/job/toml_reader.hpp"
-#include "feldspar/study/claims.hpp"
+#include "feldspar/findings/claims.hpp"
 
 namespace feldspar {
 namespace {

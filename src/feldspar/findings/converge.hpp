@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "feldspar/output/results.hpp"
-#include "feldspar/study/comparison.hpp"
+#include "feldspar/findings/comparison.hpp"
 #include "feldspar/study/point_results.hpp"
 #include "feldspar/study/statistics.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/toml_reader.hpp"
-#include "feldspar/study/claims.hpp"
+#include "feldspar/findings/claims.hpp"
 
 namespace feldspar {
 namespace {

@@ -1,5 +1,5 @@
 // What the points of a convergence study say, in numbers and in words.
-#include "feldspar/study/converge.hpp"
+#include "feldspar/findings/converge.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // Which tests the envelope takes.
-#include "feldspar/study/envelope.hpp"
+#include "feldspar/findings/envelope.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/user_units.hpp"
-#include "feldspar/study/choose_seeds.hpp"
+#include "feldspar/findings/choose_seeds.hpp"
 
 namespace feldspar {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/converge.hpp"
-#include "feldspar/study/choose_seeds.hpp"
+#include "feldspar/findings/converge.hpp"
+#include "feldspar/findings/choose_seeds.hpp"
 
 namespace feldspar {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "feldspar/output/results.hpp"
-#include "feldspar/study/envelope_fits.hpp"
+#include "feldspar/findings/envelope_fits.hpp"
 #include "feldspar/study/point_results.hpp"
 
 namespace feldspar {

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "feldspar/study/claims.hpp"
+#include "feldspar/findings/claims.hpp"
 
 namespace feldspar {
 namespace {

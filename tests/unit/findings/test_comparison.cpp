@@ -1,7 +1,7 @@
 // Changes between points: by packing, between means, and what stands when many are looked at.
 #include <gtest/gtest.h>
 
-#include "feldspar/study/comparison.hpp"
+#include "feldspar/findings/comparison.hpp"
 #include "synthetic_points.hpp"
 
 namespace feldspar {

@@ -1,4 +1,4 @@
-#include "feldspar/study/envelope_fits.hpp"
+#include "feldspar/findings/envelope_fits.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "feldspar/study/envelope_fits.hpp"
+#include "feldspar/findings/envelope_fits.hpp"
 #include "synthetic_points.hpp"
 
 namespace feldspar {

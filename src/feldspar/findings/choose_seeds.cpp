@@ -1,4 +1,4 @@
-#include "feldspar/study/choose_seeds.hpp"
+#include "feldspar/findings/choose_seeds.hpp"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "feldspar/study/claims.hpp"
+#include "feldspar/findings/claims.hpp"
 #include "feldspar/study/study_table.hpp"
 
 namespace feldspar {

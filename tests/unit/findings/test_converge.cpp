@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/study/converge.hpp"
-#include "feldspar/study/envelope.hpp"
+#include "feldspar/findings/converge.hpp"
+#include "feldspar/findings/envelope.hpp"
 #include "feldspar/study/study_report.hpp"
 #include "../../small_study.hpp"
 #include "synthetic_points.hpp"

@@ -8,7 +8,7 @@
 #include "feldspar/base/text_table.hpp"
 #include "feldspar/output/html_page.hpp"
 #include "feldspar/output/report_assets.hpp"
-#include "feldspar/study/envelope.hpp"
+#include "feldspar/findings/envelope.hpp"
 #include "feldspar/study/report_json.hpp"
 #include "feldspar/study/study_table.hpp"
 
