@@ -83,9 +83,10 @@ std::string read_label(const TableReader& table, std::string_view key) {
 
 class StatementReader {
 public:
-    StatementReader(const toml::table& tree, const std::string& path, const std::string& file) : table_(tree, path, file, statement_keys) {
-        statement_.lines[""] = static_cast<int>(tree.source().begin.line);
-        for (const auto& [key, value] : tree) statement_.lines[std::string(key.str())] = static_cast<int>(key.source().begin.line);
+    explicit StatementReader(const TableReader& table) : table_(table) {
+        statement_.lines[""] = table.line();
+        for (const std::string_view key : statement_keys)
+            if (table.has(key)) statement_.lines[std::string(key)] = static_cast<int>(table.find(key)->source().begin.line);
     }
 
     Statement read() {
@@ -175,24 +176,10 @@ private:
     Statement statement_;
 };
 
-const toml::array& list_of(const TableReader& table, std::string_view key, const std::string& head) {
-    table.require({key});
-    const toml::node& node = *table.find(key);
-    if (!node.is_array() || node.as_array()->empty()) table.fail(key, shown(node) + " is not a list", "one " + head + " or more");
-    for (const toml::node& inside : *node.as_array())
-        if (!inside.is_table()) table.fail_at(inside, key, shown(inside) + " is not a table", "tables headed " + head);
-    return *node.as_array();
-}
-
-Claim read_claim(const toml::table& tree, const std::string& path, const std::string& file) {
-    const TableReader table(tree, path, file, {"id", "figure", "says", "statement"});
+Claim read_claim(const TableReader& table) {
     table.require({"id", "figure", "says", "statement"});
     Claim claim{table.text("id"), table.text("figure"), table.text("says"), {}};
-    int number = 0;
-    for (const toml::node& node : list_of(table, "statement", "[[claim.statement]]")) {
-        const std::string place = fmt::format("{}.statement[{}]", path, ++number);
-        claim.statements.push_back(StatementReader(*node.as_table(), place, file).read());
-    }
+    for (const TableReader& statement : table.tables("statement", "a statement", statement_keys)) claim.statements.push_back(StatementReader(statement).read());
     return claim;
 }
 
@@ -222,12 +209,9 @@ ClaimList parse_claims(const std::string& text, const std::filesystem::path& fil
     root.require({"title", "source", "claim"});
     ClaimList list{file, root.text("title"), root.text("source"), {}};
     std::set<std::string> ids;
-    int number = 0;
-    for (const toml::node& node : list_of(root, "claim", "[[claim]]")) {
-        const std::string path = fmt::format("claim[{}]", ++number);
-        list.claims.push_back(read_claim(*node.as_table(), path, file.string()));
-        if (!ids.insert(list.claims.back().id).second)
-            root.fail_at(*node.as_table()->get("id"), path + ".id", "'" + list.claims.back().id + "' is the id of another claim", "each claim its own");
+    for (const TableReader& table : root.tables("claim", "a claim", {"id", "figure", "says", "statement"})) {
+        list.claims.push_back(read_claim(table));
+        if (!ids.insert(list.claims.back().id).second) table.fail("id", "'" + list.claims.back().id + "' is the id of another claim", "each claim its own");
     }
     return list;
 }

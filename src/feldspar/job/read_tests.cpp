@@ -128,19 +128,11 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
 TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                     const std::vector<std::uint64_t>& run_seeds) {
     if (!root.has("test")) throw InputError({root.file(), 0, 0, {}}, "there is no test", "one [[test]] or more");
-    if (root.find("test")->is_table()) root.fail("test", "is written as one table", "a list of tables, each headed [[test]]");
-    const toml::array& list = root.array("test");
-    if (list.empty()) root.fail("test", "there is no test", "one [[test]] or more");
-
     TestList result;
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
-    int number = 0;
-    for (const toml::node& node : list) {
-        const std::string path = "test[" + std::to_string(++number) + "]";
-        if (!node.is_table()) root.fail_at(node, "test", shown(node) + " is not a test", "a table headed [[test]]");
-        const TableReader table(*node.as_table(), path, root.file(),
-                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "diameter", "plate_stiffness_factor",
-                                 "plate_mu", "membrane_plates", "snapshots", "seeds"});
+    for (const TableReader& table : root.tables("test", "a test",
+                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "diameter", "plate_stiffness_factor",
+                                                 "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
         ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {
             if (result.brazilian_diameter_m && *result.brazilian_diameter_m != *read.diameter_m)

@@ -23,20 +23,11 @@ std::string read_variant_name(const TableReader& table) {
     return given;
 }
 
-const toml::array& variant_list(const TableReader& root) {
-    if (root.find("variant")->is_table())
-        root.fail("variant", "is written as one table", "a list of tables, each headed [[variant]]");
-    const toml::array& list = root.array("variant");
-    if (list.empty()) root.fail("variant", "the list is empty", "one [[variant]] or more, or none at all");
-    if (list.size() > largest_variant_count)
-        root.fail("variant", std::to_string(list.size()) + " variants are more than a report can show", "at most 50");
-    return list;
-}
-
-TableReader variant_table(const TableReader& root, const toml::node& node, std::size_t index) {
-    if (!node.is_table()) root.fail_at(node, "variant", shown(node) + " is not a variant", "a table headed [[variant]]");
-    return TableReader(*node.as_table(), "variant[" + std::to_string(index + 1) + "]", root.file(),
-                       {"name", "seeds", "tests", "model", "material", "numerics"}, variant_level);
+std::vector<TableReader> variant_tables(const TableReader& root) {
+    std::vector<TableReader> tables = root.tables("variant", "a variant", {"name", "seeds", "tests", "model", "material", "numerics"}, variant_level);
+    if (tables.size() > largest_variant_count)
+        root.fail("variant", std::to_string(tables.size()) + " variants are more than a report can show", "at most 50");
+    return tables;
 }
 
 Variant read_variant(const TableReader& root, const TableReader* table) {
@@ -111,8 +102,7 @@ std::vector<Variant> read_variants(const TableReader& root) {
     if (!root.has("variant")) return {read_variant(root, nullptr)};
     std::vector<Variant> variants;
     std::map<std::string, std::string> taken;  // stem -> name
-    for (const toml::node& node : variant_list(root)) {
-        const TableReader table = variant_table(root, node, variants.size());
+    for (const TableReader& table : variant_tables(root)) {
         Variant variant = read_variant(root, &table);
         const auto [other, fresh] = taken.emplace(variant.stem, variant.name);
         if (!fresh)
@@ -128,11 +118,8 @@ std::vector<Variant> read_variants(const TableReader& root) {
 
 void check_variants(const TableReader& root, const Job& job) {
     if (!root.has("variant")) return;
-    std::size_t index = 0;
-    for (const toml::node& node : variant_list(root)) {
-        check_variant(variant_table(root, node, index), job.variants[index], job);
-        ++index;
-    }
+    const std::vector<TableReader> tables = variant_tables(root);
+    for (std::size_t i = 0; i < tables.size(); ++i) check_variant(tables[i], job.variants[i], job);
 }
 
 }  // namespace feldspar

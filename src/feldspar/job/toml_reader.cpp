@@ -15,6 +15,18 @@ constexpr std::size_t largest_file = 16u << 20;  // bytes; what a user writes is
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
+// "axis[2].value" -> "axis.value", as in the head of a table.
+std::string without_numbers(const std::string& path) {
+    std::string head;
+    bool number = false;
+    for (const char c : path) {
+        if (c == '[') number = true;
+        if (!number) head += c;
+        if (c == ']') number = false;
+    }
+    return head;
+}
+
 // Optimal string alignment: insertions, deletions, substitutions and swaps of neighbours count one each.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -174,6 +186,18 @@ TableReader TableReader::table(std::string_view key, std::span<const std::string
     TableReader inside(*node.as_table(), full(key), file_, known, owner(key).level_);
     inside.stands_in_ = owner(key).stands_in_;
     return inside;
+}
+
+std::vector<TableReader> TableReader::tables(std::string_view key, std::string_view what, std::span<const std::string_view> known, int level) const {
+    const std::string head = "[[" + without_numbers(full(key)) + "]]";
+    if (must_have(key).is_table()) fail(key, "is written as one table", "a list of tables, each headed " + head);
+    std::vector<TableReader> readers;
+    for (const toml::node& node : array(key)) {
+        if (!node.is_table()) fail_at(node, key, shown(node) + " is not " + std::string(what), "a table headed " + head);
+        readers.emplace_back(*node.as_table(), full(key) + "[" + std::to_string(readers.size() + 1) + "]", file_, known, level);
+    }
+    if (readers.empty()) fail(key, "the list is empty", "one " + head + " or more");
+    return readers;
 }
 
 const toml::array& TableReader::array(std::string_view key) const {

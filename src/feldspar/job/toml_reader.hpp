@@ -71,6 +71,8 @@ public:
     int level_of(std::string_view key) const { return has(key) ? owner(key).level_ : not_given; }
     int level() const { return level_; }
     const std::string& file() const { return file_; }
+    /// Line of the table's head.
+    int line() const { return static_cast<int>(region_of(*table_).begin.line); }
 
     /// @throws InputError naming every one of `keys` that is missing.
     void require(std::initializer_list<std::string_view> keys) const;
@@ -83,6 +85,12 @@ public:
     TableReader table(std::string_view key, std::span<const std::string_view> known) const;
     TableReader table(std::string_view key, std::initializer_list<std::string_view> known) const {
         return table(key, std::span(known.begin(), known.size()));
+    }
+
+    /// The tables of the list [[key]], which must hold one at least, in order. @param what  one of them in words, "a test"
+    std::vector<TableReader> tables(std::string_view key, std::string_view what, std::span<const std::string_view> known, int level = 0) const;
+    std::vector<TableReader> tables(std::string_view key, std::string_view what, std::initializer_list<std::string_view> known, int level = 0) const {
+        return tables(key, what, std::span(known.begin(), known.size()), level);
     }
 
     /// Text with a unit, in SI. Without a fallback the key must be there.

@@ -125,12 +125,7 @@ private:
     }
 
     void read_axes() {
-        if (root_.find("axis")->is_table()) root_.fail("axis", "is written as one table", "a list of tables, each headed [[axis]]");
-        int number = 0;
-        for (const toml::node& node : root_.array("axis")) {
-            if (!node.is_table()) root_.fail_at(node, "axis", shown(node) + " is not an axis", "a table headed [[axis]]");
-            const TableReader table(*node.as_table(), fmt::format("axis[{}]", ++number), root_.file(),
-                                    {"name", "key", "values", "times", "coupled", "value"});
+        for (const TableReader& table : root_.tables("axis", "an axis", {"name", "key", "values", "times", "coupled", "value"})) {
             Axis axis = table.has("value") ? read_named_values(table) : read_key_values(table);
             if (std::any_of(axes_.begin(), axes_.end(), [&](const Axis& other) { return other.name == axis.name; }))
                 table.fail("name", "'" + axis.name + "' is the name of another axis", "each axis a name of its own");
@@ -171,10 +166,7 @@ private:
         table.refuse({"key", "values", "times", "coupled"}, "[[axis.value]]", "name, and a list of [[axis.value]]");
         Axis axis;
         axis.name = table.text("name");
-        if (table.find("value")->is_table()) table.fail("value", "is written as one table", "a list of tables, each headed [[axis.value]]");
-        for (const toml::node& node : table.array("value")) {
-            if (!node.is_table()) table.fail_at(node, "value", shown(node) + " is not a value of the axis", "a table headed [[axis.value]]");
-            const TableReader value(*node.as_table(), "axis.value", root_.file(), {"label", "set", "seeds", "tests"});
+        for (const TableReader& value : table.tables("value", "a value of the axis", {"label", "set", "seeds", "tests"})) {
             value.require({"label"});
             Choice choice;
             choice.value = {value.text("label"), std::numeric_limits<double>::quiet_NaN()};
@@ -184,7 +176,6 @@ private:
             for (TestKind kind : choice.tests) check_kind(value, kind);
             axis.choices.push_back(std::move(choice));
         }
-        if (axis.choices.empty()) table.fail("value", "the list is empty", "one [[axis.value]] or more");
         return axis;
     }
 

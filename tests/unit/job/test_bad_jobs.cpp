@@ -194,7 +194,7 @@ std::vector<BadJob> bad_jobs() {
          30,
          {"residual_target", "accuracy"}},
         {"no test", edited("[[test]]\nkind = \"uniaxial-compression\"\n", ""), 0, {"missing key: test"}},
-        {"empty test list", "test = []\n" + edited("[[test]]\nkind = \"uniaxial-compression\"\n", ""), 1, {"there is no test"}},
+        {"empty test list", "test = []\n" + edited("[[test]]\nkind = \"uniaxial-compression\"\n", ""), 1, {"the list is empty", "one [[test]] or more"}},
         {"test as one table", edited("[[test]]", "[test]"), 31, {"[[test]]"}},
         {"unknown test", with_test("kind = \"uniaxial\""), 32, {"test[1].kind", "'uniaxial'", "brazilian"}},
         {"biaxial without sigma3", with_test("kind = \"biaxial\""), 31, {"missing key: sigma3"}},
