@@ -113,7 +113,7 @@ std::string brazilian_test() {
 [[test]]
 kind = "brazilian"                  # a disc pressed between two plates: gives the indirect tensile strength BTS
 # diameter = "80 mm"                # of the disc; the specimen's width unless given
-# plate_stiffness_factor = 1.0      # stiffness of the plates, as a multiple of the contacts' Kn
+# plate_stiffness_factor = 1.0      # stiffness of the plates, as a multiple of the contacts' Kn; bearing strips: docs/job.md, plate_Kn
 # plate_mu = 0.4                    # friction between plates and disc
 )") + common_test;
 }

@@ -59,7 +59,7 @@ void read_plates(const TableReader& table, bool particles, TestSpec& test) {
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
     const bool brazilian = test.kind == TestKind::brazilian, tension = test.kind == TestKind::direct_tension;
     if (!brazilian && !particles)
-        table.refuse({"plate_stiffness_factor", "plate_mu", "membrane_plates"}, setting + " of flexible grains",
+        table.refuse({"plate_stiffness_factor", "plate_Kn", "plate_mu", "membrane_plates"}, setting + " of flexible grains",
                      "only with kind = \"brazilian\", or with rigid grains or inner particles, which are loaded by plates");
     if (tension)
         table.refuse({"plate_mu"}, setting + ": its plates are glued on and hold in the normal direction only",
@@ -67,6 +67,9 @@ void read_plates(const TableReader& table, bool particles, TestSpec& test) {
     if (test.kind != TestKind::biaxial)
         table.refuse({"membrane_plates"}, setting, "only with kind = \"biaxial\", which has a membrane");
     if (!brazilian && !particles) return;
+    if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
+        table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them");
+    if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn", Dimension::stiffness_gradient, positive);
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
     if (!tension) test.plate_mu = table.number("plate_mu", not_negative, brazilian ? 0.4 : 0.0);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates", 1, 1000, test.membrane_plates));
@@ -131,7 +134,7 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     TestList result;
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",
-                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "diameter", "plate_stiffness_factor",
+                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "diameter", "plate_stiffness_factor", "plate_Kn",
                                                  "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
         ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {

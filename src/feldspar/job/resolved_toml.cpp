@@ -160,7 +160,8 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
         return variant.runs(test.kind) && variant.model.kind != GrainKind::flexible;
     });
     if (!particles && test.kind != TestKind::brazilian) return;
-    out.number("plate_stiffness_factor", test.plate_stiffness_factor);
+    if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m, Dimension::stiffness_gradient);
+    else out.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (test.plate_mu) out.number("plate_mu", *test.plate_mu);
     if (test.kind == TestKind::biaxial) out.raw("membrane_plates", std::to_string(test.membrane_plates));
 }

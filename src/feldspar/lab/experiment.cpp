@@ -45,7 +45,7 @@ ElasticGuess guess(const TestSetup& setup, const Assembly& assembly) {
 PlateContact plate_contact(const TestSetup& setup) {
     const TestSpec& test = setup.test;
     PlateContact contact;
-    contact.Kn_Pa_m = test.plate_stiffness_factor * setup.contact.Kn_Pa_m;
+    contact.Kn_Pa_m = test.plate_Kn_Pa_m.value_or(test.plate_stiffness_factor * setup.contact.Kn_Pa_m);
     contact.eta = setup.contact.eta;
     contact.mu = test.plate_mu.value_or(test.kind == TestKind::brazilian ? 0.4 : 0.0);
     contact.glued = test.kind == TestKind::direct_tension;

@@ -240,6 +240,7 @@ void expect_same(const Job& a, const Job& b) {
         EXPECT_EQ(a.tests[i].stop_fraction, b.tests[i].stop_fraction);
         EXPECT_EQ(a.tests[i].maximum_strain, b.tests[i].maximum_strain);
         EXPECT_EQ(a.tests[i].plate_stiffness_factor, b.tests[i].plate_stiffness_factor);
+        EXPECT_EQ(a.tests[i].plate_Kn_Pa_m, b.tests[i].plate_Kn_Pa_m);
         EXPECT_EQ(a.tests[i].plate_mu, b.tests[i].plate_mu);
         EXPECT_EQ(a.tests[i].membrane_plates, b.tests[i].membrane_plates);
         EXPECT_EQ(a.tests[i].snapshots, b.tests[i].snapshots);
@@ -278,6 +279,7 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
         edited("kind = \"uniaxial-compression\"",
                "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = "
                "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\""));
+    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplate_Kn = \"3.6e3 GPa/m\""));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));

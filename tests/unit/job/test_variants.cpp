@@ -41,6 +41,7 @@ TEST(Kinds, PlatesHaveFrictionInTheBrazilianTestOnly) {
     EXPECT_FALSE(test_of("flexible", "kind = \"uniaxial-compression\"").plate_mu.has_value());
     EXPECT_FALSE(test_of("rigid", "kind = \"direct-tension\"").plate_mu.has_value());
     EXPECT_EQ(test_of("rigid", "kind = \"direct-tension\"\nplate_stiffness_factor = 2").plate_stiffness_factor, 2.0);
+    EXPECT_EQ(test_of("flexible", "kind = \"brazilian\"\nplate_Kn = \"3600 GPa/m\"").plate_Kn_Pa_m, 3.6e12);
     EXPECT_EQ(test_of("inner-particles", "kind = \"biaxial\"\nsigma3 = \"4 MPa\"").membrane_plates, 16);
     EXPECT_EQ(test_of("inner-particles", "kind = \"biaxial\"\nsigma3 = \"4 MPa\"\nmembrane_plates = 7").membrane_plates, 7);
 }
