@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/lab/strength_envelope.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/findings/choose_seeds.hpp"
 
@@ -65,10 +67,8 @@ void check_outline(const Job& job) {
 double expected_UCS_Pa(const Job& job) {
     const auto known = [&](const char* key) { return job.laboratory.contains(key); };
     if (known("UCS")) return job.laboratory.at("UCS");
-    if (known("cohesion") && known("friction_angle")) {
-        const double phi = job.laboratory.at("friction_angle");
-        return 2.0 * job.laboratory.at("cohesion") * std::cos(phi) / (1.0 - std::sin(phi));
-    }
+    if (known("cohesion") && known("friction_angle"))
+        return mohr_coulomb_UCS_Pa(job.laboratory.at("cohesion"), job.laboratory.at("friction_angle") * 180.0 / std::numbers::pi);
     return 4.0 * job.variants.front().contact.tau_Pa;
 }
 
