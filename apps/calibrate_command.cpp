@@ -1,13 +1,40 @@
 #include <fmt/format.h>
 
+#include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/calibration/calibration_files.hpp"
 #include "feldspar/calibration/calibration_report.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "running_study.hpp"
 
 namespace feldspar {
+namespace {
+
+// Tells of the runs of a calibration, one line each when it ends.
+class CalibrationProgress {
+public:
+    explicit CalibrationProgress(int budget) : budget_(budget) { progress_.keep_log_short(); }
+
+    void report(int number, const Run& run, const TestProgress& state) { progress_.report(number, budget_, label_of(run), state); }
+
+    void ended(int number, const Run& run, const RunRecord& record) {
+        progress_.ended(number);
+        progress_.note(fmt::format("  {}/{} {}: {}", number, budget_, label_of(run), result_text(record)));
+    }
+
+    void note(const std::string& line) { progress_.note(line); }
+    void clear() { progress_.clear(); }
+
+private:
+    static std::string label_of(const Run& run) { return fmt::format("{}, seed {}", title(run.test()), run.seed()); }
+
+    int budget_;
+    Progress progress_;
+};
+
+}  // namespace
 
 ExitCode calibrate_command(const CalibrateOptions& options) {
     install_signal_handlers();
@@ -20,18 +47,23 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
         throw InputError({options.calibration, 0, 0, "targets"}, "the targets contradict each other, so no run was made", "targets of one rock, or --insist to see how near one can come");
 
     Ledger ledger(calibration.results, Ledger::Access::write);
-    Progress progress;
-    progress.keep_log_short();
+    CalibrationProgress progress(calibration.budget);
     ExecuteControl control;
     control.threads = thread_count(options.threads.value_or(0));
     control.at_once = options.at_once.value_or(0);
     control.keep = Keep::numbers;
     control.stop = &stop_requested();
     control.provenance = collect_provenance(options.command_line, control.threads);
+    const RunLaboratory* running = nullptr;
+    control.progress = [&](const Run& run, const TestProgress& state) { progress.report(running->number_of(run), run, state); };
+    control.ended = [&](const Run& run, const RunRecord& record) { progress.ended(running->number_of(run), run, record); };
+    control.note = [&](const std::string& line) { progress.note(line); };
     RunLaboratory laboratory(calibration, ledger, control);
+    running = &laboratory;
     progress.note(fmt::format("{}: {} targets, {} unknowns, at most {} runs; results in {}", calibration.name, calibration.targets.size(),
                               calibration.unknowns.size(), calibration.budget, calibration.results.string()));
     const CalibrationResult result = calibrate(calibration, laboratory, [&](const std::string& line) { progress.note(line); });
+    progress.clear();
     if (!result.complete) {
         fmt::print(stderr, "interrupted after {} runs, which are kept; the same command goes on\n", result.runs);
         return ExitCode::interrupted;

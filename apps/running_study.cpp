@@ -35,19 +35,13 @@ public:
     void ended(const Run& run, const RunRecord& record) {
         ++ended_;
         progress_.ended(numbers_[run.id]);
-        const std::string what = record.state == RunState::failed ? "failed: " + record.reason : result_text(record);
-        progress_.note(fmt::format("{}/{} {}: {}{}", ended_, runs(), label_of(study_, run), what, left()));
+        progress_.note(fmt::format("{}/{} {}: {}{}", ended_, runs(), label_of(study_, run), result_text(record), left()));
     }
 
     void note(const std::string& line) { progress_.note(line); }
     void clear() { progress_.clear(); }
 
 private:
-    static std::string result_text(const RunRecord& record) {
-        return fmt::format("{:.4g} MPa, grade {}, {}", record.numbers.at("strength_Pa") / 1e6, record.texts.at("grade"),
-                           duration_text(record.numbers.at("wall_s")));
-    }
-
     // The rest, at the pace of this call so far.
     std::string left() const {
         const int rest = runs() - ended_;
@@ -69,6 +63,11 @@ std::string label_of(const Study& study, const Run& run) {
     std::string text;
     for (const AxisValue& value : study.points[run.point].values) text += (text.empty() ? "" : ", ") + value.label;
     return fmt::format("{}{}{}, seed {}", text, text.empty() ? "" : ": ", title(run.test()), run.seed());
+}
+
+std::string result_text(const RunRecord& record) {
+    if (record.state == RunState::failed) return "failed: " + record.reason;
+    return fmt::format("{:.4g} MPa, grade {}, {}", record.numbers.at("strength_Pa") / 1e6, record.texts.at("grade"), duration_text(record.numbers.at("wall_s")));
 }
 
 Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& running) {

@@ -18,6 +18,9 @@ struct StudyRunning {
 /// "rigid, 2: biaxial at 4 MPa, seed 1".
 std::string label_of(const Study& study, const Run& run);
 
+/// "114 MPa, grade B, 4.1 s", or why it failed.
+std::string result_text(const RunRecord& record);
+
 /// Enrols the study, runs what is not done yet, and tells of it on stderr.
 Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& running);
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 #include <limits>
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -83,7 +83,10 @@ class RunLaboratory : public Laboratory {
 public:
     RunLaboratory(const Calibration& calibration, Ledger& ledger, ExecuteControl control) : calibration_(calibration), ledger_(ledger), control_(std::move(control)) {}
     std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) override;
-    int used() const override { return static_cast<int>(used_.size()); }
+    int used() const override { return static_cast<int>(numbers_.size()) - left_; }
+
+    /// Of a run that was asked for: the how many-th of the calibration it is, from 1 on, those in the ledger before it counted too.
+    int number_of(const Run& run) const { return numbers_.at(run.id); }
 
 private:
     Run run_for(const Request& request, const Observable& quantity) const;
@@ -91,7 +94,8 @@ private:
     const Calibration& calibration_;
     Ledger& ledger_;
     ExecuteControl control_;
-    std::set<std::string> used_;
+    std::map<std::string, int> numbers_;   // of the runs by their id
+    int left_ = 0;                         // of them not run: interrupted
 };
 
 /// Learns, chooses and confirms. Everything it decides follows from the file and from what it sees, so that a second call goes the same way

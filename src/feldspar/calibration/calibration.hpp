@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -73,6 +74,12 @@ std::vector<Observable> observables_for(const Calibration& calibration);
 
 /// A target's value by the means of the quantities, in the order of observables_for(); not-a-number where they do not make sense.
 double value_of(const Target& target, const std::vector<Observable>& quantities, const std::vector<double>& means);
+
+/// Of the first target of that name; not-a-number if there is none.
+double target_value(std::string_view name, const std::vector<Target>& targets);
+
+/// The uniaxial strength that the targets ask for, by Mohr and Coulomb's line if not by itself; not-a-number if they say nothing of it.
+double wanted_UCS_Pa(const std::vector<Target>& targets);
 
 /// Sentences on targets that no rock can show together, by closed form; none if there is nothing to say.
 std::vector<std::string> contradictions(const std::vector<Target>& targets);

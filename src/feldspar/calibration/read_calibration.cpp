@@ -149,18 +149,14 @@ private:
 
     // By how much the specimen's numbers and those of its contacts differ in rocks of this kind (docs/calibration.md).
     std::vector<RangeRule> range_rules() const {
-        const auto target = [&](const char* name) {
-            for (const Target& t : result_.targets)
-                if (t.name == name) return t.value;
-            return std::nan("");
-        };
+        const auto target = [&](const char* name) { return target_value(name, result_.targets); };
         const auto first = [](std::initializer_list<double> values) {
             for (const double value : values)
                 if (std::isfinite(value)) return value;
             return std::nan("");
         };
         const double E = target("E"), ratio = target("UCS_over_BTS");
-        const double UCS = first({target("UCS"), 2.0 * target("cohesion") * std::tan((45.0 + 0.5 * target("friction_angle")) * degree)});
+        const double UCS = wanted_UCS_Pa(result_.targets);
         const double tension = first({target("DTS"), target("BTS"), UCS / first({ratio, 13.0})});
         const double diameter = typical_diameter_m(result_.base.job().specimen.grain_sizes);
         const bool flexible = result_.base.job().variants.front().model.kind == GrainKind::flexible;
@@ -184,19 +180,12 @@ private:
     }
 
     void read_unknowns() {
-        if (root_.find("unknown")->is_table()) root_.fail("unknown", "is written as one table", "a list of tables, each headed [[unknown]]");
-        int number = 0;
-        for (const toml::node& node : root_.array("unknown")) {
-            if (!node.is_table()) root_.fail_at(node, "unknown", shown(node) + " is not an unknown", "a table headed [[unknown]]");
-            const TableReader table(*node.as_table(), fmt::format("unknown[{}]", ++number), root_.file(),
-                                    {"name", "key", "times", "coupled", "range", "scale"});
+        for (const TableReader& table : root_.tables("unknown", "an unknown", {"name", "key", "times", "coupled", "range", "scale"}))
             result_.unknowns.push_back(read_unknown(table));
-        }
         for (std::size_t i = 0; i < result_.unknowns.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
                 if (result_.unknowns[i].key == result_.unknowns[j].key)
                     root_.fail("unknown", "'" + result_.unknowns[i].key + "' is given twice", "each key once");
-        if (result_.unknowns.empty()) root_.fail("unknown", "the list is empty", "one [[unknown]] or more");
         try {
             std::vector<double> low, high;
             for (const Unknown& unknown : result_.unknowns) {

@@ -14,12 +14,8 @@ constexpr double elastic_stress_share = 0.04;      // of the strength: where tes
 constexpr double usual_UCS_over_E = 1.0 / 210.0;   // when they are not both targets
 
 double elastic_strain(const Calibration& calibration) {
-    double E = std::nan(""), UCS = std::nan("");
-    for (const Target& target : calibration.targets) {
-        if (target.name == "E") E = target.value;
-        if (target.name == "UCS") UCS = target.value;
-    }
-    return elastic_stress_share * (std::isfinite(UCS / E) ? UCS / E : usual_UCS_over_E);
+    const double ratio = wanted_UCS_Pa(calibration.targets) / target_value("E", calibration.targets);
+    return elastic_stress_share * (std::isfinite(ratio) ? ratio : usual_UCS_over_E);
 }
 
 std::string column_of(const Observable& quantity, bool elastic) {
@@ -52,9 +48,9 @@ std::vector<std::vector<double>> RunLaboratory::see(const std::vector<Request>& 
             own.push_back(found->second);
         }
     }
-    const Execution execution = execute(runs, ledger_, control_);
-    for (const Run& run : runs) used_.insert(run.id);
-    if (execution.left > 0) throw Interrupted();
+    for (const Run& run : runs) numbers_.try_emplace(run.id, static_cast<int>(numbers_.size()) + 1);
+    left_ = execute(runs, ledger_, control_).left;
+    if (left_ > 0) throw Interrupted();
     std::vector<std::vector<double>> values;
     for (std::size_t r = 0; r < requests.size(); ++r) {
         std::vector<double>& own = values.emplace_back();

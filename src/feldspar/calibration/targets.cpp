@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
@@ -74,15 +73,21 @@ double value_of(const Target& target, const std::vector<Observable>& quantities,
     return mean(target.label());
 }
 
+double target_value(std::string_view name, const std::vector<Target>& targets) {
+    const auto found = std::find_if(targets.begin(), targets.end(), [&](const Target& target) { return target.name == name; });
+    return found == targets.end() ? nan : found->value;
+}
+
+double wanted_UCS_Pa(const std::vector<Target>& targets) {
+    const double UCS = target_value("UCS", targets);
+    return std::isfinite(UCS) ? UCS : mohr_coulomb_UCS_Pa(target_value("cohesion", targets), target_value("friction_angle", targets));
+}
+
 std::vector<std::string> contradictions(const std::vector<Target>& targets) {
-    const auto value = [&](const char* name) {
-        for (const Target& target : targets)
-            if (target.name == name) return target.value;
-        return nan;
-    };
+    const auto value = [&](const char* name) { return target_value(name, targets); };
     std::vector<std::string> sentences;
     const double UCS = value("UCS"), c = value("cohesion"), phi = value("friction_angle");
-    const double intercept = 2.0 * c * std::tan((45.0 + 0.5 * phi) * std::numbers::pi / 180.0);   // 2 c sqrt(N)
+    const double intercept = mohr_coulomb_UCS_Pa(c, phi);
     if (std::abs(intercept / UCS - 1.0) > curvature_allowance)
         sentences.push_back(fmt::format("A cohesion of {:.4g} MPa and a friction angle of {:.4g} deg mean a uniaxial strength of 2 c sqrt(N) = {:.4g} MPa, but UCS is to be {:.4g} MPa; "
                                         "the curvature of an envelope accounts for {:.0f} % at most.",
