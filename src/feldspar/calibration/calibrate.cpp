@@ -22,6 +22,7 @@ constexpr std::size_t first_points_per_unknown = 4;   // of the space-filling se
 constexpr std::size_t points_per_round = 4;           // whatever the number of threads: the way must be the same on every machine
 constexpr std::size_t most_elastic_rounds = 4;
 constexpr double good_share = 0.5;                    // of a tolerance: how near the prediction, and how small the doubt about it, is to be
+constexpr double far_from_wanted = 2.0;               // a uniaxial strength by so much larger or smaller
 constexpr double test_share = 0.3;                    // a test is worth a run where the doubt it removes is this share of a tolerance
 
 std::vector<std::size_t> numbers_below(std::size_t count) {
@@ -157,7 +158,6 @@ private:
     void find_strength() {
         strength_learner_.emplace(quantities_, calibration_.targets);
         Learner& learner = *strength_learner_;
-        const std::vector<std::size_t> all = numbers_below(quantities_.size());
         const std::size_t tests = static_cast<std::size_t>(confirmation_runs()) / calibration_.confirm_seeds.size();
         const int for_learning = runs_left() - confirmation_runs();
         const std::size_t affordable = static_cast<std::size_t>(std::max(0, for_learning / 2)) / tests;
@@ -166,8 +166,7 @@ private:
                                         fmt::format("{} runs are too few: {} confirm the answer, and a first look takes {} more", calibration_.budget, confirmation_runs(), 6 * tests),
                                         "more runs, or fewer confirm_seeds");
         note(fmt::format("strengths: {} unknowns, {} points spread over their ranges, {} tests each", strength_.size(), first, tests));
-        const auto points = evenly(strength_.size(), first);
-        see_strength(points, std::vector<std::vector<std::size_t>>(points.size(), all));
+        look_first(evenly(strength_.size(), first));
         learn(learner);
         correct_elastic();
 
@@ -200,6 +199,33 @@ private:
         }
     }
 
+    // Tests under confinement cost most, and teach little of a rock whose uniaxial strength is far from what is wanted: they wait for it.
+    void look_first(const std::vector<std::vector<double>>& points) {
+        std::vector<std::size_t> confined, others;
+        for (std::size_t q = 0; q < quantities_.size(); ++q) (quantities_[q].sigma3_Pa > 0.0 ? confined : others).push_back(q);
+        std::vector<Request> requests;
+        for (const auto& point : points) requests.push_back({values_at(whole(strength_, point)), next_seed(), others});
+        const auto values = see(requests, points, *strength_learner_);
+
+        const std::size_t UCS = index_of(quantities_, "UCS");
+        const auto place = static_cast<std::size_t>(std::find(others.begin(), others.end(), UCS) - others.begin());
+        std::vector<std::pair<double, std::size_t>> by_distance;   // of the uniaxial strength, as a logarithm
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            const double distance = place < others.size() ? std::abs(std::log(values[p][place] / wanted_UCS_Pa(calibration_.targets))) : 0.0;
+            by_distance.emplace_back(std::isnan(distance) ? 0.0 : distance, p);
+        }
+        std::stable_sort(by_distance.begin(), by_distance.end());
+        std::vector<Request> near;
+        std::vector<std::vector<double>> near_points;
+        for (std::size_t i = 0; i < by_distance.size(); ++i) {
+            const auto [distance, p] = by_distance[i];
+            if (distance > std::log(far_from_wanted) && 2 * i >= points.size()) break;
+            near.push_back({requests[p].values, requests[p].seed, confined});
+            near_points.push_back(points[p]);
+        }
+        if (!confined.empty()) see(near, near_points, *strength_learner_);
+    }
+
     int run_count(const std::vector<std::size_t>& wanted) const {
         std::set<std::pair<TestKind, double>> tests;
         for (const std::size_t q : wanted) tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa});
@@ -227,11 +253,12 @@ private:
 
     // ---- both
 
-    void see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) const {
-        const auto values = laboratory_.see(requests, learner.quantities());
+    std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) const {
+        auto values = laboratory_.see(requests, learner.quantities());
         for (std::size_t r = 0; r < requests.size(); ++r)
             for (std::size_t i = 0; i < requests[r].quantities.size(); ++i)
                 learner.observe(requests[r].quantities[i], points[r], requests[r].seed, values[r][i]);
+        return values;
     }
 
     void learn(Learner& learner) const {
@@ -280,7 +307,8 @@ private:
             which = learner.targets()[t].label();
         }
         way_.push_back({laboratory_.used(), &part == &elastic_, worst, which, doubt, doubtful, values_at(best_)});
-        note(fmt::format("{} runs; best so far {}; farthest from its target: {}, {:.2g} times its tolerance", laboratory_.used(), set_text(part), which, worst));
+        note(fmt::format("{} runs; best so far {}; farthest from its target: {}, {:.2g} times its tolerance; most doubtful: {}, {:.2g} times", laboratory_.used(), set_text(part),
+                         which, worst, doubtful, doubt));
     }
 
     CalibrationResult confirm() {

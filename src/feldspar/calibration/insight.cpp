@@ -16,6 +16,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t everywhere = 4096;       // sets that are looked at
+constexpr double enough_sets = 40.0;           // that must count for a range to mean something
 constexpr double evenly_spread = 0.2887;       // standard deviation of a parameter that may be anything: 1 / sqrt(12)
 constexpr double not_determined = 0.5;         // of that: beyond it the data do not say much of a combination
 constexpr double takes_part = 0.35;            // of a direction: an unknown with less has no say in it
@@ -30,6 +31,23 @@ struct WeighedSets {
     std::vector<std::vector<double>> deviations;
     std::vector<double> weights;                   // sum 1
 };
+
+// exp(-badness / 2) times the volume that each set stands for, of sum 1.
+std::vector<double> weights_of(const std::vector<double>& badness, const std::vector<double>& volumes, double seriousness) {
+    const double least = *std::min_element(badness.begin(), badness.end());
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < badness.size(); ++i) weights.push_back(volumes[i] * std::exp(-0.5 * seriousness * (badness[i] - least)));
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (double& weight : weights) weight /= sum;
+    return weights;
+}
+
+// Of how many sets of equal weight the same could be said.
+double counting(const std::vector<double>& weights) {
+    double squares = 0.0;
+    for (const double weight : weights) squares += weight * weight;
+    return 1.0 / squares;
+}
 
 WeighedSets weigh(const Learner& learner, const std::vector<double>& best) {
     WeighedSets sets;
@@ -52,24 +70,25 @@ WeighedSets weigh(const Learner& learner, const std::vector<double>& best) {
             volumes.push_back(4.0 * std::pow(2.0 * half, static_cast<double>(best.size())));
         }
     }
-    std::vector<double> logarithms;
+    std::vector<double> badness;
     for (std::size_t i = 0; i < sets.x.size(); ++i) {
         const Prediction prediction = learner.at(sets.x[i]);
-        double badness = 0.0;
+        double sum = 0.0;
         for (std::size_t t = 0; t < learner.targets().size(); ++t) {
             const double off = prediction.values[t] - learner.targets()[t].value;
             // the tolerance as two standard deviations: nearly all good sets lie within it
             const double allowed = 0.25 * learner.targets()[t].tolerance * learner.targets()[t].tolerance + prediction.deviations[t] * prediction.deviations[t];
-            badness += off * off / allowed;
+            sum += off * off / allowed;
         }
-        logarithms.push_back(std::isfinite(badness) ? -0.5 * badness + std::log(volumes[i]) : -1e300);
+        badness.push_back(std::isfinite(sum) ? sum : 1e300);
         sets.values.push_back(prediction.values);
         sets.deviations.push_back(prediction.deviations);
     }
-    const double largest = *std::max_element(logarithms.begin(), logarithms.end());
-    double sum = 0.0;
-    for (const double logarithm : logarithms) sum += std::exp(logarithm - largest);
-    for (const double logarithm : logarithms) sets.weights.push_back(std::exp(logarithm - largest) / sum);
+    // where no set is good, a handful that is a little less bad than the others would have all the weight: misfits are taken less seriously then
+    for (double seriousness = 1.0; seriousness > 1e-3; seriousness *= 0.7) {
+        sets.weights = weights_of(badness, volumes, seriousness);
+        if (counting(sets.weights) >= enough_sets) break;
+    }
     return sets;
 }
 

@@ -84,7 +84,10 @@ Prediction Learner::at(const std::vector<double>& x) const {
         const std::vector<double> values = targets_by(moved);
         for (std::size_t t = 0; t < targets_.size(); ++t) variances[t] += (values[t] - prediction.values[t]) * (values[t] - prediction.values[t]);
     }
-    for (const double variance : variances) prediction.deviations.push_back(std::sqrt(variance));
+    for (std::size_t t = 0; t < targets_.size(); ++t) {
+        prediction.deviations.push_back(std::sqrt(variances[t]));
+        prediction.misfit += variances[t] / (targets_[t].tolerance * targets_[t].tolerance);
+    }
     return prediction;
 }
 

@@ -13,7 +13,7 @@ namespace feldspar {
 struct Prediction {
     std::vector<double> values;      ///< of each target, in its unit
     std::vector<double> deviations;  ///< standard deviation of what is believed, the same unit
-    double misfit = 0.0;             ///< sum over targets of ((value - target) / tolerance)^2
+    double misfit = 0.0;             ///< expected sum over targets of ((value - target) / tolerance)^2: of the predicted values, and of the doubt about them
 };
 
 /// One surrogate for each quantity; targets follow from them.

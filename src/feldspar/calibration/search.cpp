@@ -87,8 +87,8 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
             for (double& value : x) value = std::clamp(value + reach * normal(engine), 0.0, 1.0);
             candidates.push_back(std::move(x));
         }
-        double largest = -1.0;
-        std::vector<double> next = best;
+        double largest = 0.0;
+        std::vector<double> next = best;   // where nothing promises anything
         for (const std::vector<double>& x : candidates) {
             const std::vector<Belief> beliefs = learner.beliefs(x);
             double improvement = 0.0;

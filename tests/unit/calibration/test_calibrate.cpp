@@ -33,6 +33,7 @@ public:
             std::set<std::pair<TestKind, double>> tests;
             std::vector<double>& own = values.emplace_back();
             const Rock rock{1e9 * request.values[0], 1e6 * request.values[1], request.values[2], request.values[3], request.values[4], request.values[5]};
+            if (!request.elastic && std::abs(std::log(mean(rock, "UCS") / wanted_UCS)) > std::log(2.1)) ++(observables[request.quantities.front()].sigma3_Pa > 0.0 ? far_confined : far_others);
             for (const std::size_t q : request.quantities) {
                 tests.insert({observables[q].test, observables[q].sigma3_Pa});
                 own.push_back(mean(rock, observables[q].name, request.elastic) * scatter(observables[q].name, request.seed) * noise(observables[q].name, request));
@@ -53,6 +54,8 @@ public:
     }
 
     long stop_after = 0;   // requests; 0: never
+    double wanted_UCS = std::nan("");
+    int far_confined = 0, far_others = 0;   // requests for rocks whose UCS is far from it
 
 private:
     static double draw(std::uint64_t seed) {
@@ -142,6 +145,17 @@ TEST_F(CalibrateRock, GoesTheSameWayEveryTime) {
     const CalibrationResult first = calibrate(calibration, one, {}), second = calibrate(calibration, other, {});
     EXPECT_EQ(first.runs, second.runs);
     for (std::size_t u = 0; u < first.unknowns.size(); ++u) EXPECT_EQ(first.unknowns[u].best, second.unknowns[u].best);
+}
+
+TEST_F(CalibrateRock, TestsUnderConfinementWaitForTheUniaxialStrength) {
+    FormulaLaboratory laboratory;
+    std::string targets = targets_of(rocks[1]);   // half of its strength is wanted, which few points of the ranges have
+    const auto at = targets.find("UCS = ");
+    laboratory.wanted_UCS = 0.5 * FormulaLaboratory::mean(rocks[1], "UCS");
+    targets.replace(at, targets.find('\n', at) - at, "UCS = \"" + std::to_string(laboratory.wanted_UCS / 1e6) + " MPa\"");
+    (void)calibrate(read(targets, 150), laboratory, {});
+    EXPECT_GE(laboratory.far_others, 4);
+    EXPECT_LT(2 * laboratory.far_confined, laboratory.far_others);
 }
 
 TEST_F(CalibrateRock, AnInterruptionIsSaid) {

@@ -86,5 +86,40 @@ TEST(Search, PointsFillTheCubeEvenly) {
     }
 }
 
+// Known all over, and met: what a run could still show lies where the target is met, not at whatever candidate comes first.
+TEST(Search, RunsAreMadeOnlyWhereTheyPromiseSomething) {
+    const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"};
+    const auto truth = [](const std::vector<double>& x) { return 1e8 * std::exp(2.0 * x[0] - x[1] + 0.3 * std::sin(5.0 * x[1])); };
+    Target target;
+    target.name = "UCS";
+    target.value = truth({0.4, 0.6});
+    target.tolerance = 0.03 * target.value;
+    Learner learner({strength}, {target});
+    std::uint64_t seed = 0;
+    for (const auto& x : evenly(2, 60, 1)) {
+        learner.observe(0, x, ++seed % 6, truth(x));
+        learner.observe(0, x, ++seed % 6, 1.02 * truth(x));
+    }
+    ASSERT_TRUE(learner.learn());
+    for (std::size_t round = 0; round < 4; ++round)
+        for (const auto& x : promising_points(learner, 2, 3, round)) EXPECT_NEAR(truth(x), target.value, 4.0 * target.tolerance) << round;
+}
+
+// Two sets are predicted to meet the target; the one that was seen often is the answer.
+TEST(Search, OfEquallyGoodSetsTheBestKnownIsChosen) {
+    const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"};
+    Target target;
+    target.name = "UCS";
+    target.value = 1e8;
+    target.tolerance = 0.02e8;
+    Learner learner({strength}, {target});
+    const auto truth = [](double x) { return 1e8 * std::exp(8.0 * (x - 0.2) * (x - 0.8)); };   // met at 0.2 and at 0.8
+    for (int i = 0; i < 12; ++i) learner.observe(0, {0.5 * i / 11.0}, static_cast<std::uint64_t>(i % 4), truth(0.5 * i / 11.0) * (1.0 + 0.01 * (i % 3 - 1)));
+    for (int i = 0; i < 12; ++i) learner.observe(0, {0.2}, static_cast<std::uint64_t>(i % 4), truth(0.2) * (1.0 + 0.01 * (i % 3 - 1)));
+    learner.observe(0, {0.95}, 1, truth(0.95));
+    ASSERT_TRUE(learner.learn());
+    EXPECT_NEAR(best_point(learner, 1, {0.8})[0], 0.2, 0.03);
+}
+
 }  // namespace
 }  // namespace feldspar
