@@ -76,7 +76,7 @@ TEST_F(ReadCalibration, MistakesAreSaid) {
 }
 
 TEST(ExamplesOfCalibrations, Read) {
-    for (const char* name : {"augig.toml", "transjurane.toml"}) {
+    for (const char* name : {"augig.toml", "augig-rigid.toml", "transjurane.toml"}) {
         const Calibration calibration = read_calibration(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples/calibration" / name);
         EXPECT_EQ(calibration.targets.size(), 6u) << name;
         EXPECT_TRUE(contradictions(calibration.targets).empty()) << name;
