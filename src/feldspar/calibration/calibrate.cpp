@@ -133,11 +133,11 @@ private:
                     if (quantities_[q].logarithmic) aim.value *= now / at_half[q].mean;
                     else aim.value += now - at_half[q].mean;
                 }
-        Learner aimed = *elastic_learner_;
-        aimed.aim_at(aims);
+        aimed_ = elastic_learner_;
+        aimed_->aim_at(aims);
         // near by: what E and nu lose until half of the strength depends on the constants too
-        const std::vector<double> x = best_point(aimed, elastic_.size(), x_elastic);
-        const std::vector<Belief> after = aimed.beliefs(x);
+        const std::vector<double> x = best_point(*aimed_, elastic_.size(), x_elastic);
+        const std::vector<Belief> after = aimed_->beliefs(x);
         for (std::size_t q = 0; q < quantities_.size(); ++q) {
             const std::size_t e = index_of(elastic_learner_->quantities(), quantities_[q].name);
             if (e == elastic_learner_->quantities().size()) continue;
@@ -315,7 +315,7 @@ private:
         note(fmt::format("confirming on {} fresh packings: {}", calibration_.confirm_seeds.size(), set_text(numbers_below(calibration_.unknowns.size()))));
         const std::vector<std::size_t> all = numbers_below(quantities_.size());
         std::vector<Request> requests;
-        for (const std::uint64_t seed : calibration_.confirm_seeds) requests.push_back({values_at(best_), seed, all});
+        for (const std::uint64_t seed : calibration_.confirm_seeds) requests.push_back({values_at(best_), seed, all, false, true});
         const auto by_packing = laboratory_.see(requests, quantities_);
         std::vector<std::vector<double>> seen(quantities_.size());
         for (const auto& values : by_packing)
@@ -343,7 +343,7 @@ private:
             result.unknowns.push_back(outcome);
         }
         result.sensitivity.assign(result.targets.size(), std::vector<double>(calibration_.unknowns.size(), std::nan("")));
-        if (elastic_learner_) look_into(*elastic_learner_, calibration_, elastic_, best_, result);
+        if (elastic_learner_) look_into(aimed_ ? *aimed_ : *elastic_learner_, calibration_, elastic_, best_, result);
         if (strength_learner_) look_into(*strength_learner_, calibration_, strength_, best_, result);
         result.job = calibration_.job_with(values_at(best_));
         return result;
@@ -356,6 +356,7 @@ private:
     std::vector<std::size_t> elastic_, strength_;   // unknowns
     std::vector<double> best_;                      // of all unknowns, 0 ... 1
     std::optional<Learner> elastic_learner_, strength_learner_;
+    std::optional<Learner> aimed_;                  // the elastic one, aimed at what E and nu are to be before damage
     std::vector<WayPoint> way_;
     std::size_t turn_ = 0;                          // of the packings
 };

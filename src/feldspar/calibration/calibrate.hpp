@@ -64,6 +64,7 @@ struct Request {
     std::uint64_t seed = 0;                ///< of the packing
     std::vector<std::size_t> quantities;   ///< which of those that it asks for
     bool elastic = false;                  ///< only E and nu, before damage: by a test that ends at a small strain
+    bool whole = false;                    ///< the tests as the job has them; else they end when their strength is known
 };
 
 /// Where the tests are made.

@@ -6,6 +6,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/calibration/calibrate.hpp"
+#include "feldspar/lab/properties.hpp"
 
 namespace feldspar {
 namespace {
@@ -30,6 +31,7 @@ Run RunLaboratory::run_for(const Request& request, const Observable& quantity) c
     for (const TestSpec& test : job.tests) {
         if (test.kind != quantity.test || (test.kind == TestKind::biaxial && test.sigma3_Pa != quantity.sigma3_Pa)) continue;
         TestSpec wanted = test;
+        if (!request.whole) wanted.stop_fraction = std::max(test.stop_fraction, enough_fall);
         if (request.elastic) wanted.maximum_strain = elastic_strain(calibration_);
         return make_run(job, job.variants.front(), wanted, request.seed);
     }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/findings/choose_seeds.hpp"
@@ -18,7 +19,6 @@ namespace feldspar {
 namespace {
 
 constexpr int usual_packings = 5;
-constexpr double enough_fall = 0.94;   ///< a strength is wanted, not the branch behind it: the peak counts as reached at 0.95
 
 bool has(const Job& job, TestKind kind) {
     return std::any_of(job.tests.begin(), job.tests.end(), [kind](const TestSpec& test) { return test.kind == kind; });

@@ -11,6 +11,9 @@
 
 namespace feldspar {
 
+/// A stop_fraction that is enough where a strength is wanted and not the branch behind it: the peak counts as reached at 0.95 (P2).
+inline constexpr double enough_fall = 0.94;
+
 /// Reads E, nu, strengths, sigma_ci and sigma_cd from the history and the cracks of one test (definitions: docs/theory).
 /// Values that the test does not define, or that the record does not reach, are not-a-number.
 TestProperties measure(const TestResult& result);
