@@ -76,11 +76,12 @@ TEST_F(ReadCalibration, MistakesAreSaid) {
 }
 
 TEST(ExamplesOfCalibrations, Read) {
-    for (const char* name : {"augig.toml", "augig-rigid.toml", "transjurane.toml"}) {
-        const Calibration calibration = read_calibration(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples/calibration" / name);
+    for (const char* name : {"examples/calibration/augig.toml", "examples/calibration/augig-rigid.toml", "examples/calibration/transjurane.toml",
+                             "studies/twins/twin-granite.toml", "studies/twins/twin-sandstone.toml", "studies/twins/twin-marble.toml"}) {
+        const Calibration calibration = read_calibration(std::filesystem::path(FELDSPAR_SOURCE_DIR) / name);
         EXPECT_EQ(calibration.targets.size(), 6u) << name;
         EXPECT_TRUE(contradictions(calibration.targets).empty()) << name;
-        EXPECT_EQ(observables_for(calibration).size(), 5u) << name;   // E, nu, UCS, BTS and a confined strength
+        EXPECT_EQ(observables_for(calibration).size(), std::string(name).starts_with("studies") ? 6u : 5u) << name;   // E, nu, UCS, BTS, a confined strength; DTS
     }
 }
 
