@@ -278,13 +278,13 @@ struct NewOptions {
 
 void add_new(CommandLine& line) {
     const auto options = std::make_shared<NewOptions>();
-    CLI::App& command = line.add("new", "print a commented job to start from");
-    CLI::Option* kind = command.add_option("kind", options->kind, "uniaxial-compression, direct-tension, biaxial, brazilian or laboratory (all of them)")->type_name("KIND");
+    CLI::App& command = line.add("new", "print a commented job, study or calibration to start from");
+    CLI::Option* kind = command.add_option("kind", options->kind, "a job: uniaxial-compression, direct-tension, biaxial, brazilian, laboratory (all of them); study; calibration")->type_name("KIND");
     CLI::Option* file = command.add_option("--out", options->file, "write it to this new file instead")->type_name("FILE");
     command.add_flag("--presets", options->presets, "print the materials that a job may name instead")->excludes(kind)->excludes(file);
     line.does(command, [options] {
         if (options->presets) return presets_command();
-        if (options->kind.empty()) throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory");
+        if (options->kind.empty()) throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory, study, calibration");
         return new_command(options->kind, options->file);
     });
 }

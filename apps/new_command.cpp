@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
 #include "commands.hpp"
+#include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/job/presets.hpp"
+#include "feldspar/job/toml_reader.hpp"
+#include "feldspar/study/study.hpp"
 
 namespace feldspar {
 
@@ -18,12 +22,28 @@ ExitCode print_whole(const std::string& text) {
     return ExitCode::success;
 }
 
+std::string file_to_start_from(const std::string& kind) {
+    if (kind == "study") return study_template();
+    if (kind == "calibration") return calibration_template();
+    std::vector<std::string_view> kinds = job_template_kinds();
+    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) return job_template(kind);
+    kinds.insert(kinds.end(), {"study", "calibration"});
+    throw InputError({}, "'" + kind + "' is nothing to start from", listed(kinds), did_you_mean(kind, kinds));
+}
+
+// What to do with it.
+std::string next_step(const std::string& kind, const std::string& file) {
+    if (kind == "study") return fmt::format("its job beside it as rock.toml, then feldspar study {}", file);
+    if (kind == "calibration") return fmt::format("its job beside it as rock.toml, then feldspar calibrate {}", file);
+    return fmt::format("feldspar check {}", file);
+}
+
 }  // namespace
 
 ExitCode presets_command() { return print_whole(preset_overview()); }
 
 ExitCode new_command(const std::string& kind, const std::optional<std::string>& out) {
-    const std::string text = job_template(kind);
+    const std::string text = file_to_start_from(kind);
     if (!out) return print_whole(text);
     errno = 0;
     std::FILE* file = std::fopen(out->c_str(), "wx");  // x: never an existing file
@@ -41,7 +61,7 @@ ExitCode new_command(const std::string& kind, const std::optional<std::string>& 
         std::remove(out->c_str());
         throw OutputError(fmt::format("'{}' could not be written to its end", *out));
     }
-    fmt::print(stderr, "wrote {}; next: feldspar check {}\n", *out, *out);
+    fmt::print(stderr, "wrote {}; next: {}\n", *out, next_step(kind, *out));
     return ExitCode::success;
 }
 

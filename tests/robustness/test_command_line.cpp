@@ -74,7 +74,7 @@ TEST(CommandLine, SaysHowManyTestsAtOnceAreAllowed) {
 
 TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {
     const TemporaryFolder place;
-    for (const char* kind : {"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory"}) {
+    for (const char* kind : {"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory", "study", "calibration"}) {
         const Outcome printed = run_program(place.path(), {"new", kind});
         EXPECT_EQ(printed.code, 0);
         const std::string file = std::string(kind) + ".toml";

@@ -69,6 +69,9 @@ struct Calibration {
 Calibration read_calibration(const std::filesystem::path& file);
 Calibration parse_calibration(const std::string& text, const std::filesystem::path& name);
 
+/// A commented calibration to start from, which reads as it stands beside a job "rock.toml" with a uniaxial, a Brazilian and a biaxial test.
+std::string calibration_template();
+
 /// What the targets need to be known of runs, each once.
 std::vector<Observable> observables_for(const Calibration& calibration);
 

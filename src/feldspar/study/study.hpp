@@ -57,6 +57,9 @@ Study read_study(const std::filesystem::path& file);
 /// The same from text; `name` stands in for the file in messages and for finding the job.
 Study parse_study(const std::string& text, const std::filesystem::path& name);
 
+/// A commented study to start from, which reads as it stands beside a job "rock.toml" with a uniaxial test.
+std::string study_template();
+
 /// A study of a job as it is: a point for each variant (axis "variant"), all tests, all seeds.
 Study study_of(const Job& job, const std::string& name, const std::filesystem::path& results);
 

@@ -5,6 +5,7 @@
 
 #include "calibration_files.hpp"
 #include "feldspar/base/error.hpp"
+#include "feldspar/job/job_template.hpp"
 
 namespace feldspar {
 namespace {
@@ -83,6 +84,18 @@ TEST(ExamplesOfCalibrations, Read) {
         EXPECT_TRUE(contradictions(calibration.targets).empty()) << name;
         EXPECT_EQ(observables_for(calibration).size(), std::string(name).starts_with("studies") ? 6u : 5u) << name;   // E, nu, UCS, BTS, a confined strength; DTS
     }
+}
+
+TEST(CalibrationTemplate, ReadsBesideAJob) {
+    const TemporaryFolder folder;
+    folder.write("rock.toml", job_template("laboratory"));
+    const Calibration calibration = parse_calibration(calibration_template(), folder / "targets.toml");
+    EXPECT_EQ(calibration.targets.size(), 5u);
+    EXPECT_EQ(calibration.unknowns.size(), 7u);
+    const Calibration all = parse_calibration(switched_on(calibration_template()), folder / "targets.toml");
+    EXPECT_EQ(all.targets.size(), 8u);
+    EXPECT_EQ(all.seeds.size(), 10u);
+    EXPECT_TRUE(contradictions(all.targets).empty());
 }
 
 }  // namespace

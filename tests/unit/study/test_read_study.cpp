@@ -5,6 +5,7 @@
 #include <set>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/job/job_template.hpp"
 #include "feldspar/study/study.hpp"
 #include "../../small_study.hpp"
 
@@ -227,6 +228,15 @@ TEST(ReadStudyFile, WithoutItsJobSaysWhereItLooked) {
         EXPECT_NE(error.problem().find((folder / "nowhere.toml").string()), std::string::npos);
         EXPECT_EQ(error.place().line, 1);
     }
+}
+
+TEST(StudyTemplate, ReadsBesideAJob) {
+    const TemporaryFolder folder;
+    folder.write("rock.toml", job_template("laboratory"));
+    const Study study = parse_study(study_template(), folder / "study.toml");
+    EXPECT_EQ(study.points.size(), 6u);
+    EXPECT_EQ(study.runs.size(), 18u);
+    EXPECT_EQ(parse_study(switched_on(study_template()), folder / "study.toml").points.size(), 24u);
 }
 
 }  // namespace

@@ -1,0 +1,50 @@
+#include "feldspar/calibration/calibration.hpp"
+
+namespace feldspar {
+
+std::string calibration_template() {
+    return R"(# From laboratory numbers to contact parameters: with which values of the unknowns does the model show the targets (docs/calibration.md)?
+#
+#   feldspar calibrate CALIBRATION.toml     learns, chooses, confirms on fresh packings. It may be interrupted: the same command goes on
+#
+# The numbers are those of the Augig granite (Monteiro Azevedo, Farinha, Oliveira 2022, Geotechnics 2, 523-548, Table 3): replace them with yours.
+# A line that begins with '#' shows a key that may be left out.
+
+job = "rock.toml"                   # specimen, kind of grains, tests; to start from: feldspar new laboratory --out rock.toml
+budget = 300                        # runs at most; one run is one test on one packing: seconds each
+# seeds = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]     # packings to learn from; 1 to 20 unless given
+# confirm_seeds = [1001, 1002, 1003, 1004, 1005]   # fresh ones, which confirm the answer; 1001 to 1010 unless given
+
+[targets]                           # means over packings; leave out what you have not
+E = "25.8 GPa"
+nu = 0.23
+UCS = { value = "122.1 MPa", tolerance = "5 %" }    # met within its tolerance; or standard_deviation = "5 MPa"
+# DTS = "8 MPa"
+BTS = "8.8 MPa"                     # scatters from packing to packing: bearing strips (docs/job.md, plate_Kn) calm it
+# cohesion = "21 MPa"               # of a straight envelope through the uniaxial and all biaxial tests of the job
+friction_angle = "53 deg"
+# sigma1 = [{ sigma3 = "10 MPa", value = "210 MPa" }]
+
+[[unknown]]                         # keys of the job; a range that is not given follows from the targets
+key = "material.grain.E"
+[[unknown]]
+key = "material.grain.nu"
+[[unknown]]
+key = "material.contact.sigma_nt"
+# range = ["4 MPa", "20 MPa"]
+[[unknown]]
+name = "tau/sigma_nt"
+key = "material.contact.tau"
+times = "material.contact.sigma_nt" # a multiple of what this key has
+[[unknown]]
+key = "material.contact.mu"
+[[unknown]]
+key = "material.contact.Gfn"
+[[unknown]]
+name = "Gfs/Gfn"
+key = "material.contact.Gfs"
+times = "material.contact.Gfn"
+)";
+}
+
+}  // namespace feldspar
