@@ -143,6 +143,7 @@ ExitCode check_command(const JobOptions& options) {
     const int threads = thread_count(job.threads);
     fmt::print("Job {} is sound: {} runs of {} tests{}, {} thread{}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
                job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", threads, threads == 1 ? "" : "s");
+    for (const std::string& warning : warnings(job)) fmt::print("warning: {}\n\n", warning);
     Check(job, threads).run();
     return ExitCode::success;
 }

@@ -73,6 +73,7 @@ public:
         specimens_.make(runs_, threads_, [this](const std::string& what, const SpecimenProgress& p) { progress_.making(what, p); });
         side_by_side(static_cast<int>(runs_.size()), threads_, [this](int i) { judge_setting(runs_[static_cast<std::size_t>(i)]); });
         progress_.clear();
+        for (const std::string& warning : warnings(job_)) warn(warning);
         for (const PlannedRun& run : runs_)
             for (const std::string& warning : specimens_.get(run)->quality.warnings) warn(warning);
     }

@@ -346,6 +346,7 @@ private:
         if (elastic_learner_) look_into(aimed_ ? *aimed_ : *elastic_learner_, calibration_, elastic_, best_, result);
         if (strength_learner_) look_into(*strength_learner_, calibration_, strength_, best_, result);
         result.job = calibration_.job_with(values_at(best_));
+        for (const std::string& warning : warnings(result.job)) result.findings.push_back(warning + ".");
         return result;
     }
 

@@ -64,6 +64,9 @@ Job read_job(const std::filesystem::path& file);
 /// The same from text (tests and the `new` command); `name` stands in for the file in messages.
 Job parse_job(const std::string& text, const std::string& name);
 
+/// Sentences on what is allowed but may not be what was meant; none if there is nothing to say.
+std::vector<std::string> warnings(const Job& job);
+
 /// The job with every default written out, as TOML: provenance that can be run again.
 std::string resolved_toml(const Job& job);
 

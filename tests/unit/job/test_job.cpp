@@ -305,6 +305,19 @@ TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {
                              edited("kind = \"flexible\"", "kind = \"rigid\"")));
 }
 
+TEST(Warnings, NameADirectionThatDoesNotSoften) {
+    EXPECT_TRUE(warnings(parse_job(sample_job, "job")).empty());
+    // 8.5^2 / (2 x 18e4) MPa^2 m/GPa = 0.2007 N/m; 29.75^2 / (2 x 0.28 x 18e4) = 8.78 N/m
+    EXPECT_TRUE(warnings(parse_job(edited("Gfn = \"20 N/m\"", "Gfn = \"0.202 N/m\"", edited("Gfs = \"800 N/m\"", "Gfs = \"8.8 N/m\"")), "job")).empty());
+    const auto tension = warnings(parse_job(edited("Gfn = \"20 N/m\"", "Gfn = \"0.2 N/m\""), "job"));
+    ASSERT_EQ(tension.size(), 1u);
+    EXPECT_NE(tension[0].find("Gfn = 0.2 N/m"), std::string::npos) << tension[0];
+    const auto shear = warnings(parse_job(edited("Gfs = \"800 N/m\"", "Gfs = \"8.7 N/m\""), "job"));
+    ASSERT_EQ(shear.size(), 1u);
+    EXPECT_NE(shear[0].find("8.78 N/m"), std::string::npos) << shear[0];
+    EXPECT_TRUE(warnings(parse_job(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")), "job")).empty());
+}
+
 TEST(JobTemplate, EveryKindIsAJob) {
     for (std::string_view kind : job_template_kinds()) {
         SCOPED_TRACE(kind);
