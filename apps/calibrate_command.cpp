@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/calibration/calibration_files.hpp"
@@ -28,8 +27,6 @@ public:
     void clear() { progress_.clear(); }
 
 private:
-    static std::string label_of(const Run& run) { return fmt::format("{}, seed {}", title(run.test()), run.seed()); }
-
     int budget_;
     Progress progress_;
 };

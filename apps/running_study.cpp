@@ -59,10 +59,12 @@ private:
 
 }  // namespace
 
+std::string label_of(const Run& run) { return fmt::format("{}, seed {}", title(run.test()), run.seed()); }
+
 std::string label_of(const Study& study, const Run& run) {
     std::string text;
     for (const AxisValue& value : study.points[run.point].values) text += (text.empty() ? "" : ", ") + value.label;
-    return fmt::format("{}{}{}, seed {}", text, text.empty() ? "" : ": ", title(run.test()), run.seed());
+    return text + (text.empty() ? "" : ": ") + label_of(run);
 }
 
 std::string result_text(const RunRecord& record) {

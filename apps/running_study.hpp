@@ -15,6 +15,9 @@ struct StudyRunning {
     std::string command_line;   ///< for provenance
 };
 
+/// "biaxial at 4 MPa, seed 1".
+std::string label_of(const Run& run);
+
 /// "rigid, 2: biaxial at 4 MPa, seed 1".
 std::string label_of(const Study& study, const Run& run);
 

@@ -1,7 +1,6 @@
 // An empty folder of a test's own that vanishes with it, and whole files as text.
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -23,19 +22,6 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
 /// Number of entries, hidden ones too: a temporary file left behind is counted.
 inline int count_entries(const std::filesystem::path& directory) {
     return static_cast<int>(std::distance(std::filesystem::directory_iterator(directory), std::filesystem::directory_iterator()));
-}
-
-/// A commented file with every line "# key = value" and "# [table]" switched on.
-inline std::string switched_on(const std::string& text) {
-    std::string on;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find('\n', at), text.size());
-        const std::string line = text.substr(at, end - at);
-        const bool off = line.starts_with("# [") || (line.starts_with("# ") && line.find(" = ") != std::string::npos && line.find(" = ") == line.find(' ', 2));
-        on += (off ? line.substr(2) : line) + "\n";
-        at = end + 1;
-    }
-    return on;
 }
 
 class TemporaryFolder {

@@ -209,9 +209,10 @@ private:
 
         const std::size_t UCS = index_of(quantities_, "UCS");
         const auto place = static_cast<std::size_t>(std::find(others.begin(), others.end(), UCS) - others.begin());
+        const double wanted = wanted_UCS_Pa(calibration_.targets);
         std::vector<std::pair<double, std::size_t>> by_distance;   // of the uniaxial strength, as a logarithm
         for (std::size_t p = 0; p < points.size(); ++p) {
-            const double distance = place < others.size() ? std::abs(std::log(values[p][place] / wanted_UCS_Pa(calibration_.targets))) : 0.0;
+            const double distance = place < others.size() ? std::abs(std::log(values[p][place] / wanted)) : 0.0;
             by_distance.emplace_back(std::isnan(distance) ? 0.0 : distance, p);
         }
         std::stable_sort(by_distance.begin(), by_distance.end());

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "../../switched_on.hpp"
 #include "calibration_files.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job_template.hpp"

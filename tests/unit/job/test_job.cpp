@@ -9,6 +9,7 @@
 #include "feldspar/job/job.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/job/job_template.hpp"
+#include "../../switched_on.hpp"
 #include "../../table7.hpp"
 #include "sample_job.hpp"
 
@@ -357,18 +358,10 @@ TEST(Examples, TheAugigGraniteIsTable7) {
 TEST(JobTemplate, TheCommentedDefaultsAreTheDefaults) {
     // every line that begins "# key = value" is switched on, save those that show alternatives
     const std::string text = job_template("laboratory");
-    std::string on;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = text.find('\n', at);
-        std::string line = text.substr(at, end - at);
-        at = end + 1;
-        const bool alternative = line.find("distribution") != std::string::npos || line.starts_with("# DTS") ||
-                                 line.starts_with("# hoek") || line.starts_with("# maximum_steps") || line.starts_with("# seeds");
-        if (line.starts_with("# ") && line.find(" = ") != std::string::npos && line.find(" = ") == line.find(' ', 2) &&
-            !alternative)
-            line = line.substr(2);
-        on += line + "\n";
-    }
+    const std::string on = switched_on(text, [](const std::string& line) {
+        return line.find("distribution") != std::string::npos || line.starts_with("# DTS") || line.starts_with("# hoek") ||
+               line.starts_with("# maximum_steps") || line.starts_with("# seeds");
+    });
     EXPECT_NE(on, text);
     expect_same(parse_job(on, "job"), parse_job(text, "job"));
 }

@@ -8,6 +8,7 @@
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/study/study.hpp"
 #include "../../small_study.hpp"
+#include "../../switched_on.hpp"
 
 namespace feldspar {
 namespace {
