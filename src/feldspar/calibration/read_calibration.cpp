@@ -52,13 +52,14 @@ public:
     CalibrationReader(const std::string& text, const std::filesystem::path& file)
         : tree_(parse_toml(text, file.string())),
           root_(required(TableReader(tree_, "", file.string(),
-                                     {"name", "job", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"}))),
+                                     {"name", "job", "set", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"}))),
           result_{file, text, {}, {}, BaseJob(root_, file), {}, {}, {}, {}, 300, {}} {}
 
     Calibration read() {
         result_.name = root_.text("name", variant_stem(result_.file.stem().string()));
         result_.results = std::filesystem::path("results") / root_.text("results", result_.name);
         if (result_.base.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
+        read_set();
         read_seeds();
         read_targets();
         read_unknowns();
@@ -70,6 +71,14 @@ private:
     static TableReader required(const TableReader& root) {
         root.require({"job", "targets", "unknown"});
         return root;
+    }
+
+    void read_set() {
+        try {
+            rock_ = result_.base.with({});
+        } catch (const InputError& error) {
+            throw InputError({root_.file(), 0, 0, "set"}, error.place().key + " " + error.problem(), error.allowed(), error.suggestion());
+        }
     }
 
     void read_seeds() {
@@ -114,7 +123,7 @@ private:
         }
         if (result_.targets.empty()) root_.fail("targets", "there is no target", listed(names));
         std::vector<double>& sigma3 = result_.sigma3_Pa;
-        for (const TestSpec& test : result_.base.job().tests)
+        for (const TestSpec& test : rock_.tests)
             if (test.kind == TestKind::biaxial) sigma3.push_back(test.sigma3_Pa);
         for (const Target& target : result_.targets) {
             const bool envelope = target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
@@ -124,7 +133,7 @@ private:
                 table.fail("sigma1", fmt::format("the job has no biaxial test at {:g} MPa", target.sigma3_Pa / 1e6), "a sigma3 of the job's biaxial tests");
         }
         for (const Observable& quantity : observables_for(result_))
-            if (std::none_of(result_.base.job().tests.begin(), result_.base.job().tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
+            if (std::none_of(rock_.tests.begin(), rock_.tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
                 root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name), fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
     }
 
@@ -158,8 +167,8 @@ private:
         const double E = target("E"), ratio = target("UCS_over_BTS");
         const double UCS = wanted_UCS_Pa(result_.targets);
         const double tension = first({target("DTS"), target("BTS"), UCS / first({ratio, 13.0})});
-        const double diameter = typical_diameter_m(result_.base.job().specimen.grain_sizes);
-        const bool flexible = result_.base.job().variants.front().model.kind == GrainKind::flexible;
+        const double diameter = typical_diameter_m(rock_.specimen.grain_sizes);
+        const bool flexible = rock_.variants.front().model.kind == GrainKind::flexible;
         return {{"material.grain.E", 0.8 * E, 1.6 * E, true},
                 {"material.grain.nu", 0.1, 0.4, true, false},
                 {"material.contact.Kn", (flexible ? 4.0 : 0.5) * E / diameter, (flexible ? 60.0 : 4.0) * E / diameter, true},
@@ -265,6 +274,7 @@ private:
     toml::table tree_;
     TableReader root_;
     Calibration result_;
+    Job rock_;   // the job before anything is known of the unknowns
 };
 
 }  // namespace

@@ -67,14 +67,12 @@ void check_variant(const TableReader& table, const Variant& variant, const Job& 
 std::vector<TestKind> read_kinds(const TableReader& table) {
     std::vector<TestKind> kinds;
     if (!table.has("tests")) return kinds;
-    const std::initializer_list<TestKind> all{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial,
-                                              TestKind::brazilian};
     std::vector<std::string_view> words;
-    for (TestKind kind : all) words.emplace_back(name(kind));
+    for (TestKind kind : test_kinds) words.emplace_back(name(kind));
     for (const toml::node& node : table.array("tests")) {
         const std::string word = table.text_of(node, "tests");
-        const auto found = std::find_if(all.begin(), all.end(), [&](TestKind kind) { return word == name(kind); });
-        if (found == all.end())
+        const auto found = std::find_if(test_kinds.begin(), test_kinds.end(), [&](TestKind kind) { return word == name(kind); });
+        if (found == test_kinds.end())
             table.fail_at(node, "tests", "'" + word + "' is not a kind of test", listed(words), did_you_mean(word, words));
         if (std::find(kinds.begin(), kinds.end(), *found) != kinds.end())
             table.fail_at(node, "tests", "'" + word + "' is given twice", "each kind once");

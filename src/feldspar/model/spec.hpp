@@ -1,6 +1,7 @@
 // What the user asks of the physics: the particle model, the materials, the numerics and the test, as plain data in SI.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ struct NumericsSpec {
 };
 
 enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian };
+inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian};
 
 struct TestSpec {
     TestKind kind = TestKind::uniaxial_compression;

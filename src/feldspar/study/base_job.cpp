@@ -60,6 +60,33 @@ void lay_over(toml::table& under, const toml::table& over) {
     }
 }
 
+namespace {
+
+bool is_test_kind(std::string_view word) {
+    return std::any_of(test_kinds.begin(), test_kinds.end(), [&](TestKind kind) { return word == name(kind); });
+}
+
+// Keys for every test, and tables named as a kind of test, for the tests of that kind.
+void lay_over_tests(toml::array& tests, const toml::table& piece) {
+    std::vector<std::string_view> kinds;
+    for (const toml::node& test : tests) kinds.push_back(test.as_table()->at("kind").ref<std::string>());
+    toml::table for_all;
+    for (const auto& [key, value] : piece)
+        if (!is_test_kind(key.str())) for_all.insert_or_assign(key, value);
+    for (toml::node& test : tests) lay_over(*test.as_table(), for_all);
+    for (const auto& [key, value] : piece) {
+        if (!is_test_kind(key.str())) continue;
+        const std::string dotted = "test." + std::string(key.str());
+        if (!value.is_table()) throw InputError({{}, 0, 0, dotted}, "is not a table of keys for the tests of that kind", dotted + ".<key>");
+        if (std::find(kinds.begin(), kinds.end(), key.str()) == kinds.end())
+            throw InputError({{}, 0, 0, dotted}, "the job has no test of this kind", listed(kinds));
+        for (std::size_t i = 0; i < kinds.size(); ++i)
+            if (kinds[i] == key.str()) lay_over(*tests[i].as_table(), *value.as_table());
+    }
+}
+
+}  // namespace
+
 std::string read_job_key(const TableReader& table, std::string_view key, const std::string& dotted) {
     const std::vector<std::string> path = split(dotted);
     if (path.size() < 2 || std::find(job_pieces.begin(), job_pieces.end(), path.front()) == job_pieces.end() ||
@@ -88,6 +115,13 @@ std::vector<std::pair<std::string, double>> read_coupled(const TableReader& tabl
     return factors;
 }
 
+toml::table read_piece(const TableReader& table, std::string_view key) {
+    const toml::node& node = *table.find(key);
+    if (!node.is_table()) table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }");
+    (void)table.table(key, job_pieces);   // refuses other names
+    return *node.as_table();
+}
+
 BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : file_(root.text("job")) {
     if (file_.is_relative()) file_ = file.parent_path() / file_;
     try {
@@ -97,17 +131,20 @@ BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : f
     }
     tree_ = parse_toml(text_, file_.string());
     job_ = read_tree(tree_, text_, file_.string());
+    if (root.has("set")) common_ = read_piece(root, "set");
 }
 
 Job BaseJob::with(const toml::table& piece) const {
     toml::table tree = tree_;
+    toml::table whole = common_;
+    lay_over(whole, piece);
     toml::table variant{{"name", "point"}};
-    for (const auto& [key, value] : piece) {
+    for (const auto& [key, value] : whole) {
         const std::string_view name = key.str();
         if (name == "specimen") {
             lay_over(*tree.get("specimen")->as_table(), *value.as_table());
         } else if (name == "test") {
-            for (toml::node& test : *tree.get("test")->as_array()) lay_over(*test.as_table(), *value.as_table());
+            lay_over_tests(*tree.get("test")->as_array(), *value.as_table());
         } else {
             variant.insert_or_assign(name, value);
         }

@@ -31,23 +31,28 @@ void insert(toml::table& piece, const std::string& key, const Measure& measure);
 /// Lays a table over another, key by key. A grain size distribution replaces another as a whole.
 void lay_over(toml::table& under, const toml::table& over);
 
+/// The piece of a job that a key holds. @throws InputError unless it is a table of job_pieces; what is in it is judged with the whole job
+toml::table read_piece(const TableReader& table, std::string_view key);
+
 /// The dotted key, checked to be of a job's pieces. @param key  of the table, for messages
 std::string read_job_key(const TableReader& table, std::string_view key, const std::string& dotted);
 
 /// `coupled` of a table, such as { material.contact.Gfs = 31.5 }: dotted keys and the factors by which they follow another one.
 std::vector<std::pair<std::string, double>> read_coupled(const TableReader& table);
 
-/// [specimen] and [[test]] are changed in place; [model], [material] and [numerics] are given as a variant, so that what goes before what
+/// The job that a file names by `job`, with the file's `[set]`, if there is one, laid over it. In a piece `test.plate_mu` is for every test,
+/// `test.brazilian.plate_Kn` for those of that kind. [specimen] and [[test]] are changed in place; [model], [material] and [numerics] are given as a variant, so that what goes before what
 /// is decided in one place (job/read_physics.cpp).
 class BaseJob {
 public:
-    /// Reads the job that the key `job` of a file names; a relative path counts from that file's folder. @throws InputError
+    /// Reads the keys `job` and `set` of a file; a relative path counts from that file's folder. @throws InputError
     BaseJob(const TableReader& root, const std::filesystem::path& file);
 
+    /// As the job's own file has it.
     const Job& job() const { return job_; }
     const toml::table& tree() const { return tree_; }
 
-    /// The job with a piece laid over it; with a single variant without a name. @throws InputError
+    /// The job with `[set]` and a piece laid over it; with a single variant without a name. @throws InputError
     Job with(const toml::table& piece) const;
 
     /// What a key has in the resolved job with this piece, presets and defaults included. @throws InputError unless it is a number
@@ -58,6 +63,7 @@ private:
     std::string text_;
     std::filesystem::path file_;
     Job job_;
+    toml::table common_;   // [set]
 };
 
 }  // namespace feldspar

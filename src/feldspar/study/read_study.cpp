@@ -90,21 +90,12 @@ private:
         seeds_ = root_.has("seeds") ? read_seed_list(root_, "seeds") : std::vector<std::uint64_t>{};
         tests_ = read_kinds(root_);
         for (TestKind kind : tests_) check_kind(root_, kind);
-        if (root_.has("set")) common_ = read_piece(root_, "set");
     }
 
     void check_kind(const TableReader& table, TestKind kind) const {
         const auto& tests = base_.job().tests;
         if (std::none_of(tests.begin(), tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
             table.fail("tests", fmt::format("the job has no test of kind '{}'", name(kind)), "kinds that stand in a [[test]] of the job");
-    }
-
-    // A piece of a job; what is in it is judged with the whole job of a point.
-    toml::table read_piece(const TableReader& table, std::string_view key) const {
-        const toml::node& node = *table.find(key);
-        if (!node.is_table()) table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }");
-        (void)table.table(key, job_pieces);   // refuses other names
-        return *node.as_table();
     }
 
     Axis variant_axis() const {
@@ -201,7 +192,7 @@ private:
         Point point;
         for (const Choice* choice : chosen) point.values.push_back(choice->value);
         try {
-            toml::table piece = common_;
+            toml::table piece;
             for (std::size_t a = 0; a < axes_.size(); ++a)
                 if (axes_[a].times.empty()) add(piece, axes_[a], *chosen[a]);
             for (std::size_t a = 0; a < axes_.size(); ++a)

@@ -49,6 +49,18 @@ TEST_F(ReadCalibration, RangesFollowFromTheRock) {
     EXPECT_DOUBLE_EQ(job.variants.front().grain.E_Pa, 26e9);
 }
 
+TEST_F(ReadCalibration, PiecesAreLaidOverTheJob) {
+    const Calibration calibration = folder_.read("[set]\ntest.brazilian.plate_Kn = \"900 GPa/m\"\ntest.biaxial.sigma3 = \"5 MPa\"\nmaterial.contact.mu = 0.25\n"
+                                                 "[targets]\nsigma1 = [{ sigma3 = \"5 MPa\", value = \"150 MPa\" }]\nBTS = \"9 MPa\"\n[[unknown]]\nkey = \"material.contact.sigma_nt\"\n");
+    const Job job = calibration.job_with({8.0});
+    EXPECT_DOUBLE_EQ(job.tests[2].plate_Kn_Pa_m.value(), 900e9);
+    EXPECT_DOUBLE_EQ(job.variants.front().contact.mu, 0.25);
+    EXPECT_EQ(calibration.sigma3_Pa, std::vector<double>{5e6});
+    const InputError unknown = mistake("[set]\ntest.brazilian.plate_kn = 1\n[targets]\nBTS = \"9 MPa\"\n[[unknown]]\nkey = \"material.contact.sigma_nt\"\n");
+    EXPECT_EQ(unknown.place().key, "set");
+    EXPECT_NE(unknown.suggestion().find("plate_Kn"), std::string::npos);
+}
+
 TEST_F(ReadCalibration, ValuesAndParametersAreInverse) {
     Unknown unknown;
     unknown.low = 4.0;

@@ -105,6 +105,7 @@ TEST_F(ReadStudy, PiecesReachSpecimenNumericsAndTests) {
 specimen.width = "15 mm"
 numerics.accuracy = "2 %"
 test.stop_fraction = 0.9
+test.direct-tension.stop_fraction = 0.7
 [[axis]]
 name = "grains"
 [[axis.value]]
@@ -118,7 +119,8 @@ set = { specimen.grains.diameter = { distribution = "sieve", curve = [["1 mm", 0
     EXPECT_DOUBLE_EQ(job.specimen.outline.width_m, 0.015);
     EXPECT_DOUBLE_EQ(job.specimen.grain_sizes.maximum_m, 0.002);
     EXPECT_DOUBLE_EQ(job.variants.front().numerics.accuracy, 0.02);
-    EXPECT_DOUBLE_EQ(job.tests[1].stop_fraction, 0.9);
+    EXPECT_DOUBLE_EQ(job.tests[0].stop_fraction, 0.9);
+    EXPECT_DOUBLE_EQ(job.tests[1].stop_fraction, 0.7);   // keys for one kind go before those for all
     EXPECT_EQ(study.points[1].job.specimen.grain_sizes.kind, GrainSizeKind::sieve);
 }
 
@@ -209,6 +211,8 @@ TEST_F(ReadStudy, MistakesAreSaidWithPlaceAndSuggestion) {
 
     EXPECT_NE(mistake("axes = 1\n").suggestion().find("axis"), std::string::npos);
     EXPECT_NE(mistake("[set]\nlaboratory.UCS = \"1 MPa\"\n").allowed().find("material"), std::string::npos);
+    EXPECT_NE(mistake("[set]\ntest.brazilian.plate_mu = 0.1\n").allowed().find("direct-tension"), std::string::npos);   // the job has no such test
+    EXPECT_EQ(mistake("[set]\ntest.direct-tension = 1\n").place().key, "test.direct-tension");
     EXPECT_EQ(mistake("tests = [\"brazilian\"]\n").place().line, 2);
     EXPECT_EQ(mistake("seeds = [1, 1]\n").place().line, 2);
     EXPECT_EQ(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\nvalues = []\n").place().key, "axis[1].values");
