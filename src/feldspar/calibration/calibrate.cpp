@@ -22,6 +22,8 @@ constexpr std::size_t first_points_per_unknown = 4;   // of the space-filling se
 constexpr std::size_t points_per_round = 4;           // whatever the number of threads: the way must be the same on every machine
 constexpr std::size_t most_elastic_rounds = 4;
 constexpr double good_share = 0.5;                    // of a tolerance: how near the prediction, and how small the doubt about it, is to be
+constexpr std::size_t patience = 5;                   // rounds: a search that cannot meet its targets ends when so many have brought nothing
+constexpr double nothing = 0.02;                      // relative change of the expected misfit
 constexpr double far_from_wanted = 2.0;               // a uniaxial strength by so much larger or smaller
 constexpr double test_share = 0.3;                    // a test is worth a run where the doubt it removes is this share of a tolerance
 
@@ -170,6 +172,7 @@ private:
         learn(learner);
         correct_elastic();
 
+        std::vector<double> misfits;   // of the best, by rounds
         for (std::size_t round = 0;; ++round) {
             learn(learner);
             const std::vector<double> x = best_point(learner, strength_.size());
@@ -177,6 +180,11 @@ private:
             tell(learner, strength_);
             const int affordable_runs = runs_left() - confirmation_runs();
             if (settled(learner, x) || affordable_runs <= 0) break;
+            misfits.push_back(learner.at(x).misfit);
+            if (well_known(learner, x) && stalled(misfits)) {
+                note(fmt::format("{} rounds have brought no better set: the search ends with {} runs left", patience, affordable_runs));
+                break;
+            }
             std::vector<std::vector<double>> next = promising_points(learner, strength_.size(), points_per_round - 1, round);
             next.push_back(x);   // what would be the answer
             std::vector<std::vector<std::size_t>> wanted;
@@ -270,15 +278,26 @@ private:
         for (std::size_t i = 0; i < part.size(); ++i) best_[part[i]] = x[i];
     }
 
-    // Every target is predicted well within its tolerance, and no more runs would make that much surer.
+    // Every target is predicted well within its tolerance, and that is well known.
     static bool settled(const Learner& learner, const std::vector<double>& x) {
         const Prediction prediction = learner.at(x);
         for (std::size_t t = 0; t < learner.targets().size(); ++t)
             if (!(std::abs(prediction.values[t] - learner.targets()[t].value) <= good_share * learner.targets()[t].tolerance)) return false;
+        return well_known(learner, x);
+    }
+
+    // No more runs would make the prediction much surer.
+    static bool well_known(const Learner& learner, const std::vector<double>& x) {
         const std::vector<double> doubts = learner.doubts(x), lasting = learner.lasting_doubts(x);
         for (std::size_t q = 0; q < doubts.size(); ++q)
             if (doubts[q] > std::max(good_share, 1.3 * lasting[q])) return false;
         return true;
+    }
+
+    static bool stalled(const std::vector<double>& misfits) {
+        if (misfits.size() <= patience) return false;
+        const auto [least, most] = std::minmax_element(misfits.end() - patience - 1, misfits.end());
+        return *most <= (1.0 + nothing) * *least;
     }
 
     std::string set_text(const std::vector<std::size_t>& part) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -24,11 +25,59 @@ constexpr double nearly_all = 0.75;            // of an unknown lies in such dir
 
 double mean(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()); }
 
-// Sets of the unknowns with the weight of what is believed of them: how well all targets are met, doubt included.
+// What is believed of the targets at one set, in tolerances. The doubt is about measured quantities: targets that hang on the same ones go together.
+struct Standing {
+    std::vector<double> values;   // of the targets, in their units
+    Eigen::VectorXd off;          // from what is wanted; not finite where a target does not exist
+    Eigen::MatrixXd doubt;        // by target and quantity: what one standard deviation adds
+
+    // The tolerance as two standard deviations, since nearly all good sets lie within it, and the doubt.
+    Eigen::MatrixXd allowed() const { return doubt * doubt.transpose() + 0.25 * Eigen::MatrixXd::Identity(off.size(), off.size()); }
+
+    bool exists() const { return off.allFinite() && doubt.allFinite(); }
+
+    Standing of(const std::vector<std::size_t>& some) const {
+        Standing part{values, Eigen::VectorXd(some.size()), Eigen::MatrixXd(some.size(), doubt.cols())};
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            const auto row = static_cast<Eigen::Index>(i), from = static_cast<Eigen::Index>(some[i]);
+            part.off[row] = off[from];
+            part.doubt.row(row) = doubt.row(from);
+        }
+        return part;
+    }
+
+    // How unlikely it is that these targets are all met: -2 times the logarithm, but for a constant.
+    double badness() const {
+        if (!exists()) return 1e300;
+        const Eigen::LLT<Eigen::MatrixXd> root(allowed());
+        return off.dot(root.solve(off)) + 2.0 * root.matrixLLT().diagonal().array().log().sum();
+    }
+
+    // How far the farthest of these targets is off if the doubt is taken in their favour, by one standard deviation.
+    double least_off() const {
+        if (!exists()) return 1e9;
+        Eigen::VectorXd favour = -doubt.transpose() * allowed().llt().solve(off);
+        if (favour.norm() > 1.0) favour.normalize();
+        return (off + doubt * favour).cwiseAbs().maxCoeff();
+    }
+};
+
+Standing standing_at(const Learner& learner, const std::vector<double>& x) {
+    const Prediction prediction = learner.at(x);
+    Standing standing{prediction.values, Eigen::VectorXd(learner.targets().size()), Eigen::MatrixXd(learner.targets().size(), learner.quantities().size())};
+    for (std::size_t t = 0; t < learner.targets().size(); ++t) {
+        const auto row = static_cast<Eigen::Index>(t);
+        const Target& target = learner.targets()[t];
+        standing.off[row] = (prediction.values[t] - target.value) / target.tolerance;
+        for (std::size_t q = 0; q < learner.quantities().size(); ++q) standing.doubt(row, static_cast<Eigen::Index>(q)) = prediction.slopes[q][t] / target.tolerance;
+    }
+    return standing;
+}
+
+// Sets of the unknowns with the weight of what is believed of them: how likely all targets are met.
 struct WeighedSets {
     std::vector<std::vector<double>> x;
-    std::vector<std::vector<double>> values;       // of the targets
-    std::vector<std::vector<double>> deviations;
+    std::vector<Standing> standings;
     std::vector<double> weights;                   // sum 1
 };
 
@@ -71,19 +120,7 @@ WeighedSets weigh(const Learner& learner, const std::vector<double>& best) {
         }
     }
     std::vector<double> badness;
-    for (std::size_t i = 0; i < sets.x.size(); ++i) {
-        const Prediction prediction = learner.at(sets.x[i]);
-        double sum = 0.0;
-        for (std::size_t t = 0; t < learner.targets().size(); ++t) {
-            const double off = prediction.values[t] - learner.targets()[t].value;
-            // the tolerance as two standard deviations: nearly all good sets lie within it
-            const double allowed = 0.25 * learner.targets()[t].tolerance * learner.targets()[t].tolerance + prediction.deviations[t] * prediction.deviations[t];
-            sum += off * off / allowed;
-        }
-        badness.push_back(std::isfinite(sum) ? sum : 1e300);
-        sets.values.push_back(prediction.values);
-        sets.deviations.push_back(prediction.deviations);
-    }
+    for (const std::vector<double>& x : sets.x) badness.push_back(sets.standings.emplace_back(standing_at(learner, x)).badness());
     // where no set is good, a handful that is a little less bad than the others would have all the weight: misfits are taken less seriously then
     for (double seriousness = 1.0; seriousness > 1e-3; seriousness *= 0.7) {
         sets.weights = weights_of(badness, volumes, seriousness);
@@ -156,27 +193,29 @@ void find_inseparable(const WeighedSets& sets, const Calibration& calibration, c
 // How far each target can go while the others are met, and what cannot be had together.
 void find_conflicts(const WeighedSets& sets, const Learner& learner, CalibrationResult& result) {
     const auto& targets = learner.targets();
-    const auto off = [&](std::size_t s, std::size_t t) {   // beyond the tolerance even if the doubt is taken in its favour, in tolerances
-        const double distance = std::abs(sets.values[s][t] - targets[t].value) - sets.deviations[s][t];
-        return std::isfinite(distance) ? distance / targets[t].tolerance : 1e9;
+    const auto least_off = [&](const std::vector<std::size_t>& some) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const Standing& standing : sets.standings) least = std::min(least, standing.of(some).least_off());
+        return least;
     };
     const auto outcome_of = [&](std::size_t t) -> TargetOutcome* {
         for (TargetOutcome& outcome : result.targets)
             if (outcome.target.label() == targets[t].label()) return &outcome;
         return nullptr;
     };
+    std::vector<std::size_t> all(targets.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
     std::vector<bool> reachable(targets.size(), false);
-    for (std::size_t t = 0; t < targets.size(); ++t) {
-        double lowest = nan, highest = nan, least = 1e9;
-        for (std::size_t s = 0; s < sets.x.size(); ++s) {
-            least = std::min(least, off(s, t));
-            bool others = true;
-            for (std::size_t o = 0; o < targets.size() && others; ++o) others = o == t || off(s, o) <= 1.0;
-            if (!others) continue;
-            lowest = std::fmin(lowest, sets.values[s][t]);
-            highest = std::fmax(highest, sets.values[s][t]);
+    for (const std::size_t t : all) {
+        std::vector<std::size_t> others = all;
+        others.erase(others.begin() + static_cast<std::ptrdiff_t>(t));
+        double lowest = nan, highest = nan;
+        for (const Standing& standing : sets.standings) {
+            if (!others.empty() && standing.of(others).least_off() > 1.0) continue;
+            lowest = std::fmin(lowest, standing.values[t]);
+            highest = std::fmax(highest, standing.values[t]);
         }
-        reachable[t] = least <= 1.0;
+        reachable[t] = least_off({t}) <= 1.0;
         if (TargetOutcome* outcome = outcome_of(t)) {
             outcome->lowest = std::fmin(outcome->lowest, lowest);   // E and nu hang on the unknowns of both parts
             outcome->highest = std::fmax(outcome->highest, highest);
@@ -185,17 +224,12 @@ void find_conflicts(const WeighedSets& sets, const Learner& learner, Calibration
     }
     for (std::size_t t = 0; t < targets.size(); ++t)
         for (std::size_t o = 0; o < t; ++o) {
-            double least = 1e9;
-            for (std::size_t s = 0; s < sets.x.size(); ++s) least = std::min(least, std::max(off(s, t), off(s, o)));
-            if (least > 1.0 && reachable[t] && reachable[o])
+            if (!reachable[t] || !reachable[o]) continue;
+            const double least = least_off({o, t});
+            if (least > 1.0)
                 result.findings.push_back(fmt::format("{} and {} cannot be met together in these ranges: at best one of them is {:.2g} tolerances off.", targets[o].label(), targets[t].label(), least));
         }
-    double least = 1e9;
-    for (std::size_t s = 0; s < sets.x.size(); ++s) {
-        double worst = 0.0;
-        for (std::size_t t = 0; t < targets.size(); ++t) worst = std::max(worst, off(s, t));
-        least = std::min(least, worst);
-    }
+    const double least = least_off(all);
     if (least > 1.0)
         result.findings.push_back(fmt::format("No set in the ranges meets all targets together: at best the farthest of them is {:.2g} tolerances off, doubt taken in its favour.", least));
 }

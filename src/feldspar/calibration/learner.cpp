@@ -81,8 +81,11 @@ Prediction Learner::at(const std::vector<double>& x) const {
         std::vector<double> moved = means;
         const double deviation = std::sqrt(believed[q].variance);
         moved[q] += deviation;
-        const std::vector<double> values = targets_by(moved);
-        for (std::size_t t = 0; t < targets_.size(); ++t) variances[t] += (values[t] - prediction.values[t]) * (values[t] - prediction.values[t]);
+        std::vector<double>& slopes = prediction.slopes.emplace_back(targets_by(moved));
+        for (std::size_t t = 0; t < targets_.size(); ++t) {
+            slopes[t] -= prediction.values[t];
+            variances[t] += slopes[t] * slopes[t];
+        }
     }
     for (std::size_t t = 0; t < targets_.size(); ++t) {
         prediction.deviations.push_back(std::sqrt(variances[t]));

@@ -13,6 +13,7 @@ namespace feldspar {
 struct Prediction {
     std::vector<double> values;      ///< of each target, in its unit
     std::vector<double> deviations;  ///< standard deviation of what is believed, the same unit
+    std::vector<std::vector<double>> slopes;   ///< by quantity and target: what one standard deviation of the quantity adds to the target
     double misfit = 0.0;             ///< expected sum over targets of ((value - target) / tolerance)^2: of the predicted values, and of the doubt about them
 };
 

@@ -139,6 +139,19 @@ TEST_F(CalibrateRock, SaysWhatCannotBeHadTogether) {
     EXPECT_TRUE(std::any_of(result.targets.begin(), result.targets.end(), [](const TargetOutcome& outcome) { return !outcome.met; }));
 }
 
+TEST_F(CalibrateRock, SaysWhatNoRockCanShowWithoutSpendingItsBudget) {
+    // 2 c sqrt(N) of this cohesion and friction angle is 220 MPa: where UCS or the angle is hardly known, both could be right, but never together
+    FormulaLaboratory laboratory;
+    const CalibrationResult result =
+        calibrate(read("[targets]\nE = \"24 GPa\"\nUCS = \"100 MPa\"\ncohesion = \"40 MPa\"\nfriction_angle = \"50 deg\"\n"), laboratory, {});
+    ASSERT_TRUE(result.complete);
+    EXPECT_LT(result.runs, 220);
+    EXPECT_TRUE(std::any_of(result.findings.begin(), result.findings.end(), [](const std::string& finding) { return finding.starts_with("No set in the ranges meets all targets together"); }))
+        << ::testing::PrintToString(result.findings);
+    for (const UnknownOutcome& unknown : result.unknowns)   // what is as good as the best is about the best
+        EXPECT_TRUE(unknown.best >= 0.9 * unknown.low && unknown.best <= 1.1 * unknown.high) << unknown.unknown.name;
+}
+
 TEST_F(CalibrateRock, GoesTheSameWayEveryTime) {
     FormulaLaboratory one, other;
     const Calibration calibration = read(targets_of(rocks[1]), 150);
