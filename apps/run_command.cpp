@@ -14,12 +14,10 @@
 #include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/base/parallel.hpp"
-#include "feldspar/base/thread_shares.hpp"
 #include "feldspar/base/usable_cores.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/study/running_tests.hpp"
-#include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "tables.hpp"
@@ -28,7 +26,6 @@ namespace feldspar {
 namespace {
 
 namespace fs = std::filesystem;
-
 
 // Bytes that the job will leave, roughly: fields at the snapshots in two formats, histories and the report.
 double expected_bytes(const Job& job, const std::vector<PlannedRun>& runs) {
@@ -59,7 +56,7 @@ void check_space(const std::optional<std::string>& out, const Job& job, const st
 class Campaign {
 public:
     Campaign(const Job& job, const RunOptions& options)
-        : job_(job), runs_(planned_runs(job)), specimens_(job), threads_(thread_count(job.threads)), sharing_(job.at_once, threads_) {
+        : job_(job), runs_(planned_runs(job)), specimens_(job), threads_(thread_count(job.threads)) {
         RunDirectory::check(options.out, job.name);
         check_space(options.out, job, runs_);
         provenance_ = collect_provenance(options.command_line, threads_);
@@ -88,7 +85,7 @@ public:
     /// Runs everything. @throws what a test or a write throws, after the results so far have been written; of several tests that
     /// fail, what the first of them in the job's order threw.
     void run() {
-        RunningTests running(threads_, stop_requested());
+        RunningTests running(Sharing(job_.at_once, threads_), stop_requested());
         std::size_t next = 0;
         while (true) {
             while (may_start(running, next)) start(running, next++);
@@ -141,14 +138,7 @@ private:
 
     // Tests start in the job's order, so that an interrupted job leaves whole packings behind.
     bool may_start(const RunningTests& running, std::size_t next) {
-        if (next == runs_.size() || !failed_.empty() || stop_requested()) return false;
-        return running.free_threads() > 0 && running.count() < company_with(running, next);
-    }
-
-    // Most tests at once that go with test i and with those that run.
-    int company_with(const RunningTests& running, std::size_t i) {
-        const int most = sharing_.most_at_once(bodies(i));
-        return running.count() == 0 ? most : std::min(most, company_);
+        return next < runs_.size() && failed_.empty() && !stop_requested() && running.has_room_for(bodies(next));
     }
 
     void start(RunningTests& running, std::size_t i) {
@@ -159,10 +149,7 @@ private:
             directory_->write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
             packings_.push_back(packing);
         }
-        company_ = company_with(running, i);
-        const int places = std::min(company_ - running.count(), static_cast<int>(runs_.size() - i));
-        const int useful = sharing_.useful_threads(bodies(i));
-        running.start(i, share_for_next(running.free_threads(), places, useful), useful, [this, &run, specimen](const RunControl& control) {
+        running.start(i, bodies(i), runs_.size() - i, [this, &run, specimen](const RunControl& control) {
             TestResult result = run_test(setup_of(run, specimen), control);
             result.variant = run.variant->name;
             if (!result.history.empty()) {   // else interrupted before the first row
@@ -245,8 +232,6 @@ private:
     std::vector<PlannedRun> runs_;
     Specimens specimens_;
     int threads_;
-    Sharing sharing_;
-    int company_ = 1;  // most tests at once that go with those that run
     Provenance provenance_;
     Progress progress_;
     std::optional<RunDirectory> directory_;

@@ -8,11 +8,9 @@
 #include <thread>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/base/thread_shares.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_files.hpp"
 #include "feldspar/study/running_tests.hpp"
-#include "feldspar/study/sharing.hpp"
 
 namespace feldspar {
 namespace {
@@ -32,8 +30,8 @@ int expected_bodies(const Run& run) {
 class Execute {
 public:
     Execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control)
-        : ledger_(ledger), control_(control), sharing_(control.at_once, control.threads),
-          packings_(static_cast<std::size_t>(2 * control.threads + 2), control.stop), running_(control.threads, *control.stop) {
+        : ledger_(ledger), control_(control), packings_(static_cast<std::size_t>(2 * control.threads + 2), control.stop),
+          running_(Sharing(control.at_once, control.threads), *control.stop) {
         std::set<std::string> seen;
         for (const Run& run : runs)   // points may share runs
             if (seen.insert(run.id).second) runs_.push_back(&run);
@@ -62,16 +60,7 @@ public:
 private:
     bool stopped() const { return *control_.stop || lost_ != nullptr; }
 
-    bool may_start() {
-        if (stopped() || waiting_.empty()) return false;
-        return running_.free_threads() > 0 && running_.count() < company_with(waiting_.front());
-    }
-
-    // Most runs at once that go with run i and with those that run.
-    int company_with(std::size_t i) const {
-        const int most = sharing_.most_at_once(expected_bodies(*runs_[i]));
-        return running_.count() == 0 ? most : std::min(most, company_);
-    }
+    bool may_start() const { return !stopped() && !waiting_.empty() && running_.has_room_for(expected_bodies(*runs_[waiting_.front()])); }
 
     void start_next() {
         const std::size_t i = waiting_.front();
@@ -87,12 +76,7 @@ private:
             ++execution_.found_done;
             return;
         }
-        company_ = company_with(i);
-        const int bodies = expected_bodies(run);
-        const int places = std::min(company_ - running_.count(), static_cast<int>(waiting_.size()) + 1);
-        const int useful = sharing_.useful_threads(bodies);
-        running_.start(i, share_for_next(running_.free_threads(), places, useful), useful,
-                       [this, &run](const RunControl& run_control) { return run_one(run, run_control); });
+        running_.start(i, expected_bodies(run), waiting_.size() + 1, [this, &run](const RunControl& run_control) { return run_one(run, run_control); });
     }
 
     // On the run's own thread.
@@ -155,12 +139,10 @@ private:
 
     Ledger& ledger_;
     const ExecuteControl& control_;
-    Sharing sharing_;
     Packings packings_;
     RunningTests running_;
     std::vector<const Run*> runs_;
     std::deque<std::size_t> waiting_, others_;
-    int company_ = 1;   // most runs at once that go with those that run
     int interrupted_ = 0;
     bool told_ = false;
     std::exception_ptr lost_;

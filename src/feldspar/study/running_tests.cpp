@@ -1,5 +1,6 @@
 #include "feldspar/study/running_tests.hpp"
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -18,7 +19,7 @@ struct RunningTests::Test {
     std::jthread thread;                // last: it is joined before the rest goes away
 };
 
-RunningTests::RunningTests(int threads, std::atomic<bool>& stop) : threads_(threads), stop_(stop) {}
+RunningTests::RunningTests(const Sharing& sharing, std::atomic<bool>& stop) : sharing_(sharing), stop_(stop) {}
 
 RunningTests::~RunningTests() {
     if (!tests_.empty()) stop_ = true;
@@ -30,14 +31,24 @@ int RunningTests::count() const { return static_cast<int>(tests_.size()); }
 int RunningTests::free_threads() const {
     int used = 0;
     for (const auto& test : tests_) used += test->threads;
-    return threads_ - used;
+    return sharing_.threads() - used;
 }
 
-void RunningTests::start(std::size_t number, int threads, int useful, Work work) {
+// Most tests at once that go with such a one and with those that run.
+int RunningTests::company_with(int bodies) const {
+    const int most = sharing_.most_at_once(bodies);
+    return tests_.empty() ? most : std::min(most, company_);
+}
+
+bool RunningTests::has_room_for(int bodies) const { return free_threads() > 0 && count() < company_with(bodies); }
+
+void RunningTests::start(std::size_t number, int bodies, std::size_t waiting, Work work) {
+    company_ = company_with(bodies);
+    const int places = std::min(company_ - count(), static_cast<int>(waiting));
     auto test = std::make_unique<Test>();
     test->number = number;
-    test->useful = useful;
-    test->threads = threads;
+    test->useful = sharing_.useful_threads(bodies);
+    test->threads = share_for_next(free_threads(), places, test->useful);
     Test& own = *test;
     tests_.push_back(std::move(test));
     own.thread = std::jthread([this, &own, work = std::move(work)] { run(own, work); });

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/study/sharing.hpp"
 
 namespace feldspar {
 
@@ -40,9 +41,9 @@ public:
         std::vector<Ended> ended;   ///< by number
     };
 
-    /// @param threads  that the tests have together
+    /// @param sharing  how many tests go together, and on how many threads each
     /// @param stop     becomes true when the user interrupts: tests end at their next record
-    RunningTests(int threads, std::atomic<bool>& stop);
+    RunningTests(const Sharing& sharing, std::atomic<bool>& stop);
 
     /// Asks tests that are still running to stop, and waits for them.
     ~RunningTests();
@@ -50,12 +51,14 @@ public:
     RunningTests& operator=(const RunningTests&) = delete;
 
     int count() const;
-    int free_threads() const;
+
+    /// Whether a test of so many bodies may start beside those that run.
+    bool has_room_for(int bodies) const;
 
     /// @param number   the test's, to know it again; those that start later have larger ones
-    /// @param threads  of free_threads()
-    /// @param useful   more than so many threads would not make it faster
-    void start(std::size_t number, int threads, int useful, Work work);
+    /// @param bodies   there is room for so many
+    /// @param waiting  tests that are not started yet, this one included: they leave threads to each other
+    void start(std::size_t number, int bodies, std::size_t waiting, Work work);
 
     /// Gives the free threads to the tests that run.
     void share_out_free_threads();
@@ -66,9 +69,12 @@ public:
 private:
     struct Test;
     void run(Test& test, const Work& work);
+    int free_threads() const;
+    int company_with(int bodies) const;
 
-    int threads_;
+    Sharing sharing_;
     std::atomic<bool>& stop_;
+    int company_ = 1;   // most tests at once that go with those that run
     std::vector<std::unique_ptr<Test>> tests_;
     std::mutex mutex_;                  // guards what the tests leave for events()
     std::condition_variable something_;

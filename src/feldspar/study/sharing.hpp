@@ -12,6 +12,8 @@ public:
     /// @param threads  of the whole program
     Sharing(int at_once, int threads) : threads_(threads), at_once_(at_once) {}
 
+    int threads() const { return threads_; }
+
     /// Most tests at once, this one included, that go with a test of so many bodies.
     int most_at_once(int bodies) const {
         if (at_once_ > 0) return std::min(at_once_, threads_);
