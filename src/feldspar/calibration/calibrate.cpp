@@ -363,6 +363,7 @@ private:
             result.unknowns.push_back(outcome);
         }
         result.sensitivity.assign(result.targets.size(), std::vector<double>(calibration_.unknowns.size(), std::nan("")));
+        result.findings = contradictions(calibration_.targets);   // run all the same
         if (elastic_learner_) look_into(aimed_ ? *aimed_ : *elastic_learner_, calibration_, elastic_, best_, result);
         if (strength_learner_) look_into(*strength_learner_, calibration_, strength_, best_, result);
         result.job = calibration_.job_with(values_at(best_));

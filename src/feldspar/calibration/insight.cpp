@@ -147,8 +147,8 @@ std::string change(const Unknown& unknown, double dx) {
     return fmt::format("{} {:+.2g}", unknown.name, (unknown.high - unknown.low) * dx);
 }
 
-// Directions in which the good sets spread nearly as far as the ranges do.
-void find_inseparable(const WeighedSets& sets, const Calibration& calibration, const std::vector<std::size_t>& part, CalibrationResult& result) {
+// Directions in which the good sets spread nearly as far as the ranges do. Where none is good there are none to speak of, only numbers.
+void find_inseparable(const WeighedSets& sets, const Calibration& calibration, const std::vector<std::size_t>& part, bool any_good, CalibrationResult& result) {
     const auto n = static_cast<Eigen::Index>(part.size());
     Eigen::VectorXd centre = Eigen::VectorXd::Zero(n);
     Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(n, n);
@@ -159,6 +159,7 @@ void find_inseparable(const WeighedSets& sets, const Calibration& calibration, c
     }
     for (Eigen::Index i = 0; i < n; ++i)
         result.unknowns[part[static_cast<std::size_t>(i)]].determined = std::clamp(1.0 - std::sqrt(spread(i, i)) / evenly_spread, 0.0, 1.0);
+    if (!any_good) return;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(spread);
     std::vector<Eigen::Index> open;   // directions
     Eigen::VectorXd share = Eigen::VectorXd::Zero(n);
@@ -190,8 +191,8 @@ void find_inseparable(const WeighedSets& sets, const Calibration& calibration, c
     }
 }
 
-// How far each target can go while the others are met, and what cannot be had together.
-void find_conflicts(const WeighedSets& sets, const Learner& learner, CalibrationResult& result) {
+// How far each target can go while the others are met, and what cannot be had together. @return whether all can
+bool find_conflicts(const WeighedSets& sets, const Learner& learner, CalibrationResult& result) {
     const auto& targets = learner.targets();
     const auto least_off = [&](const std::vector<std::size_t>& some) {
         double least = std::numeric_limits<double>::infinity();
@@ -232,6 +233,7 @@ void find_conflicts(const WeighedSets& sets, const Learner& learner, Calibration
     const double least = least_off(all);
     if (least > 1.0)
         result.findings.push_back(fmt::format("No set in the ranges meets all targets together: at best the farthest of them is {:.2g} tolerances off, doubt taken in its favour.", least));
+    return least <= 1.0;
 }
 
 }  // namespace
@@ -285,14 +287,14 @@ void look_into(const Learner& learner, const Calibration& calibration, const std
                     result.sensitivity[r][part[i]] = std::log(above.values[t] / below.values[t]) / relative;
     }
     const WeighedSets sets = weigh(learner, best);
-    find_inseparable(sets, calibration, part, result);
+    const bool any_good = find_conflicts(sets, learner, result);
+    find_inseparable(sets, calibration, part, any_good, result);
     for (std::size_t i = 0; i < part.size(); ++i) {
         result.unknowns[part[i]].low = calibration.unknowns[part[i]].value_at(quantile(sets, i, 0.05));
         result.unknowns[part[i]].high = calibration.unknowns[part[i]].value_at(quantile(sets, i, 0.95));
         if (result.unknowns[part[i]].at_an_end)
             result.findings.push_back(fmt::format("{} lies at an end of its range: a wider one may serve better.", calibration.unknowns[part[i]].name));
     }
-    find_conflicts(sets, learner, result);
 }
 
 }  // namespace feldspar
