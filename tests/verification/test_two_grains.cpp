@@ -37,6 +37,17 @@ TEST(TwoGrains, PulledApartTheyShowStiffnessStrengthAndFractureEnergy) {
     for (const Crack& crack : r.cracks) EXPECT_EQ(crack.mode, CrackMode::tensile);
 }
 
+TEST(TwoGrains, EndAtTheStressThatIsEnough) {
+    TestSetup s = bar(TestKind::direct_tension);
+    s.test.maximum_stress_Pa = 6e6;   // the strength is 8.5 MPa
+    const TestResult r = run_test(s, fixtures::threads(1));
+    EXPECT_FALSE(r.properties.peak_reached) << r.stop_reason;
+    EXPECT_GE(r.properties.peak_stress_Pa, 6e6);
+    EXPECT_LT(r.properties.peak_stress_Pa, 8.4e6);
+    EXPECT_EQ(r.stop_reason, "the stress has reached its maximum of 6 MPa");
+    EXPECT_TRUE(r.cracks.empty());
+}
+
 TEST(TwoGrains, BrittleContactBreaksAtItsStrengthAllAtOnce) {
     TestSetup s = bar(TestKind::direct_tension);
     s.contact.law = ContactLaw::brittle;

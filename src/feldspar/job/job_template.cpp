@@ -65,6 +65,7 @@ accuracy = "0.5 %"                  # wanted of a strength: 0.05 % to 10 %; loos
 constexpr const char* common_test =
     R"(# stop_fraction = 0.8               # the test ends when the stress has fallen to this fraction of the peak
 # maximum_strain = 0.05             # ... or at this axial strain
+# maximum_stress = "300 MPa"        # ... or at this stress, if one is given: the strength is then known to be higher
 # snapshots = 8                     # fields kept between the first crack and the end
 # seeds = [1, 2, 3]                 # the packings of this test, if not all of [run]
 )";

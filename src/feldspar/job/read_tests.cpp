@@ -96,6 +96,7 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
         table.fraction("stop_fraction", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.stop_fraction);
     test.maximum_strain =
         table.fraction("maximum_strain", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.maximum_strain);
+    if (table.has("maximum_stress")) test.maximum_stress_Pa = table.quantity("maximum_stress", Dimension::stress, positive);
     test.snapshots = static_cast<int>(table.integer("snapshots", 0, 1000, test.snapshots));
     if (table.has("seeds"))
         for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
@@ -109,6 +110,7 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
     }
     for (double sigma3 : confining_stresses(table)) {
         test.sigma3_Pa = sigma3;
+        if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= sigma3) table.fail("maximum_stress", "is there before the specimen is loaded", "a sigma1 above sigma3");
         result.tests.push_back(test);
     }
     return result;
@@ -134,7 +136,7 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     TestList result;
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",
-                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "diameter", "plate_stiffness_factor", "plate_Kn",
+                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "maximum_stress", "diameter", "plate_stiffness_factor", "plate_Kn",
                                                  "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
         ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {

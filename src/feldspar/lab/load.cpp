@@ -71,6 +71,8 @@ public:
             return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * test.stop_fraction);
         if (std::abs(row.axial_strain) >= test.maximum_strain)
             return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
+        if (test.maximum_stress_Pa && load >= *test.maximum_stress_Pa)
+            return fmt::format("the stress has reached its maximum of {:.4g} MPa", *test.maximum_stress_Pa / 1e6);
         if (e_.setup.numerics.maximum_steps && e_.step - first_step_ >= *e_.setup.numerics.maximum_steps)
             return fmt::format("the maximum number of steps ({}) is reached", *e_.setup.numerics.maximum_steps);
         return std::nullopt;

@@ -66,6 +66,7 @@ struct TestSpec {
     double sigma3_Pa = 0.0;              ///< biaxial only
     double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
     double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
+    std::optional<double> maximum_stress_Pa; ///< ... or when the stress has reached this, a positive magnitude (biaxial: sigma1)
     double plate_stiffness_factor = 1.0; ///< plates: their Kn as a multiple of the contacts' Kn
     std::optional<double> plate_Kn_Pa_m; ///< plates: their Kn itself, as of a bearing strip; in place of the factor
     std::optional<double> plate_mu;      ///< plates: friction; default 0.4 in the Brazilian test, else 0

@@ -199,6 +199,7 @@ std::vector<BadJob> bad_jobs() {
         {"unknown test", with_test("kind = \"uniaxial\""), 32, {"test[1].kind", "'uniaxial'", "brazilian"}},
         {"biaxial without sigma3", with_test("kind = \"biaxial\""), 31, {"missing key: sigma3"}},
         {"sigma3 zero", with_test("kind = \"biaxial\"\nsigma3 = \"0 MPa\""), 33, {"sigma3", "uniaxial-compression"}},
+        {"a largest stress that is there already", with_test("kind = \"biaxial\"\nsigma3 = \"4 MPa\"\nmaximum_stress = \"4 MPa\""), 34, {"maximum_stress", "above sigma3"}},
         {"sigma3 in a uniaxial test",
          with_test("kind = \"uniaxial-compression\"\nsigma3 = \"4 MPa\""),
          33,

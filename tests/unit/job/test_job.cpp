@@ -240,6 +240,7 @@ void expect_same(const Job& a, const Job& b) {
         EXPECT_EQ(a.tests[i].sigma3_Pa, b.tests[i].sigma3_Pa);
         EXPECT_EQ(a.tests[i].stop_fraction, b.tests[i].stop_fraction);
         EXPECT_EQ(a.tests[i].maximum_strain, b.tests[i].maximum_strain);
+        EXPECT_EQ(a.tests[i].maximum_stress_Pa, b.tests[i].maximum_stress_Pa);
         EXPECT_EQ(a.tests[i].plate_stiffness_factor, b.tests[i].plate_stiffness_factor);
         EXPECT_EQ(a.tests[i].plate_Kn_Pa_m, b.tests[i].plate_Kn_Pa_m);
         EXPECT_EQ(a.tests[i].plate_mu, b.tests[i].plate_mu);
@@ -279,7 +280,7 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
     expect_round_trip(
         edited("kind = \"uniaxial-compression\"",
                "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = "
-               "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\""));
+               "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\"\nmaximum_stress = \"300 MPa\""));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplate_Kn = \"3.6e3 GPa/m\""));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
@@ -360,7 +361,7 @@ TEST(JobTemplate, TheCommentedDefaultsAreTheDefaults) {
     const std::string text = job_template("laboratory");
     const std::string on = switched_on(text, [](const std::string& line) {
         return line.find("distribution") != std::string::npos || line.starts_with("# DTS") || line.starts_with("# hoek") ||
-               line.starts_with("# maximum_steps") || line.starts_with("# seeds");
+               line.starts_with("# maximum_steps") || line.starts_with("# maximum_stress") || line.starts_with("# seeds");
     });
     EXPECT_NE(on, text);
     expect_same(parse_job(on, "job"), parse_job(text, "job"));
