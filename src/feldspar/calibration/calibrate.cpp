@@ -24,7 +24,6 @@ constexpr std::size_t most_elastic_rounds = 4;
 constexpr double good_share = 0.5;                    // of a tolerance: how near the prediction, and how small the doubt about it, is to be
 constexpr std::size_t patience = 5;                   // rounds: a search that cannot meet its targets ends when so many have brought nothing
 constexpr double nothing = 0.02;                      // relative change of the expected misfit
-constexpr double far_from_wanted = 2.0;               // a uniaxial strength by so much larger or smaller
 constexpr double test_share = 0.3;                    // a test is worth a run where the doubt it removes is this share of a tolerance
 
 std::vector<std::size_t> numbers_below(std::size_t count) {
@@ -213,14 +212,14 @@ private:
         for (std::size_t q = 0; q < quantities_.size(); ++q) (quantities_[q].sigma3_Pa > 0.0 ? confined : others).push_back(q);
         std::vector<Request> requests;
         for (const auto& point : points) requests.push_back({values_at(whole(strength_, point)), next_seed(), others});
-        const auto values = see(requests, points, *strength_learner_);
+        const auto readings = see(requests, points, *strength_learner_);
 
         const std::size_t UCS = index_of(quantities_, "UCS");
         const auto place = static_cast<std::size_t>(std::find(others.begin(), others.end(), UCS) - others.begin());
         const double wanted = wanted_UCS_Pa(calibration_.targets);
         std::vector<std::pair<double, std::size_t>> by_distance;   // of the uniaxial strength, as a logarithm
         for (std::size_t p = 0; p < points.size(); ++p) {
-            const double distance = place < others.size() ? std::abs(std::log(values[p][place] / wanted)) : 0.0;
+            const double distance = place < others.size() ? std::abs(std::log(readings[p][place].value / wanted)) : 0.0;
             by_distance.emplace_back(std::isnan(distance) ? 0.0 : distance, p);
         }
         std::stable_sort(by_distance.begin(), by_distance.end());
@@ -262,12 +261,12 @@ private:
 
     // ---- both
 
-    std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) const {
-        auto values = laboratory_.see(requests, learner.quantities());
+    std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) const {
+        auto readings = laboratory_.see(requests, learner.quantities());
         for (std::size_t r = 0; r < requests.size(); ++r)
             for (std::size_t i = 0; i < requests[r].quantities.size(); ++i)
-                learner.observe(requests[r].quantities[i], points[r], requests[r].seed, values[r][i]);
-        return values;
+                learner.observe(requests[r].quantities[i], points[r], requests[r].seed, readings[r][i].value, readings[r][i].at_least);
+        return readings;
     }
 
     void learn(Learner& learner) const {
@@ -338,8 +337,8 @@ private:
         for (const std::uint64_t seed : calibration_.confirm_seeds) requests.push_back({values_at(best_), seed, all, false, true});
         const auto by_packing = laboratory_.see(requests, quantities_);
         std::vector<std::vector<double>> seen(quantities_.size());
-        for (const auto& values : by_packing)
-            for (std::size_t q = 0; q < quantities_.size(); ++q) seen[q].push_back(values[q]);
+        for (const auto& readings : by_packing)   // a bound confirms nothing
+            for (std::size_t q = 0; q < quantities_.size(); ++q) seen[q].push_back(readings[q].at_least ? std::nan("") : readings[q].value);
 
         CalibrationResult result;
         const Learner* learner = strength_learner_ ? &*strength_learner_ : &*elastic_learner_;

@@ -67,13 +67,22 @@ struct Request {
     bool whole = false;                    ///< the tests as the job has them; else they end when their strength is known
 };
 
+/// A strength so many times the wanted one is far enough to know: a test to learn from ends there.
+inline constexpr double far_from_wanted = 2.0;
+
+/// What a test says of a quantity.
+struct Reading {
+    double value = std::numeric_limits<double>::quiet_NaN();   ///< not-a-number where the test says nothing
+    bool at_least = false;                                     ///< it ended before the strength was known: that is no less
+};
+
 /// Where the tests are made.
 class Laboratory {
 public:
     virtual ~Laboratory() = default;
 
-    /// Of each request the values of its quantities, in their order; not-a-number where a test failed. @throws Interrupted
-    virtual std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) = 0;
+    /// Of each request its quantities, in their order. @throws Interrupted
+    virtual std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) = 0;
 
     /// Tests made so far, those that were in the ledger before too.
     virtual int used() const = 0;
@@ -83,7 +92,7 @@ public:
 class RunLaboratory : public Laboratory {
 public:
     RunLaboratory(const Calibration& calibration, Ledger& ledger, ExecuteControl control) : calibration_(calibration), ledger_(ledger), control_(std::move(control)) {}
-    std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) override;
+    std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) override;
     int used() const override { return static_cast<int>(numbers_.size()) - left_; }
 
     /// Of a run that was asked for: the how many-th of the calibration it is, from 1 on, those in the ledger before it counted too.
@@ -91,6 +100,7 @@ public:
 
 private:
     Run run_for(const Request& request, const Observable& quantity) const;
+    void end_when_known(TestSpec& test) const;
 
     const Calibration& calibration_;
     Ledger& ledger_;

@@ -13,6 +13,8 @@
 
 namespace feldspar {
 
+inline constexpr const char* strength_column = "strength_Pa";   ///< of the ledger
+
 /// What is read off one run.
 struct Observable {
     std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "sigma1 at 10 MPa", ...
@@ -83,6 +85,10 @@ double target_value(std::string_view name, const std::vector<Target>& targets);
 
 /// The uniaxial strength that the targets ask for, by Mohr and Coulomb's line if not by itself; not-a-number if they say nothing of it.
 double wanted_UCS_Pa(const std::vector<Target>& targets);
+
+/// The strength that the targets ask a compression test for: UCS, sigma1 itself or by Mohr and Coulomb's line; not-a-number for other tests, and if
+/// they say nothing of it.
+double wanted_strength_Pa(const TestSpec& test, const std::vector<Target>& targets);
 
 /// Sentences on targets that no rock can show together, by closed form; none if there is nothing to say.
 std::vector<std::string> contradictions(const std::vector<Target>& targets);

@@ -20,13 +20,14 @@ struct Prediction {
 /// One surrogate for each quantity; targets follow from them.
 class Learner {
 public:
-    Learner(std::vector<Observable> quantities, std::vector<Target> targets) : quantities_(std::move(quantities)), targets_(std::move(targets)), seen_(quantities_.size()), processes_(quantities_.size()) {}
+    Learner(std::vector<Observable> quantities, std::vector<Target> targets) : quantities_(std::move(quantities)), targets_(std::move(targets)), seen_(quantities_.size()), at_least_(quantities_.size()), processes_(quantities_.size()) {}
 
     const std::vector<Observable>& quantities() const { return quantities_; }
     const std::vector<Target>& targets() const { return targets_; }
 
     /// A quantity seen on one packing. What is not a positive number of a logarithmic quantity teaches nothing, nor a nu that no solid has.
-    void observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, double value);
+    /// @param at_least  the test ended before: the value is no less
+    void observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, double value, bool at_least = false);
 
     /// Multiplies (or, of a quantity that is not logarithmic, adds to) all that was seen of a quantity: when what it follows from besides x has changed.
     void correct(std::size_t quantity, double by);
@@ -59,11 +60,12 @@ public:
     std::size_t packings(std::size_t quantity) const;
 
 private:
+    std::vector<Observation> completed(std::size_t quantity) const;
     std::vector<double> shares(const std::vector<double>& x, const std::vector<double>& deviations) const;
 
     std::vector<Observable> quantities_;
     std::vector<Target> targets_;
-    std::vector<std::vector<Observation>> seen_;
+    std::vector<std::vector<Observation>> seen_, at_least_;   // by quantity
     std::vector<std::optional<GaussianProcess>> processes_;
 };
 

@@ -24,6 +24,13 @@ std::string column_of(const Observable& quantity, bool elastic) {
     return quantity.name == "E" ? "E_initial_Pa" : "nu_initial";
 }
 
+// What is read at some share of the strength says nothing where the strength is only known to be no less.
+Reading reading(const RunRecord& record, const Observable& quantity, bool elastic) {
+    const double value = record.numbers.at(column_of(quantity, elastic));
+    if (elastic || record.numbers.at("peak_reached") == 1.0) return {value};
+    return quantity.column == strength_column ? Reading{value, true} : Reading{};
+}
+
 }  // namespace
 
 Run RunLaboratory::run_for(const Request& request, const Observable& quantity) const {
@@ -31,14 +38,21 @@ Run RunLaboratory::run_for(const Request& request, const Observable& quantity) c
     for (const TestSpec& test : job.tests) {
         if (test.kind != quantity.test || (test.kind == TestKind::biaxial && test.sigma3_Pa != quantity.sigma3_Pa)) continue;
         TestSpec wanted = test;
-        if (!request.whole) wanted.stop_fraction = std::max(test.stop_fraction, enough_fall);
+        if (!request.whole) end_when_known(wanted);
         if (request.elastic) wanted.maximum_strain = elastic_strain(calibration_);
         return make_run(job, job.variants.front(), wanted, request.seed);
     }
     throw InputError({}, fmt::format("the job has no test for {}", quantity.name));   // was checked when the file was read
 }
 
-std::vector<std::vector<double>> RunLaboratory::see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) {
+// The strength is known when the stress falls, and known well enough when it is far above what is wanted.
+void RunLaboratory::end_when_known(TestSpec& test) const {
+    test.stop_fraction = std::max(test.stop_fraction, enough_fall);
+    const double wanted = far_from_wanted * wanted_strength_Pa(test, calibration_.targets);
+    if (std::isfinite(wanted)) test.maximum_stress_Pa = std::min(wanted, test.maximum_stress_Pa.value_or(wanted));
+}
+
+std::vector<std::vector<Reading>> RunLaboratory::see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) {
     std::vector<Run> runs;
     std::vector<std::vector<std::size_t>> run_of;   // of each request's quantities
     for (const Request& request : requests) {
@@ -53,16 +67,15 @@ std::vector<std::vector<double>> RunLaboratory::see(const std::vector<Request>& 
     for (const Run& run : runs) numbers_.try_emplace(run.id, static_cast<int>(numbers_.size()) + 1);
     left_ = execute(runs, ledger_, control_).left;
     if (left_ > 0) throw Interrupted();
-    std::vector<std::vector<double>> values;
+    std::vector<std::vector<Reading>> readings;
     for (std::size_t r = 0; r < requests.size(); ++r) {
-        std::vector<double>& own = values.emplace_back();
+        std::vector<Reading>& own = readings.emplace_back();
         for (std::size_t i = 0; i < requests[r].quantities.size(); ++i) {
             const auto record = ledger_.find(runs[run_of[r][i]].id);
-            const bool done = record && record->state == RunState::done;   // a run that fails teaches nothing
-            own.push_back(done ? record->numbers.at(column_of(quantities[requests[r].quantities[i]], requests[r].elastic)) : std::nan(""));
+            own.push_back(record && record->state == RunState::done ? reading(*record, quantities[requests[r].quantities[i]], requests[r].elastic) : Reading{});
         }
     }
-    return values;
+    return readings;
 }
 
 }  // namespace feldspar

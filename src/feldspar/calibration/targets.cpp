@@ -45,9 +45,9 @@ std::vector<Observable> observables_for(const Calibration& calibration) {
     const auto add = [&](const Observable& quantity) {
         if (std::none_of(all.begin(), all.end(), [&](const Observable& q) { return q.name == quantity.name; })) all.push_back(quantity);
     };
-    const Observable ucs{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"}, dts{"DTS", TestKind::direct_tension, 0.0, "strength_Pa"},
-        bts{"BTS", TestKind::brazilian, 0.0, "strength_Pa"};
-    const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), TestKind::biaxial, sigma3_Pa, "strength_Pa"}); };
+    const Observable ucs{"UCS", TestKind::uniaxial_compression, 0.0, strength_column}, dts{"DTS", TestKind::direct_tension, 0.0, strength_column},
+        bts{"BTS", TestKind::brazilian, 0.0, strength_column};
+    const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), TestKind::biaxial, sigma3_Pa, strength_column}); };
     for (const Target& target : calibration.targets) {
         if (target.name == "E") add({"E", TestKind::uniaxial_compression, 0.0, "E_Pa"});
         if (target.name == "nu") add({"nu", TestKind::uniaxial_compression, 0.0, "nu", false});
@@ -81,6 +81,16 @@ double target_value(std::string_view name, const std::vector<Target>& targets) {
 double wanted_UCS_Pa(const std::vector<Target>& targets) {
     const double UCS = target_value("UCS", targets);
     return std::isfinite(UCS) ? UCS : mohr_coulomb_UCS_Pa(target_value("cohesion", targets), target_value("friction_angle", targets));
+}
+
+double wanted_strength_Pa(const TestSpec& test, const std::vector<Target>& targets) {
+    const double UCS = wanted_UCS_Pa(targets);
+    if (test.kind == TestKind::uniaxial_compression) return UCS;
+    if (test.kind != TestKind::biaxial) return nan;
+    for (const Target& target : targets)
+        if (target.name == "sigma1" && target.sigma3_Pa == test.sigma3_Pa) return target.value;
+    const double unit_cohesion = mohr_coulomb_UCS_Pa(1.0, target_value("friction_angle", targets));   // 2 sqrt(N)
+    return UCS + 0.25 * unit_cohesion * unit_cohesion * test.sigma3_Pa;
 }
 
 std::vector<std::string> contradictions(const std::vector<Target>& targets) {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "calibration_files.hpp"
@@ -25,22 +27,26 @@ struct Rock {
 // Strengths of the kind that the flexible model shows, with the scatter of packings and of the order of cracks.
 class FormulaLaboratory : public Laboratory {
 public:
-    std::vector<std::vector<double>> see(const std::vector<Request>& requests, const std::vector<Observable>& observables) override {
-        std::vector<std::vector<double>> values;
+    std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<Observable>& observables) override {
+        std::vector<std::vector<Reading>> readings;
         for (const Request& request : requests) {
             ++requests_;
             if (stop_after > 0 && requests_ > stop_after) throw Interrupted();
             std::set<std::pair<TestKind, double>> tests;
-            std::vector<double>& own = values.emplace_back();
+            std::vector<Reading>& own = readings.emplace_back();
             const Rock rock{1e9 * request.values[0], 1e6 * request.values[1], request.values[2], request.values[3], request.values[4], request.values[5]};
             if (!request.elastic && std::abs(std::log(mean(rock, "UCS") / wanted_UCS)) > std::log(2.1)) ++(observables[request.quantities.front()].sigma3_Pa > 0.0 ? far_confined : far_others);
             for (const std::size_t q : request.quantities) {
                 tests.insert({observables[q].test, observables[q].sigma3_Pa});
-                own.push_back(mean(rock, observables[q].name, request.elastic) * scatter(observables[q].name, request.seed) * noise(observables[q].name, request));
+                const double value = mean(rock, observables[q].name, request.elastic) * scatter(observables[q].name, request.seed) * noise(observables[q].name, request);
+                const auto enough = enough_for.find(observables[q].name);
+                const bool too_far = !request.whole && enough != enough_for.end() && value > enough->second;
+                bounds += too_far;
+                own.push_back(too_far ? Reading{enough->second, true} : Reading{value});
             }
             used_ += static_cast<int>(tests.size());
         }
-        return values;
+        return readings;
     }
     int used() const override { return used_; }
 
@@ -55,6 +61,8 @@ public:
 
     long stop_after = 0;   // requests; 0: never
     double wanted_UCS = std::nan("");
+    std::map<std::string, double> enough_for;   // strengths at which tests to learn from end
+    int bounds = 0;                             // such tests
     int far_confined = 0, far_others = 0;   // requests for rocks whose UCS is far from it
 
 private:
@@ -108,6 +116,19 @@ TEST_F(CalibrateRock, FindsWhatIsHiddenWithinItsBudget) {
         EXPECT_NEAR(FormulaLaboratory::mean(found, "BTS") / FormulaLaboratory::mean(rock, "BTS"), 1.0, 0.15);
         EXPECT_NEAR(found.mu, rock.mu, 0.15);   // by the friction angle alone
     }
+}
+
+TEST_F(CalibrateRock, TestsThatEndFarAboveWhatIsWantedTeachEnough) {
+    const Rock& rock = rocks[2];
+    FormulaLaboratory laboratory;
+    for (const char* name : {"UCS", "sigma1 at 10 MPa"}) laboratory.enough_for[name] = 1.3 * FormulaLaboratory::mean(rock, name);   // nearer than far_from_wanted: these formulas spread little
+    const CalibrationResult result = calibrate(read(targets_of(rock)), laboratory, {});
+    ASSERT_TRUE(result.complete);
+    EXPECT_GE(laboratory.bounds, 8);
+    const Rock found{1e9 * result.unknowns[0].best, 1e6 * result.unknowns[1].best, result.unknowns[2].best, result.unknowns[3].best, result.unknowns[4].best, result.unknowns[5].best};
+    EXPECT_NEAR(FormulaLaboratory::mean(found, "UCS") / FormulaLaboratory::mean(rock, "UCS"), 1.0, 0.045);   // tolerances of the test above
+    EXPECT_NEAR(FormulaLaboratory::mean(found, "DTS") / FormulaLaboratory::mean(rock, "DTS"), 1.0, 0.02);
+    EXPECT_NEAR(found.mu, rock.mu, 0.15);
 }
 
 TEST_F(CalibrateRock, SaysWhatCannotBeToldApart) {

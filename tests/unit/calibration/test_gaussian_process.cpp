@@ -105,6 +105,31 @@ TEST(Search, RunsAreMadeOnlyWhereTheyPromiseSomething) {
         for (const auto& x : promising_points(learner, 2, 3, round)) EXPECT_NEAR(truth(x), target.value, 4.0 * target.tolerance) << round;
 }
 
+// What ended at a bound is taken for what the rest says, and for the bound where the rest says less.
+TEST(Learner, BoundsHoldWhatIsLearnedUpAndNotDown) {
+    const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, strength_column};
+    const auto truth = [](double x) { return 1e8 * std::exp(2.0 * x); };
+    Learner above({strength}, {Target{"UCS", 0.0, 1e8, 1e6}}), below = above;
+    for (int i = 0; i < 8; ++i) {
+        const double x = 0.08 * i;
+        above.observe(0, {x}, static_cast<std::uint64_t>(i % 4), truth(x));
+        below.observe(0, {x}, static_cast<std::uint64_t>(i % 4), 1e8);
+    }
+    for (const double x : {0.8, 0.9, 1.0}) {
+        above.observe(0, {x}, 1, 2e8, true);   // the truth is 5 to 7 e8
+        below.observe(0, {x}, 1, 2e8, true);   // the rest would say 1e8
+    }
+    ASSERT_TRUE(above.learn());
+    ASSERT_TRUE(below.learn());
+    EXPECT_NEAR(std::log(above.beliefs({1.0})[0].mean / truth(1.0)), 0.0, 0.1);
+    EXPECT_GT(below.beliefs({0.9})[0].mean, 1.9e8);
+    EXPECT_NEAR(below.beliefs({0.2})[0].mean, 1e8, 0.05e8);
+    Learner bounds_alone({strength}, {Target{"UCS", 0.0, 1e8, 1e6}});
+    EXPECT_FALSE(bounds_alone.learn());
+    bounds_alone.observe(0, {0.5}, 1, 2e8, true);
+    EXPECT_TRUE(bounds_alone.learn());
+}
+
 // Two sets are predicted to meet the target; the one that was seen often is the answer.
 TEST(Search, OfEquallyGoodSetsTheBestKnownIsChosen) {
     const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"};

@@ -40,6 +40,21 @@ TEST(Targets, FollowFromTheMeansByTheirFormulas) {
     }
 }
 
+TEST(Targets, SayWhatStrengthACompressionTestIsToShow) {
+    const auto target = [](const char* name, double value, double sigma3 = 0.0) { return Target{name, sigma3, value, 1.0}; };
+    const std::vector<Target> targets{target("UCS", 100e6), target("friction_angle", 30.0), target("sigma1", 250e6, 20e6)};   // N = 3
+    TestSpec test;
+    EXPECT_DOUBLE_EQ(wanted_strength_Pa(test, targets), 100e6);
+    test.kind = TestKind::biaxial;
+    test.sigma3_Pa = 10e6;
+    EXPECT_NEAR(wanted_strength_Pa(test, targets), 130e6, 1.0);
+    test.sigma3_Pa = 20e6;
+    EXPECT_DOUBLE_EQ(wanted_strength_Pa(test, targets), 250e6);
+    EXPECT_TRUE(std::isnan(wanted_strength_Pa(test, {target("UCS", 100e6)})));
+    test.kind = TestKind::brazilian;
+    EXPECT_TRUE(std::isnan(wanted_strength_Pa(test, targets)));
+}
+
 TEST(Targets, ThatContradictEachOtherAreSaid) {
     const auto said = [](const std::string& targets) {
         return contradictions(folder().read("[targets]\n" + targets + "[[unknown]]\nkey = \"material.contact.mu\"\n").targets);
