@@ -168,6 +168,8 @@ private:
         const double UCS = wanted_UCS_Pa(result_.targets);
         const double tension = first({target("DTS"), target("BTS"), UCS / first({ratio, 13.0})});
         const double diameter = typical_diameter_m(rock_.specimen.grain_sizes);
+        // fracture energy of a rock whose cohesive zone, E Gf / strength^2, is as long as a grain is wide; granite: 8.5 N/m
+        const double energy = first({tension * tension / E * diameter, 8.5});
         const bool flexible = rock_.variants.front().model.kind == GrainKind::flexible;
         return {{"material.grain.E", 0.8 * E, 1.6 * E, true},
                 {"material.grain.nu", 0.1, 0.4, true, false},
@@ -177,8 +179,8 @@ private:
                 {"material.contact.sigma_nt", 0.5 * tension, 2.5 * tension},
                 {"material.contact.tau", 0.1 * UCS, 0.6 * UCS},
                 {"material.contact.mu", 0.1, 1.0, false, false},
-                {"material.contact.Gfn", 5.0, 100.0},
-                {"material.contact.Gfs", 100.0, 4000.0}};
+                {"material.contact.Gfn", 0.6 * energy, 13.0 * energy},
+                {"material.contact.Gfs", 12.0 * energy, 500.0 * energy}};
     }
 
     // What multiplies another key is a ratio.

@@ -37,6 +37,9 @@ TEST_F(ReadCalibration, RangesFollowFromTheRock) {
     EXPECT_DOUBLE_EQ(E.low, 20.0);
     EXPECT_FALSE(sigma_nt.elastic);
     EXPECT_DOUBLE_EQ(sigma_nt.low, 4.5);
+    const Unknown& Gfn = calibration.unknowns[5];   // (9 MPa)^2 / 25 GPa in a grain of 3 mm: 9.72 N/m
+    EXPECT_DOUBLE_EQ(Gfn.low, 5.832);
+    EXPECT_DOUBLE_EQ(Gfn.high, 126.36);
     EXPECT_EQ(calibration.targets[1].tolerance, 0.04 * 120e6);
     EXPECT_EQ(calibration.targets[2].tolerance, 1.5e6);
     EXPECT_DOUBLE_EQ(calibration.targets[3].value, 50.0);   // degrees
