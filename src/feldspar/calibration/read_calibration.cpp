@@ -170,10 +170,12 @@ private:
         const double diameter = typical_diameter_m(rock_.specimen.grain_sizes);
         // fracture energy of a rock whose cohesive zone, E Gf / strength^2, is as long as a grain is wide; granite: 8.5 N/m
         const double energy = first({tension * tension / E * diameter, 8.5});
-        const bool flexible = rock_.variants.front().model.kind == GrainKind::flexible;
+        const GrainKind kind = rock_.variants.front().model.kind;
+        const bool flexible = kind == GrainKind::flexible;
+        const double body = kind == GrainKind::inner_particles ? diameter / std::sqrt(rock_.specimen.particles_per_grain) : diameter;
         return {{"material.grain.E", 0.8 * E, 1.6 * E, true},
                 {"material.grain.nu", 0.1, 0.4, true, false},
-                {"material.contact.Kn", (flexible ? 4.0 : 0.5) * E / diameter, (flexible ? 60.0 : 4.0) * E / diameter, true},
+                {"material.contact.Kn", (flexible ? 4.0 : 0.5) * E / body, (flexible ? 60.0 : 4.0) * E / body, true},
                 {"material.contact.eta", 0.1, 1.0, true},
                 {"material.contact.kratio", 1.0, 10.0, true},
                 {"material.contact.sigma_nt", 0.5 * tension, 2.5 * tension},

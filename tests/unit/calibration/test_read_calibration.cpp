@@ -52,6 +52,16 @@ TEST_F(ReadCalibration, RangesFollowFromTheRock) {
     EXPECT_DOUBLE_EQ(job.variants.front().grain.E_Pa, 26e9);
 }
 
+TEST_F(ReadCalibration, RangesOfStiffnessFitEveryKindOfGrain) {   // Table 1 lies well inside
+    const auto Kn = [&](const std::string& kind) {
+        return folder_.read("[set]\nmodel.kind = \"" + kind + "\"\nmaterial.elastic_preset = \"augig-" + kind + "\"\n[targets]\nE = \"25.8 GPa\"\n[[unknown]]\nkey = \"material.contact.Kn\"\n").unknowns[0];
+    };
+    for (const auto& [kind, table_1] : {std::pair{"flexible", 18e4}, std::pair{"rigid", 1.08e4}, std::pair{"inner-particles", 4.9e4}}) {
+        EXPECT_LT(1.5 * Kn(kind).low, table_1) << kind;
+        EXPECT_GT(Kn(kind).high, 1.5 * table_1) << kind;
+    }
+}
+
 TEST_F(ReadCalibration, PiecesAreLaidOverTheJob) {
     const Calibration calibration = folder_.read("[set]\ntest.brazilian.plate_Kn = \"900 GPa/m\"\ntest.biaxial.sigma3 = \"5 MPa\"\nmaterial.contact.mu = 0.25\n"
                                                  "[targets]\nsigma1 = [{ sigma3 = \"5 MPa\", value = \"150 MPa\" }]\nBTS = \"9 MPa\"\n[[unknown]]\nkey = \"material.contact.sigma_nt\"\n");
