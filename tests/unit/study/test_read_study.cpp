@@ -235,6 +235,15 @@ TEST(ReadStudyFile, WithoutItsJobSaysWhereItLooked) {
     }
 }
 
+TEST(ExamplesOfStudies, Read) {
+    struct Example {
+        const char* name;
+        std::size_t runs;   // as its first lines say
+    };
+    for (const auto& [name, runs] : {Example{"studies/brazilian/plates.toml", 80}, Example{"studies/softening/border.toml", 120}, Example{"studies/twins/hidden.toml", 120}, Example{"studies/twins/hidden-inner.toml", 20}})
+        EXPECT_EQ(read_study(std::filesystem::path(FELDSPAR_SOURCE_DIR) / name).runs.size(), runs) << name;
+}
+
 TEST(StudyTemplate, ReadsBesideAJob) {
     const TemporaryFolder folder;
     folder.write("rock.toml", job_template("laboratory"));
