@@ -36,15 +36,8 @@ struct Standing {
 
     bool exists() const { return off.allFinite() && doubt.allFinite(); }
 
-    Standing of(const std::vector<std::size_t>& some) const {
-        Standing part{values, Eigen::VectorXd(some.size()), Eigen::MatrixXd(some.size(), doubt.cols())};
-        for (std::size_t i = 0; i < some.size(); ++i) {
-            const auto row = static_cast<Eigen::Index>(i), from = static_cast<Eigen::Index>(some[i]);
-            part.off[row] = off[from];
-            part.doubt.row(row) = doubt.row(from);
-        }
-        return part;
-    }
+    // Of some of the targets alone.
+    Standing of(const std::vector<std::size_t>& some) const { return {{}, off(some), doubt(some, Eigen::all)}; }
 
     // How unlikely it is that these targets are all met: -2 times the logarithm, but for a constant.
     double badness() const {

@@ -16,17 +16,16 @@ void Learner::observe(std::size_t quantity, const std::vector<double>& x, std::u
     const bool logarithmic = quantities_[quantity].logarithmic;
     if (!std::isfinite(value) || (logarithmic && value <= 0.0)) return;
     if (quantities_[quantity].name == "nu" && (value <= 0.0 || value >= largest_nu)) return;   // of a specimen that is broken at half of its strength
-    (at_least ? at_least_ : seen_)[quantity].push_back({x, seed, logarithmic ? std::log(value) : value});
+    seen_[quantity].push_back({{x, seed, logarithmic ? std::log(value) : value}, at_least});
 }
 
 void Learner::correct(std::size_t quantity, double by) {
-    for (auto* list : {&seen_[quantity], &at_least_[quantity]})
-        for (Observation& observation : *list) observation.y += quantities_[quantity].logarithmic ? std::log(by) : by;
+    for (Seen& seen : seen_[quantity]) seen.observation.y += quantities_[quantity].logarithmic ? std::log(by) : by;
 }
 
 bool Learner::learn() {
     for (std::size_t q = 0; q < quantities_.size(); ++q) {
-        if (seen_[q].empty() && at_least_[q].empty()) return false;
+        if (seen_[q].empty()) return false;
         processes_[q] = GaussianProcess(completed(q), processes_[q] ? &*processes_[q] : nullptr);
     }
     return true;
@@ -34,13 +33,14 @@ bool Learner::learn() {
 
 // What was seen, and in the place of what was seen to be no less than a bound what the rest says of it, unless that is below the bound.
 std::vector<Observation> Learner::completed(std::size_t quantity) const {
-    std::vector<Observation> all = seen_[quantity];
-    if (at_least_[quantity].empty()) return all;
-    std::optional<GaussianProcess> rest;
-    if (!all.empty()) rest.emplace(all, processes_[quantity] ? &*processes_[quantity] : nullptr);
-    for (Observation observation : at_least_[quantity]) {
-        if (rest) observation.y = std::max(observation.y, rest->at(observation.x).mean);
-        all.push_back(std::move(observation));
+    std::vector<Observation> all, bounds;
+    for (const Seen& seen : seen_[quantity]) (seen.at_least ? bounds : all).push_back(seen.observation);
+    if (bounds.empty()) return all;
+    if (all.empty()) return bounds;
+    const GaussianProcess rest(all, processes_[quantity] ? &*processes_[quantity] : nullptr);
+    for (Observation& bound : bounds) {
+        bound.y = std::max(bound.y, rest.at(bound.x).mean);
+        all.push_back(std::move(bound));
     }
     return all;
 }
@@ -130,8 +130,7 @@ std::vector<double> Learner::doubts(const std::vector<double>& x) const {
 
 std::size_t Learner::packings(std::size_t quantity) const {
     std::set<std::uint64_t> seeds;
-    for (const auto* list : {&seen_[quantity], &at_least_[quantity]})
-        for (const Observation& observation : *list) seeds.insert(observation.seed);
+    for (const Seen& seen : seen_[quantity]) seeds.insert(seen.observation.seed);
     return seeds.size();
 }
 

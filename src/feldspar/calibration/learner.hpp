@@ -20,7 +20,7 @@ struct Prediction {
 /// One surrogate for each quantity; targets follow from them.
 class Learner {
 public:
-    Learner(std::vector<Observable> quantities, std::vector<Target> targets) : quantities_(std::move(quantities)), targets_(std::move(targets)), seen_(quantities_.size()), at_least_(quantities_.size()), processes_(quantities_.size()) {}
+    Learner(std::vector<Observable> quantities, std::vector<Target> targets) : quantities_(std::move(quantities)), targets_(std::move(targets)), seen_(quantities_.size()), processes_(quantities_.size()) {}
 
     const std::vector<Observable>& quantities() const { return quantities_; }
     const std::vector<Target>& targets() const { return targets_; }
@@ -60,12 +60,16 @@ public:
     std::size_t packings(std::size_t quantity) const;
 
 private:
+    struct Seen {
+        Observation observation;
+        bool at_least = false;
+    };
     std::vector<Observation> completed(std::size_t quantity) const;
     std::vector<double> shares(const std::vector<double>& x, const std::vector<double>& deviations) const;
 
     std::vector<Observable> quantities_;
     std::vector<Target> targets_;
-    std::vector<std::vector<Observation>> seen_, at_least_;   // by quantity
+    std::vector<std::vector<Seen>> seen_;   // by quantity
     std::vector<std::optional<GaussianProcess>> processes_;
 };
 

@@ -89,8 +89,7 @@ double wanted_strength_Pa(const TestSpec& test, const std::vector<Target>& targe
     if (test.kind != TestKind::biaxial) return nan;
     for (const Target& target : targets)
         if (target.name == "sigma1" && target.sigma3_Pa == test.sigma3_Pa) return target.value;
-    const double unit_cohesion = mohr_coulomb_UCS_Pa(1.0, target_value("friction_angle", targets));   // 2 sqrt(N)
-    return UCS + 0.25 * unit_cohesion * unit_cohesion * test.sigma3_Pa;
+    return UCS + mohr_coulomb_slope(target_value("friction_angle", targets)) * test.sigma3_Pa;
 }
 
 std::vector<std::string> contradictions(const std::vector<Target>& targets) {

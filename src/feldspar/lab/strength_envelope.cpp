@@ -8,9 +8,15 @@
 
 namespace feldspar {
 
-double mohr_coulomb_UCS_Pa(double cohesion_Pa, double friction_angle_deg) {
-    return 2.0 * cohesion_Pa * std::tan((45.0 + 0.5 * friction_angle_deg) * std::numbers::pi / 180.0);
-}
+namespace {
+
+double root_of_slope(double friction_angle_deg) { return std::tan((45.0 + 0.5 * friction_angle_deg) * std::numbers::pi / 180.0); }
+
+}  // namespace
+
+double mohr_coulomb_UCS_Pa(double cohesion_Pa, double friction_angle_deg) { return 2.0 * cohesion_Pa * root_of_slope(friction_angle_deg); }
+
+double mohr_coulomb_slope(double friction_angle_deg) { return root_of_slope(friction_angle_deg) * root_of_slope(friction_angle_deg); }
 
 EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa, const std::vector<double>& DTS_Pa) {
     const double nan = std::numeric_limits<double>::quiet_NaN();

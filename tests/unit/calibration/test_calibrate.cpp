@@ -24,6 +24,15 @@ struct Rock {
     double E_grain, sigma_nt, tau_ratio, mu, Gfn, Gfs_ratio;
 };
 
+// By the values of all unknowns, in their units.
+Rock rock_of(const std::vector<double>& values) { return {1e9 * values[0], 1e6 * values[1], values[2], values[3], values[4], values[5]}; }
+
+Rock rock_of(const CalibrationResult& result) {
+    std::vector<double> best;
+    for (const UnknownOutcome& unknown : result.unknowns) best.push_back(unknown.best);
+    return rock_of(best);
+}
+
 // Strengths of the kind that the flexible model shows, with the scatter of packings and of the order of cracks.
 class FormulaLaboratory : public Laboratory {
 public:
@@ -34,7 +43,7 @@ public:
             if (stop_after > 0 && requests_ > stop_after) throw Interrupted();
             std::set<std::pair<TestKind, double>> tests;
             std::vector<Reading>& own = readings.emplace_back();
-            const Rock rock{1e9 * request.values[0], 1e6 * request.values[1], request.values[2], request.values[3], request.values[4], request.values[5]};
+            const Rock rock = rock_of(request.values);
             if (!request.elastic && std::abs(std::log(mean(rock, "UCS") / wanted_UCS)) > std::log(2.1)) ++(observables[request.quantities.front()].sigma3_Pa > 0.0 ? far_confined : far_others);
             for (const std::size_t q : request.quantities) {
                 tests.insert({observables[q].test, observables[q].sigma3_Pa});
@@ -106,9 +115,7 @@ TEST_F(CalibrateRock, FindsWhatIsHiddenWithinItsBudget) {
         const CalibrationResult result = calibrate(read(targets_of(rock)), laboratory, {});
         ASSERT_TRUE(result.complete);
         EXPECT_LE(result.runs, 300);
-        std::vector<double> best;
-        for (const UnknownOutcome& unknown : result.unknowns) best.push_back(unknown.best);
-        const Rock found{1e9 * best[0], 1e6 * best[1], best[2], best[3], best[4], best[5]};
+        const Rock found = rock_of(result);
         // the true means, without any packing: within the tolerances that a user gets, and half again for the scatter of ten packings
         EXPECT_NEAR(FormulaLaboratory::mean(found, "E") / FormulaLaboratory::mean(rock, "E"), 1.0, 0.01);
         EXPECT_NEAR(FormulaLaboratory::mean(found, "UCS") / FormulaLaboratory::mean(rock, "UCS"), 1.0, 0.045);
@@ -125,7 +132,7 @@ TEST_F(CalibrateRock, TestsThatEndFarAboveWhatIsWantedTeachEnough) {
     const CalibrationResult result = calibrate(read(targets_of(rock)), laboratory, {});
     ASSERT_TRUE(result.complete);
     EXPECT_GE(laboratory.bounds, 8);
-    const Rock found{1e9 * result.unknowns[0].best, 1e6 * result.unknowns[1].best, result.unknowns[2].best, result.unknowns[3].best, result.unknowns[4].best, result.unknowns[5].best};
+    const Rock found = rock_of(result);
     EXPECT_NEAR(FormulaLaboratory::mean(found, "UCS") / FormulaLaboratory::mean(rock, "UCS"), 1.0, 0.045);   // tolerances of the test above
     EXPECT_NEAR(FormulaLaboratory::mean(found, "DTS") / FormulaLaboratory::mean(rock, "DTS"), 1.0, 0.02);
     EXPECT_NEAR(found.mu, rock.mu, 0.15);
