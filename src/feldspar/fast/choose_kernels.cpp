@@ -63,7 +63,7 @@ KernelArrays::KernelArrays(Assembly& s)
       line_b(s.packs.line_b.data()),
       shared(s.packs.shared.data()),
       bare(s.packs.bare.data()),
-      slots_of_bodies(s.slots_of_bodies.data()),
+      more_of_rigid(s.packs.more_of_rigid.data()),
       scale(s.packs.scale.data()),
       lines(s.packs.lines.data()),
       slots(s.slots.data()),

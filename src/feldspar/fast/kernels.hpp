@@ -63,7 +63,7 @@ struct KernelArrays {
     const double *offset = nullptr, *tangent_x = nullptr, *tangent_y = nullptr, *normal_x = nullptr, *normal_y = nullptr, *along = nullptr, *area = nullptr;
     const std::uint32_t *line_a = nullptr, *line_b = nullptr;
     const std::uint8_t *shared = nullptr, *bare = nullptr;
-    const std::int32_t* slots_of_bodies = nullptr;
+    const std::int32_t* more_of_rigid = nullptr;
     const double* scale = nullptr;
     SideLine* lines = nullptr;
     SlotForces* slots = nullptr;

@@ -60,6 +60,29 @@ FELDSPAR_INLINE Real square_root(Real v) {
 #endif
 }
 
+// 1 / sqrt(v) and 1 / v, to rounding: where the processor has a first guess of 14 bits, by two steps of Newton, a third of the time of root and quotient.
+FELDSPAR_INLINE Real inverse_root(Real v) {
+#if defined(__AVX512F__) && FELDSPAR_LANES == 8
+    Real y = _mm512_rsqrt14_pd(v);
+    const Real half = 0.5 * v;
+    Real missing = 0.5 - half * y * y;
+    y += y * missing * (1.0 + 1.5 * missing);
+    missing = 0.5 - half * y * y;
+    return y + y * missing;
+#else
+    return 1.0 / square_root(v);
+#endif
+}
+FELDSPAR_INLINE Real inverse_of(Real v) {
+#if defined(__AVX512F__) && FELDSPAR_LANES == 8
+    Real y = _mm512_rcp14_pd(v);
+    y += y * (1.0 - v * y);
+    return y + y * (1.0 - v * y);
+#else
+    return 1.0 / v;
+#endif
+}
+
 // Keeps the compiler from moving what loads memory below this line to before the computation of v, which takes long.
 FELDSPAR_INLINE void begin_now([[maybe_unused]] Real& v) {
 #if defined(__AVX512F__) && FELDSPAR_LANES == 8

@@ -209,9 +209,10 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     load_motion(line_a, A);
     load_motion(line_b, B);
     const Real2 line = B.centre - A.centre;
-    const Real distance = square_root(dot(line, line));
-    Real inverse = 1.0 / distance;
+    const Real square = dot(line, line);
+    Real inverse = inverse_root(square);
     begin_now(inverse);   // the gradients are loaded meanwhile, not before
+    const Real distance = square * inverse;
     load_gradient<frame>(line_a, A);
     load_gradient<frame>(line_b, B);
     const Real2 m = inverse * line, across_m = {-m.y, m.x};   // the line of centres, on which the reference point lies
@@ -281,20 +282,14 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
 
     // On B: force F, and W = sum of w F. Arms: along m to the reference point, then w along t.
     const Real2 F = Fn_sum * n + Fs_sum * s, W = Fn_moment * n + Fs_moment * s;
-    const Real2 minus_F = {-F.x, -F.y};
     const int contact = pack.first_contact + chunk.begin;
     const auto takes_part = [&](int lane) FELDSPAR_LAMBDA { return plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U)); };
-    if constexpr (rigid) {   // a short line a side: F and the turning moment
+    if constexpr (rigid) {
         const Real across = cross(t, W), at_reference = frame == Frame::rigid ? Fs_sum : cross(m, F);   // moments: of W, and of F over its arm
         alignas(64) double nowhere[8];
-        double *short_a[kWidth], *short_b[kWidth];
-        for (int lane = 0; lane < kWidth; ++lane) {
-            double* const forces = reinterpret_cast<double*>(a.rigid_forces + 2 * (contact + lane));
-            short_a[lane] = takes_part(lane) ? forces : nowhere;
-            short_b[lane] = takes_part(lane) ? forces + 4 : nowhere;
-        }
-        store_quads(short_a, {{minus_F.x, minus_F.y, -(along_m * at_reference + across), Real{}}});
-        store_quads(short_b, {{F.x, F.y, from_b * at_reference + across, Real{}}});
+        double* forces[kWidth];
+        for (int lane = 0; lane < kWidth; ++lane) forces[lane] = takes_part(lane) ? reinterpret_cast<double*>(a.rigid_forces + contact + lane) : nowhere;
+        store_quads(forces, {{F.x, F.y, -(along_m * at_reference + across), from_b * at_reference + across}});
     } else {
         const Real Wxx = W.x * t.x, Wxy = W.x * t.y, Wyx = W.y * t.x, Wyy = W.y * t.y;
         const Real2 at_a = along_m * m, at_b = from_b * m;
@@ -305,7 +300,7 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
                 if (!takes_part(lane) || apart(a.line_a, lane)) line_a[lane] = slot_a[lane];
                 if (!takes_part(lane) || apart(a.line_b, lane)) line_b[lane] = slot_b[lane];
             }
-        store_forces(line_a, minus_F, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
+        store_forces(line_a, {-F.x, -F.y}, F.x * -at_a.x - Wxx, F.x * -at_a.y - Wxy, F.y * -at_a.x - Wyx, F.y * -at_a.y - Wyy);
         store_forces(line_b, F, F.x * at_b.x + Wxx, F.x * at_b.y + Wxy, F.y * at_b.x + Wyx, F.y * at_b.y + Wyy);
         if constexpr (!plain)
             for (int lane = 0; lane < chunk.count; ++lane) {
@@ -461,7 +456,7 @@ FELDSPAR_INLINE bool any_set(const std::uint8_t* flags, int count) {
 FELDSPAR_INLINE void write_line(double* lines, double* inverse_cross, const std::uint8_t* bare, int count, Real2 centre, Real2 xi, Real2 xj, Real2 xk, Real2 vi,
                                 Real2 vj, Real2 vk) {
     const Real2 e1 = xj - xi, e2 = xk - xi, d1 = vj - vi, d2 = vk - vi, r = centre - xi;
-    const Real inverse = 1.0 / cross(e1, e2);
+    const Real inverse = inverse_of(cross(e1, e2));
     store(inverse_cross, inverse, count);
     const Real xx = inverse * (d1.x * e2.y - d2.x * e1.y), xy = inverse * (d2.x * e1.x - d1.x * e2.x);
     const Real yx = inverse * (d1.y * e2.y - d2.y * e1.y), yy = inverse * (d2.y * e1.x - d1.y * e2.x);
@@ -627,7 +622,7 @@ void grain_lines(const KernelArrays& a, int begin, int end) {
 
 // Centre and turn of a body as one vector of four: x, y, arc, and nothing.
 template <bool local>
-FELDSPAR_INLINE Quad move_rigid(const KernelStep& step, Quad V, Quad F, Quad inverse_mass, Quad mass, Quad B, Quad& damping_work) {
+FELDSPAR_INLINE Quad move_rigid(const KernelStep& step, const DeviationDamping& damping, Quad V, Quad F, Quad inverse_mass, Quad mass, Quad B, Quad& damping_work) {
     const Quad none{};
     if constexpr (local) {
         typedef std::int64_t QuadMask __attribute__((vector_size(32)));
@@ -638,13 +633,26 @@ FELDSPAR_INLINE Quad move_rigid(const KernelStep& step, Quad V, Quad F, Quad inv
         damping_work = 0.5 * step.dt * drag * (V + next);
         return next;
     } else {
-        const double half = 0.5 * step.viscous * step.dt, inverse = 1.0 / (1.0 + half);
         const Quad loading = step.speed * B, w = V - loading;
-        const Quad next = (w * (1.0 - half) + step.dt * inverse_mass * F) * inverse;
+        const Quad next = w * damping.kept + damping.pushed * inverse_mass * F;
         const Quad moving = inverse_mass == 0.0 ? none : mass;
-        damping_work = half * moving * (0.5 * (w + next) * (V + loading + next));
+        damping_work = 0.5 * damping.half * moving * ((w + next) * (V + loading + next));
         return loading + next;
     }
+}
+
+// Of all contacts of a body: Fx, Fy, moment over radius.
+FELDSPAR_INLINE Quad forces_on(const KernelArrays& a, const RigidBody& body) {
+    const auto of = [&](std::uint32_t bytes) FELDSPAR_LAMBDA { return load_quad(reinterpret_cast<const double*>(reinterpret_cast<const char*>(a.rigid_forces) + bytes)); };
+    Quad as_a{}, as_b{};
+    for (const std::uint32_t contact : body.as_a) as_a += of(contact);
+    for (const std::uint32_t contact : body.as_b) as_b += of(contact);
+    for (int i = body.more_begin; i < body.more_end; ++i) {
+        const auto slot = static_cast<std::uint32_t>(a.more_of_rigid[i]);
+        (slot % 2 == 0 ? as_a : as_b) += of(slot / 2 * static_cast<std::uint32_t>(sizeof(RigidForces)));
+    }
+    const Quad F = as_b - as_a;
+    return Quad{F[0], F[1], (as_a[2] + as_b[3]) * body.inverse_radius, 0.0};
 }
 
 FELDSPAR_INLINE void write_rigid_line(const KernelArrays& a, int number, const RigidBody& body, Quad u, Quad v) {
@@ -656,22 +664,23 @@ FELDSPAR_INLINE void write_rigid_line(const KernelArrays& a, int number, const R
 }
 
 template <bool local>
-FELDSPAR_INLINE void rigid_bodies(const KernelArrays& a, const KernelStep& step, int begin, int end) {
+FELDSPAR_INLINE void rigid_bodies(const KernelArrays& arrays, const KernelStep& settings, int begin, int end) {
+    const KernelArrays a = arrays;   // copies that nobody else can change: their members stay in registers
+    const KernelStep step = settings;
+    const DeviationDamping damping(step);
     for (int i = begin; i < end; ++i) {
         const RigidBody& body = a.rigid_bodies[i];
-        Quad F{};   // Fx, Fy, moment
-        for (int s = body.slot_begin; s < body.slot_end; ++s) F += load_quad(&a.rigid_forces[a.slots_of_bodies[s]].force.x);
-        F[2] *= body.inverse_radius;
+        const Quad F = forces_on(a, body);
         const int node = 2 * body.first_node;
         const Quad inverse_mass = load_quad(a.inverse_mass + node);
         const double m = a.mass[body.first_node], turn_mass = a.mass[body.first_node + 1];
         Quad work;
-        const Quad V = move_rigid<local>(step, load_quad(a.velocity + node), F, inverse_mass, Quad{m, m, turn_mass, turn_mass}, load_quad(a.loading_mode + node), work);
+        const Quad V = move_rigid<local>(step, damping, load_quad(a.velocity + node), F, inverse_mass, Quad{m, m, turn_mass, turn_mass}, load_quad(a.loading_mode + node), work);
         const Quad u = load_quad(a.displacement + node) + step.dt * V;
         store_quad(a.velocity + node, V);
         store_quad(a.displacement + node, u);
         if (step.keep_forces) store_quad(a.force + node, F);
-        a.body_work[i].damping += work[0] + work[1] + work[2] + work[3];
+        a.body_work[i].damping += (work[0] + work[1]) + (work[2] + work[3]);
         write_rigid_line(a, i, body, u, V);
     }
 }

@@ -125,7 +125,7 @@ double bytes_of_a_step(const Assembly& assembly) {
     const auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
     constexpr double kBytesOfAPack = sizeof(ContactPack) + kMostLanes * (3 * sizeof(double) + 2 * sizeof(std::uint32_t));   // offset, tangent, lines
     const double contacts = kBytesOfAPack * static_cast<double>(packs.contacts.size());
-    const double rigid = packs.rigid_end > 0 ? bytes(packs.rigid) + bytes(assembly.slots_of_bodies) + bytes(packs.rigid_forces) : 0.0;
+    const double rigid = packs.rigid_end > 0 ? bytes(packs.rigid) + bytes(packs.rigid_forces) : 0.0;
     return 5.0 * bytes(assembly.nodes.velocity) + bytes(assembly.nodes.mass) + bytes(packs.scale) + bytes(packs.lines) + bytes(packs.inverse_cross) +
            4.0 * bytes(packs.along) + contacts + rigid;
 }

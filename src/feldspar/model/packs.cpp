@@ -182,6 +182,38 @@ void find_contact_packs(Assembly& assembly) {
     }
 }
 
+void index_rigid_bodies(Assembly& assembly) {
+    Packs& packs = assembly.packs;
+    const std::size_t contacts = assembly.contacts.size();
+    packs.rigid_forces.assign(packs.rigid_end > 0 ? contacts + 1 : 0, {});
+    if (packs.rigid_forces.size() * sizeof(RigidForces) > std::numeric_limits<std::uint32_t>::max())   // bodies find them by 32 bits
+        throw InputError({}, fmt::format("{} contacts of rigid grains or inner particles are more than a specimen may have", contacts), "134 million", "larger grains, or a smaller specimen");
+    const auto bytes_to = [](std::size_t contact) { return static_cast<std::uint32_t>(sizeof(RigidForces) * contact); };
+    packs.rigid.clear();
+    packs.more_of_rigid.clear();
+    for (int b = 0; b < packs.rigid_end; ++b) {
+        const Body& body = assembly.bodies[b];
+        RigidBody rigid;
+        rigid.as_a.fill(bytes_to(contacts));
+        rigid.as_b.fill(bytes_to(contacts));
+        rigid.more_begin = static_cast<std::int32_t>(packs.more_of_rigid.size());
+        int as_a = 0, as_b = 0;
+        for (int i = body.slot_begin; i < body.slot_end; ++i) {
+            const std::int32_t slot = assembly.slots_of_bodies[i];
+            int& taken = slot % 2 == 0 ? as_a : as_b;
+            if (taken < kAtOnce) {
+                (slot % 2 == 0 ? rigid.as_a : rigid.as_b)[taken++] = bytes_to(static_cast<std::size_t>(slot / 2));
+            } else {
+                packs.more_of_rigid.push_back(slot);
+            }
+        }
+        rigid.more_end = static_cast<std::int32_t>(packs.more_of_rigid.size());
+        rigid.first_node = body.first_node;
+        rigid.inverse_radius = 1.0 / body.radius_m;
+        packs.rigid.push_back(rigid);
+    }
+}
+
 }  // namespace
 
 void index_contact_packs(Assembly& assembly) {
@@ -189,7 +221,6 @@ void index_contact_packs(Assembly& assembly) {
     const int contacts = static_cast<int>(assembly.contacts.size());
 
     assembly.slots.assign(static_cast<std::size_t>(2 * contacts), {});
-    packs.rigid_forces.assign(packs.rigid_end > 0 ? assembly.slots.size() : 0, {});
 
     // Slots of the contacts on each edge: none, one, or several that share it.
     const std::size_t edges = packs.inverse_cross.size();
@@ -235,11 +266,7 @@ void index_contact_packs(Assembly& assembly) {
         packs.area[point.state] = point.area_m2;
     }
     packs.loose_contacts.clear();
-    packs.rigid.clear();
-    for (int b = 0; b < packs.rigid_end; ++b) {
-        const Body& body = assembly.bodies[b];
-        packs.rigid.push_back({body.first_node, body.slot_begin, body.slot_end, 1.0 / body.radius_m});
-    }
+    index_rigid_bodies(assembly);
     find_contact_packs(assembly);
     cut_into_bands(assembly);
     for (auto* array : {&packs.offset, &packs.tangent_x, &packs.tangent_y, &packs.normal_x, &packs.normal_y}) array->clear();

@@ -13,8 +13,8 @@
 // by height, and those of contacts by the places of the grains that they join, so that a contiguous share is a band of the specimen.
 //
 // A grain edge has one line of 64 bytes between its grain and its contact: the grain leaves in it how the edge moves, the contact
-// reads that, and leaves in it what the edge feels. Rigid bodies have a line each, for how they move and have turned, and a short line
-// for each of their contacts' forces.
+// reads that, and leaves in it what the edge feels. Rigid bodies have a line each, for how they move and have turned, and each of their
+// contacts leaves what both sides feel in a short line.
 //
 // What is not in a pack (finely meshed grains, plates, contacts at plates, contacts on the fall-back shape functions) is loose, and goes
 // through the readable form of the same stage.
@@ -36,6 +36,7 @@ struct Assembly;
 inline constexpr int kMostLanes = 8;
 inline constexpr int kFetchAhead = 3;      ///< packs of contacts whose lines are fetched before they are needed
 inline constexpr int kMostVertices = 32;   ///< of a packed grain; those with more stay loose
+inline constexpr int kAtOnce = 5;          ///< contacts as side A, and as many as side B, whose forces a rigid body sums without a look at how many there are
 
 /// What else a step has to do for a pack of grains.
 enum class PackForces : std::uint8_t {
@@ -117,18 +118,18 @@ union alignas(64) SideLine {
     SideLine() : field{} {}
 };
 
-/// Force and turning moment of a contact on a rigid body.
+/// What a contact of a rigid body does.
 struct alignas(32) RigidForces {
-    Vec2 force;
-    double moment = 0.0;
-    double unused = 0.0;
+    Vec2 force;                             ///< on side B, N; on side A the opposite
+    double moment_a = 0.0, moment_b = 0.0;  ///< turning each side, N m
 };
 
 /// What the step of a rigid body needs of it.
 struct RigidBody {
-    std::int32_t first_node = 0;               ///< its centre; the turn follows
-    std::int32_t slot_begin = 0, slot_end = 0; ///< into Assembly::slots_of_bodies
-    double inverse_radius = 0.0;               ///< 1/m, of the contact circle
+    std::array<std::uint32_t, kAtOnce> as_a{}, as_b{};   ///< its first contacts as either side: distance in bytes from the first rigid_forces; of no contact, where it has less
+    std::int32_t more_begin = 0, more_end = 0;           ///< the others, into Packs::more_of_rigid
+    std::int32_t first_node = 0;                         ///< its centre; the turn follows
+    double inverse_radius = 0.0;                         ///< 1/m, of the contact circle
 };
 
 /// An edge with several contacts: they leave their forces in their own slots, which are summed before the grain looks at them.
@@ -146,6 +147,7 @@ struct Packs {
     std::vector<std::int32_t> loose_bodies;          ///< not in a grain pack and not rigid: plates, finely meshed grains
     std::int32_t rigid_end = 0;                      ///< bodies [0, rigid_end) are rigid
     Array<RigidBody> rigid;                          ///< these
+    std::vector<std::int32_t> more_of_rigid;         ///< slots of the contacts that a body has beyond kAtOnce as either side
     Array<double> scale;                             ///< of each triangle: 1 / (4 x area), 1/m2
     std::vector<std::int32_t> line_of_edge;          ///< of each GrainEdge of a flexible body
     std::int32_t line_of_first_body = 0;
@@ -163,7 +165,7 @@ struct Packs {
     Array<double> normal_x, normal_y;                ///< kMostLanes a pack of contacts with a normal of their own: Contact::edge_normal
     Array<std::uint32_t> line_a, line_b;             ///< kMostLanes a pack: distance in bytes from the first line; some more at the end
     Array<double> along, area;                       ///< as bonds
-    Array<RigidForces> rigid_forces;                 ///< 2 x contact + side; none without rigid bodies
+    Array<RigidForces> rigid_forces;                 ///< of each contact, and of no contact: zero; none without rigid bodies
 
     /// Whether an edge of a flexible grain has one contact, which leaves its forces in the edge's line.
     bool only_contact_on(int edge) const { return edge >= 0 && !shared[line_of_edge[edge]]; }

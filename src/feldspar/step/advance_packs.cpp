@@ -74,14 +74,14 @@ void write_lines_of(Assembly& assembly, const Body& grain) {
 void hand_over(Assembly& assembly, int c) {
     Packs& packs = assembly.packs;
     const Contact& contact = assembly.contacts[c];
+    if (!contact.flexible) {
+        const SlotForces &a = assembly.slots[2 * c], &b = assembly.slots[2 * c + 1];
+        packs.rigid_forces[c] = {-a.force, turning_moment(a), turning_moment(b)};
+        return;
+    }
     for (int side = 0; side < 2 - contact.plate; ++side) {
         const ContactSide& s = side == 0 ? contact.a : contact.b;
-        const SlotForces& slot = assembly.slots[2 * c + side];
-        if (!contact.flexible) {
-            packs.rigid_forces[2 * c + side] = {slot.force, turning_moment(slot), 0.0};
-        } else if (packs.only_contact_on(s.edge)) {
-            packs.lines[packs.line_of_edge[s.edge]].forces = slot;
-        }
+        if (packs.only_contact_on(s.edge)) packs.lines[packs.line_of_edge[s.edge]].forces = assembly.slots[2 * c + side];
     }
 }
 
