@@ -195,7 +195,8 @@ FELDSPAR_INLINE Real2 turned(Real2 v, Real angle) {
     return {c * v.x - s * v.y, s * v.x + c * v.y};
 }
 
-template <Frame frame, bool plain>
+// `central`: one point, at the reference point (of discs), so that nothing along the edge's line matters.
+template <Frame frame, bool central, bool plain>
 FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelStep& step, ContactPack& pack, int pack_index, Chunk chunk) {
     constexpr bool rigid = frame != Frame::triangles;
     const KernelArrays a = arrays;   // a copy that nobody else can change: its pointers stay in registers
@@ -216,8 +217,6 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     load_gradient<frame>(line_a, A);
     load_gradient<frame>(line_b, B);
     const Real2 m = inverse * line, across_m = {-m.y, m.x};   // the line of centres, on which the reference point lies
-    const Real tx = load(a.tangent_x + constants), ty = load(a.tangent_y + constants);
-    const Real2 t = tx * m + ty * across_m;
     const Real along_m = 0.5 * distance + load(a.offset + constants), from_b = along_m - distance;
     Real2 n = m, s = across_m;   // of the law
     if constexpr (frame == Frame::rigid_own_normal) {
@@ -226,27 +225,41 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
         s = {-n.y, n.x};
     }
 
-    // Relative velocity on the edge's line: v0 + w v1, w from the reference point.
-    Real2 v0, v1;
+    // Relative displacement on the edge's line: that at the reference point, and w times more along the line.
+    Real2 v0;
     if constexpr (rigid) {   // L r = w rot90(r)
         v0 = B.velocity - A.velocity + (B.yx * from_b - A.yx * along_m) * across_m;
-        const Real turn = B.yx - A.yx;
-        v1 = {-turn * t.y, turn * t.x};
     } else {
         const Real2 am = {A.xx * m.x + A.xy * m.y, A.yx * m.x + A.yy * m.y}, bm = {B.xx * m.x + B.xy * m.y, B.yx * m.x + B.yy * m.y};
         v0 = B.velocity - A.velocity + from_b * bm - along_m * am;
-        const Real xx = B.xx - A.xx, xy = B.xy - A.xy, yx = B.yx - A.yx, yy = B.yy - A.yy;
-        v1 = {xx * t.x + xy * t.y, yx * t.x + yy * t.y};
     }
-    const Real n0 = step.dt * dot(v0, n), s0 = step.dt * dot(v0, s), n1 = step.dt * dot(v1, n), s1 = step.dt * dot(v1, s);
+    const Real n0 = step.dt * dot(v0, n), s0 = step.dt * dot(v0, s);
+    Real2 t{};
+    Real n1{}, s1{};
+    if constexpr (!central) {
+        t = load(a.tangent_x + constants) * m + load(a.tangent_y + constants) * across_m;
+        Real2 v1;
+        if constexpr (rigid) {
+            const Real turn = B.yx - A.yx;
+            v1 = {-turn * t.y, turn * t.x};
+        } else {
+            const Real xx = B.xx - A.xx, xy = B.xy - A.xy, yx = B.yx - A.yx, yy = B.yy - A.yy;
+            v1 = {xx * t.x + xy * t.y, yx * t.x + yy * t.y};
+        }
+        n1 = step.dt * dot(v1, n);
+        s1 = step.dt * dot(v1, s);
+    }
+    const auto further = [&](Real at_reference, Real more, Real w) FELDSPAR_LAMBDA { return central ? at_reference : at_reference + w * more; };
 
     Real Fn_sum{}, Fs_sum{}, Fn_moment{}, Fs_moment{};
     const auto add = [&](Real w, Real Fn, Real Fs) FELDSPAR_LAMBDA {
         Fn_sum += Fn;
         Fs_sum += Fs;
+        if constexpr (central) return;
         Fn_moment += w * Fn;
         Fs_moment += w * Fs;
     };
+    const auto place = [&](int state, int count) FELDSPAR_LAMBDA { return central ? Real{} : load(a.along + state, count); };
     const int points = pack.points, stride = pack.lanes, first = pack.first_state + chunk.begin;
     if (plain && pack.intact) {
         const KernelLaw& law = arrays.laws[pack.material];
@@ -254,7 +267,7 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
         const double Kn = law.Kn, Ks = law.Ks;
         for (int j = 0; j < points; ++j) {
             const int state = first + j * stride;
-            const Real w = load(a.along + state), area = load(a.area + state), dun = n0 + w * n1, dus = s0 + w * s1;
+            const Real w = place(state, kWidth), area = load(a.area + state), dun = further(n0, n1, w), dus = further(s0, s1, w);
             const Real un = load(a.un + state) + dun, us = load(a.us + state) + dus;
             Real Fn = -Kn * area * un, Fs = -Ks * area * us;
             if (any((un > x0n) | (absolute(us) > x0s))) [[unlikely]] {
@@ -274,8 +287,8 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
         }
     } else {
         for (int j = 0; j < points; ++j) {
-            const Real w = load(a.along + first + j * stride, chunk.count);
-            const PointForces point = update_points(arrays, step, pack, chunk, j, n0 + w * n1, s0 + w * s1);
+            const Real w = place(first + j * stride, chunk.count);
+            const PointForces point = update_points(arrays, step, pack, chunk, j, further(n0, n1, w), further(s0, s1, w));
             add(w, point.Fn, point.Fs);
         }
     }
@@ -285,7 +298,7 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     const int contact = pack.first_contact + chunk.begin;
     const auto takes_part = [&](int lane) FELDSPAR_LAMBDA { return plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U)); };
     if constexpr (rigid) {
-        const Real across = cross(t, W), at_reference = frame == Frame::rigid ? Fs_sum : cross(m, F);   // moments: of W, and of F over its arm
+        const Real across = central ? Real{} : cross(t, W), at_reference = frame == Frame::rigid ? Fs_sum : cross(m, F);   // moments: of W, and of F over its arm
         alignas(64) double nowhere[8];
         double* forces[kWidth];
         for (int lane = 0; lane < kWidth; ++lane) forces[lane] = takes_part(lane) ? reinterpret_cast<double*>(a.rigid_forces + contact + lane) : nowhere;
@@ -312,13 +325,13 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     }
 }
 
-template <Frame frame>
+template <Frame frame, bool central>
 FELDSPAR_INLINE void contacts_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
     if (pack.plain) {
-        for (int first = 0; first < kMostLanes; first += kWidth) contacts_of_chunk<frame, true>(a, step, pack, index, Chunk{first, kWidth});
+        for (int first = 0; first < kMostLanes; first += kWidth) contacts_of_chunk<frame, central, true>(a, step, pack, index, Chunk{first, kWidth});
     } else if (pack.active != 0) {
         for (int first = 0; first < pack.lanes; first += kWidth)
-            contacts_of_chunk<frame, false>(a, step, pack, index, Chunk{first, pack.lanes - first < kWidth ? pack.lanes - first : kWidth});
+            contacts_of_chunk<frame, central, false>(a, step, pack, index, Chunk{first, pack.lanes - first < kWidth ? pack.lanes - first : kWidth});
     }
 }
 
@@ -334,11 +347,13 @@ void contacts(const KernelArrays& a, const KernelStep& step, int begin, int end)
         line_a += kMostLanes;
         line_b += kMostLanes;
         if (!pack.rigid) {
-            contacts_of_pack<Frame::triangles>(a, step, pack, i);
-        } else if (pack.first_normal < 0) {
-            contacts_of_pack<Frame::rigid>(a, step, pack, i);
+            contacts_of_pack<Frame::triangles, false>(a, step, pack, i);
+        } else if (pack.first_normal >= 0) {
+            contacts_of_pack<Frame::rigid_own_normal, true>(a, step, pack, i);
+        } else if (pack.central) {
+            contacts_of_pack<Frame::rigid, true>(a, step, pack, i);
         } else {
-            contacts_of_pack<Frame::rigid_own_normal>(a, step, pack, i);
+            contacts_of_pack<Frame::rigid, false>(a, step, pack, i);
         }
     }
 }

@@ -59,6 +59,8 @@ bool alike(const Assembly& assembly, int c) {
            (!l.plate || l.b.body == r.b.body);
 }
 
+bool is_central(const Assembly& assembly, const Contact& contact) { return contact.points == 1 && assembly.points[contact.first_point].along_m == 0.0; }
+
 bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape; }
 
 }  // namespace
@@ -177,6 +179,7 @@ void find_contact_packs(Assembly& assembly) {
         };
         const int spacing = first.points > 1 ? assembly.points[first.first_point + 1].state - pack.first_state : kMostLanes;
         while (pack.lanes < spacing && c + pack.lanes < contacts && alike(assembly, c + pack.lanes - 1) && stands(pack.lanes, spacing)) ++pack.lanes;
+        pack.central = std::all_of(&assembly.contacts[c], &assembly.contacts[c] + pack.lanes, [&](const Contact& contact) { return is_central(assembly, contact); });
         packs.contacts.push_back(pack);
         c += pack.lanes;
     }

@@ -70,8 +70,9 @@ struct ContactPack {
     std::int32_t points = 0;
     std::int32_t first_state = 0;
     std::int32_t material = 0;
-    std::int32_t first_normal = -1;   ///< of a pack whose contacts have a normal of their own: into Packs::normal_x, normal_y
+    std::int32_t first_normal = -1;   ///< of a pack whose contacts have a normal of their own, which are central: into Packs::normal_x, normal_y
     bool rigid = false;          ///< both sides are rigid bodies
+    bool central = false;        ///< its contacts have one point, at the reference point
     bool intact = false;         ///< no point of it has any damage
     bool plain = false;          ///< all lanes are taken, take part, and may leave their forces in the lines that they read
     std::uint8_t active = 0;     ///< lane l takes part if bit l is set
