@@ -1,6 +1,7 @@
 #include "feldspar/model/assemble.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -127,20 +128,39 @@ void add_rigid_grains(Assembly& assembly, const Specimen& specimen) {
     }
 }
 
+// Particles by strips of the specimen from the bottom to the top, and from left to right in each, whatever grain they are of: contacts join what is
+// near in this order, and bands can be narrow (model/bands.hpp).
+std::vector<int> particles_in_strips(const Filling& filling) {
+    const double strip = 3.0 * *std::max_element(filling.radii_m.begin(), filling.radii_m.end());
+    std::vector<std::pair<double, double>> place;   // number of the strip, and where in it
+    for (const Vec2 centre : filling.centres) place.push_back({std::floor(centre.y / strip), centre.x});
+    std::vector<int> order(filling.centres.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int l, int r) { return place[l] < place[r]; });
+    return order;
+}
+
 // The discs of a grain share its volume by their own areas.
 void add_inner_particles(Assembly& assembly, const Specimen& specimen) {
     const Filling& filling = specimen.filling;
+    std::vector<int> grain(filling.centres.size());
+    std::vector<double> volume_over_squares;   // of each grain
     for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
         double squares = 0.0;
-        for (int p = filling.particle_begin[g]; p < filling.particle_begin[g + 1]; ++p) squares += filling.radii_m[p] * filling.radii_m[p];
-        const double volume = signed_area(corners_of_cell(specimen.cells, g)) * assembly.thickness_m;
         for (int p = filling.particle_begin[g]; p < filling.particle_begin[g + 1]; ++p) {
-            const double R = filling.radii_m[p];
-            Body body = rigid_body(assembly, g, filling.centres[p], R);
-            body.volume_m3 = volume * R * R / squares;
-            body.gyration_m2 = 0.5 * R * R;
-            assembly.bodies.push_back(body);
+            squares += filling.radii_m[p] * filling.radii_m[p];
+            grain[p] = g;
         }
+        volume_over_squares.push_back(signed_area(corners_of_cell(specimen.cells, g)) * assembly.thickness_m / squares);
+    }
+    assembly.body_of_particle.resize(filling.centres.size());
+    for (const int p : particles_in_strips(filling)) {
+        const double R = filling.radii_m[p];
+        Body body = rigid_body(assembly, grain[p], filling.centres[p], R);
+        body.volume_m3 = volume_over_squares[grain[p]] * R * R;
+        body.gyration_m2 = 0.5 * R * R;
+        assembly.body_of_particle[p] = static_cast<std::int32_t>(assembly.bodies.size());
+        assembly.bodies.push_back(body);
     }
 }
 
@@ -283,7 +303,13 @@ void add_across_contact(Assembly& assembly, const AcrossContact& across, Contact
 // From the first particles to the last, so that a sweep over the contacts goes through the particles once; those inside grains and those
 // across edges in turn, a full pack of either.
 void add_contacts_of_particles(Assembly& assembly, Filling filling, ContactNormal normal) {
-    const auto in_order = [](auto& all) { std::stable_sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.a + l.b < r.a + r.b; }); };
+    const auto in_order = [&](auto& all) {   // and from now on between bodies
+        for (auto& contact : all) {
+            contact.a = assembly.body_of_particle[contact.a];
+            contact.b = assembly.body_of_particle[contact.b];
+        }
+        std::stable_sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.a + l.b < r.a + r.b; });
+    };
     in_order(filling.inside);
     in_order(filling.across);
     auto inside = filling.inside.begin();

@@ -209,6 +209,7 @@ struct Assembly {
     std::vector<Body> bodies;                  ///< the grains, or their inner particles; then the plates
     std::vector<GrainEdge> edges;
     std::vector<std::int32_t> node_of_mesh;    ///< flexible grains: node of each node of the grain mesh
+    std::vector<std::int32_t> body_of_particle; ///< inner particles: body of each particle of the filling
     std::vector<Contact> contacts;
     std::vector<ContactOrigin> origins;        ///< a contact
     std::vector<ContactPoint> points;

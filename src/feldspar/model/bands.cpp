@@ -106,16 +106,22 @@ Cuts cut(std::int32_t units, const std::vector<Span>& spans, const Span& platen_
 }
 
 // The most steps between whose first and last band, two bands a step, no more than a cache lies.
-int steps_of_a_sweep(double bytes, const std::vector<std::int32_t>& begin) {
+int most_steps(double bytes, const std::vector<std::int32_t>& begin, double cache_bytes) {
     constexpr int kMostSteps = 10;   // a block of steps
-    if (bytes <= kSharedCacheBytes) return 1;
     int steps = 1;
     for (std::size_t bands = 5; steps < kMostSteps && bands < begin.size(); bands += 2, ++steps) {
         std::int32_t widest = 0;
         for (std::size_t b = bands; b < begin.size(); ++b) widest = std::max(widest, begin[b] - begin[b - bands]);
-        if (widest * bytes > kSharedCacheBytes * begin.back()) break;
+        if (widest * bytes > cache_bytes * begin.back()) break;
     }
     return steps;
+}
+
+// In the own cache if bands are narrow enough for that and the whole is several times as large, else in the shared one.
+int steps_of_a_sweep(double bytes, const std::vector<std::int32_t>& begin) {
+    const int own = bytes > 4.0 * kOwnCacheBytes ? most_steps(bytes, begin, kOwnCacheBytes) : 1;
+    if (own > 1) return own;
+    return bytes > kSharedCacheBytes ? most_steps(bytes, begin, kSharedCacheBytes) : 1;
 }
 
 }  // namespace

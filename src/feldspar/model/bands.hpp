@@ -22,8 +22,8 @@ struct PackRanges {
     IndexRange grains, rigid, loose_bodies;     ///< into Packs::grains, Assembly::bodies, Packs::loose_bodies
 };
 
-/// What a program may expect of a cache that it shares with others. A larger state is swept in bands.
-inline constexpr double kSharedCacheBytes = 32.0 * (1 << 20);
+/// What a program may expect of a core's own cache, and of one that it shares with others. A larger state is swept in bands.
+inline constexpr double kOwnCacheBytes = 1.25 * (1 << 20), kSharedCacheBytes = 32.0 * (1 << 20);
 
 struct Bands {
     std::vector<PackRanges> ranges;   ///< from the bottom to the top; those of loose contacts are known from sort_out_packs() on

@@ -32,9 +32,10 @@ std::vector<OutlineSite> outline_sites(const Assembly& assembly, const Specimen&
     std::vector<OutlineSite> sites;
     const std::vector<Cell>& cells = specimen.cells.cells;
     for (const OutlineShare& share : specimen.filling.outline) {
-        const Body& body = assembly.bodies[share.particle];
-        if (assembly.edges.empty())   // the bodies are the particles
-            sites.push_back({share.particle, -1, {body.node(0), body.node(1), -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
+        if (!assembly.edges.empty()) break;   // the bodies are the grains
+        const std::int32_t particle = assembly.body_of_particle[share.particle];
+        const Body& body = assembly.bodies[particle];
+        sites.push_back({particle, -1, {body.node(0), body.node(1), -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
     }
     std::stable_sort(sites.begin(), sites.end(), [](const OutlineSite& l, const OutlineSite& r) { return l.body < r.body; });
     if (assembly.edges.empty()) return sites;

@@ -382,6 +382,27 @@ TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
         }
 }
 
+TEST(Packs, OfInnerParticlesStandInStripsWhateverGrainTheyAreOf) {
+    TestSetup setup = fixtures::setup(fixtures::rectangle(0.04, 0.08), TestKind::uniaxial_compression, fixtures::model(GrainKind::inner_particles));
+    const RunControl control = fixtures::threads(1);
+    Experiment e(setup, control);
+    const Filling& filling = e.setup.specimen->filling;
+    ASSERT_EQ(e.assembly.body_of_particle.size(), filling.centres.size());
+    std::vector<int> bodies_of_grain(filling.particle_begin.size() - 1, 0);
+    for (std::size_t p = 0; p < filling.centres.size(); ++p) {
+        const Body& body = e.assembly.bodies[e.assembly.body_of_particle[p]];
+        EXPECT_EQ(e.assembly.nodes.reference[body.centre_node], filling.centres[p]);
+        EXPECT_EQ(body.radius_m, filling.radii_m[p]);
+        ++bodies_of_grain[body.grain];
+    }
+    for (std::size_t g = 0; g < bodies_of_grain.size(); ++g) EXPECT_EQ(bodies_of_grain[g], filling.particle_begin[g + 1] - filling.particle_begin[g]);
+    expect_narrow_bands(e.assembly);
+    const Bands& bands = e.assembly.packs.bands;
+    EXPECT_GT(bands.ranges.size(), 40U);   // of less than 2 mm, the radius of a large grain
+    EXPECT_GT(bytes_of_a_step(e.assembly), 4.0 * kOwnCacheBytes);
+    EXPECT_GT(bands.steps, 1);
+}
+
 TEST(Packs, HoldContactsWithANormalOfTheirOwnHoweverFarBodiesHaveTurned) {
     const ModelSpec model = fixtures::model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge);
     TestSetup setup = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, model);
