@@ -105,27 +105,19 @@ Cuts cut(std::int32_t units, const std::vector<Span>& spans, const Span& platen_
     return cuts;
 }
 
-// The most steps between whose first and last band, two bands a step, no more than a cache lies.
-int most_steps(double bytes, const std::vector<std::int32_t>& begin, double cache_bytes) {
+// Bytes in five bands, in seven, ...: two a step, and one; `begin` is of the units of each band, and the end of the last.
+std::vector<double> windows(double bytes, const std::vector<std::int32_t>& begin) {
     constexpr int kMostSteps = 10;   // a block of steps
-    int steps = 1;
-    for (std::size_t bands = 5; steps < kMostSteps && bands < begin.size(); bands += 2, ++steps) {
+    std::vector<double> all;
+    for (std::size_t bands = 5; bands <= 2 * kMostSteps + 1 && bands < begin.size(); bands += 2) {
         std::int32_t widest = 0;
         for (std::size_t b = bands; b < begin.size(); ++b) widest = std::max(widest, begin[b] - begin[b - bands]);
-        if (widest * bytes > cache_bytes * begin.back()) break;
+        all.push_back(widest * bytes / begin.back());
     }
-    return steps;
+    return all;
 }
 
-// In the own cache if bands are narrow enough for that and the whole is several times as large, else in the shared one.
-int steps_of_a_sweep(double bytes, const std::vector<std::int32_t>& begin) {
-    const int own = bytes > 4.0 * kOwnCacheBytes ? most_steps(bytes, begin, kOwnCacheBytes) : 1;
-    if (own > 1) return own;
-    return bytes > kSharedCacheBytes ? most_steps(bytes, begin, kSharedCacheBytes) : 1;
-}
-
-}  // namespace
-
+// That a step streams through, about.
 double bytes_of_a_step(const Assembly& assembly) {
     const Packs& packs = assembly.packs;
     const auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
@@ -134,6 +126,15 @@ double bytes_of_a_step(const Assembly& assembly) {
     const double rigid = packs.rigid_end > 0 ? bytes(packs.rigid) + bytes(packs.rigid_forces) : 0.0;
     return 5.0 * bytes(assembly.nodes.velocity) + bytes(assembly.nodes.mass) + bytes(packs.scale) + bytes(packs.lines) + bytes(packs.inverse_cross) +
            4.0 * bytes(packs.along) + contacts + rigid;
+}
+
+}  // namespace
+
+int Bands::steps(int threads) const {
+    const auto most = [&](double cache_bytes) { return 1 + static_cast<int>(std::upper_bound(window_bytes.begin(), window_bytes.end(), cache_bytes) - window_bytes.begin()); };
+    const double own_bytes = threads * kOwnCacheBytes;
+    if (const int own = most(own_bytes); own > 1 && bytes > own_bytes) return own;
+    return bytes > kSharedCacheBytes ? most(kSharedCacheBytes) : 1;
 }
 
 void cut_into_bands(Assembly& assembly) {
@@ -166,7 +167,8 @@ void cut_into_bands(Assembly& assembly) {
         IndexRange& range = bands.ranges[band_of[packs.loose_bodies[i]]].loose_bodies;
         range = {range.begin == range.end ? i : range.begin, i + 1};
     }
-    bands.steps = steps_of_a_sweep(bytes_of_a_step(assembly), cuts.units);
+    bands.bytes = bytes_of_a_step(assembly);
+    bands.window_bytes = windows(bands.bytes, cuts.units);
 }
 
 }  // namespace feldspar

@@ -23,16 +23,17 @@ struct PackRanges {
 };
 
 /// What a program may expect of a core's own cache, and of one that it shares with others. A larger state is swept in bands.
-inline constexpr double kOwnCacheBytes = 1.25 * (1 << 20), kSharedCacheBytes = 32.0 * (1 << 20);
+inline constexpr double kOwnCacheBytes = 2.0 * (1 << 20), kSharedCacheBytes = 32.0 * (1 << 20);
 
 struct Bands {
     std::vector<PackRanges> ranges;   ///< from the bottom to the top; those of loose contacts are known from sort_out_packs() on
     int platen = 0;                   ///< once the bodies of this band have moved, the forces on the loading platen are complete
-    int steps = 1;                    ///< of one sweep, so that what lies between the first and the last stays in the cache; 1: sweeps would not pay
-};
+    double bytes = 0.0;               ///< that a step streams through, about
+    std::vector<double> window_bytes; ///< between the first and the last of 2, 3, ... steps at once, where that is most
 
-/// What a step streams through, about.
-double bytes_of_a_step(const Assembly& assembly);
+    /// Of one sweep, so that the window stays in the caches of so many cores, or in the shared one; 1: sweeps would not pay.
+    int steps(int threads) const;
+};
 
 /// Orders the packs of contacts and the plates by band, and says where each band begins and ends. After packs of contacts, or platens,
 /// were made.

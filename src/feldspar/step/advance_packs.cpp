@@ -164,7 +164,7 @@ void write_lines(Assembly& assembly, Team& team, const StepSettings& settings, c
 // With a single band this is one step after the other.
 void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays, long long first_step, int count, PlatenWork& work) {
     const Bands& cut = assembly.packs.bands;
-    const int at_once = settings.sweep_steps > 0 ? settings.sweep_steps : cut.steps;
+    const int at_once = settings.sweep_steps > 0 ? settings.sweep_steps : cut.steps(team.size());
     const PackRanges everything = whole(assembly.packs);
     const std::span<const PackRanges> bands = at_once > 1 ? std::span(cut.ranges) : std::span(&everything, 1);
     const int last_band = static_cast<int>(bands.size()) - 1, platen_band = at_once > 1 ? cut.platen : 0;

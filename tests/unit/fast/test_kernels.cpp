@@ -376,7 +376,7 @@ TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
             Experiment e(setup, control);
             expect_narrow_bands(e.assembly);
             EXPECT_GT(e.assembly.packs.bands.ranges.size(), model.kind == GrainKind::flexible ? 2U : 6U) << name(test) << ", " << name(model.kind);
-            EXPECT_EQ(e.assembly.packs.bands.steps, 1);   // it fits into the cache
+            EXPECT_EQ(e.assembly.packs.bands.steps(4), 1);   // it fits into the caches of four cores
             mix_contacts(e.assembly);
             expect_narrow_bands(e.assembly);
         }
@@ -399,8 +399,8 @@ TEST(Packs, OfInnerParticlesStandInStripsWhateverGrainTheyAreOf) {
     expect_narrow_bands(e.assembly);
     const Bands& bands = e.assembly.packs.bands;
     EXPECT_GT(bands.ranges.size(), 40U);   // of less than 2 mm, the radius of a large grain
-    EXPECT_GT(bytes_of_a_step(e.assembly), 4.0 * kOwnCacheBytes);
-    EXPECT_GT(bands.steps, 1);
+    EXPECT_GT(bands.bytes, kOwnCacheBytes);
+    EXPECT_GT(bands.steps(1), 1);
 }
 
 TEST(Packs, HoldContactsWithANormalOfTheirOwnHoweverFarBodiesHaveTurned) {
