@@ -132,8 +132,7 @@ double bytes_of_a_step(const Assembly& assembly) {
 
 int Bands::steps(int threads) const {
     const auto most = [&](double cache_bytes) { return 1 + static_cast<int>(std::upper_bound(window_bytes.begin(), window_bytes.end(), cache_bytes) - window_bytes.begin()); };
-    const double own_bytes = threads * kOwnCacheBytes;
-    if (const int own = most(own_bytes); own > 1 && bytes > own_bytes) return own;
+    if (const int own = most(kOwnCacheBytes); threads == 1 && own > 1 && bytes > kOwnCacheBytes) return own;
     return bytes > kSharedCacheBytes ? most(kSharedCacheBytes) : 1;
 }
 

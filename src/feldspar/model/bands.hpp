@@ -31,7 +31,8 @@ struct Bands {
     double bytes = 0.0;               ///< that a step streams through, about
     std::vector<double> window_bytes; ///< between the first and the last of 2, 3, ... steps at once, where that is most
 
-    /// Of one sweep, so that the window stays in the caches of so many cores, or in the shared one; 1: sweeps would not pay.
+    /// Of one sweep, so that the window stays in the own cache of a single thread, or in the shared one; 1: sweeps would not pay. Several threads, which wait
+    /// for each other twice a band, gain from the shared one only.
     int steps(int threads) const;
 };
 

@@ -376,7 +376,7 @@ TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
             Experiment e(setup, control);
             expect_narrow_bands(e.assembly);
             EXPECT_GT(e.assembly.packs.bands.ranges.size(), model.kind == GrainKind::flexible ? 2U : 6U) << name(test) << ", " << name(model.kind);
-            EXPECT_EQ(e.assembly.packs.bands.steps(4), 1);   // it fits into the caches of four cores
+            EXPECT_EQ(e.assembly.packs.bands.steps(2), 1);   // it fits into the shared cache
             mix_contacts(e.assembly);
             expect_narrow_bands(e.assembly);
         }
