@@ -78,16 +78,11 @@ ReadModel read_model(const std::optional<TableReader>& found) {
     if (!found) return read;
     const TableReader& table = *found;
     ModelSpec& model = read.model;
-    model.kind = table.choice<GrainKind>(
-        "kind", {{"flexible", GrainKind::flexible}, {"rigid", GrainKind::rigid}, {"inner-particles", GrainKind::inner_particles}},
-        model.kind);
+    model.kind = table.choice("kind", grain_kinds, {model.kind});
     read.decided_at = table.level_of("kind");
-    model.contact =
-        table.choice<ContactKind>("contact", {{"lobatto3", ContactKind::lobatto3}, {"point", ContactKind::point}}, model.contact);
-    model.normal =
-        table.choice<ContactNormal>("normal", {{"centres", ContactNormal::centres}, {"edge", ContactNormal::edge}}, model.normal);
-    model.plane =
-        table.choice<PlaneState>("plane", {{"stress", PlaneState::stress}, {"strain", PlaneState::strain}}, model.plane);
+    model.contact = table.choice("contact", contact_kinds, {model.contact});
+    model.normal = table.choice("normal", contact_normals, {model.normal});
+    model.plane = table.choice("plane", plane_states, {model.plane});
     suit_contact(table, read);
     suit_normal(table, read);
     suit_plane(table, read);
@@ -190,12 +185,7 @@ ContactMaterial read_contact(const MaterialTables& material) {
     if (!material.contact) material.all.require({"contact"});
     const TableReader& table = *material.contact;
     ContactMaterial contact;
-    contact.law = table.choice<ContactLaw>("law",
-                                           {{"bilinear", ContactLaw::bilinear},
-                                            {"bilinear-literal", ContactLaw::bilinear_literal},
-                                            {"linear", ContactLaw::linear},
-                                            {"brittle", ContactLaw::brittle}},
-                                           contact.law);
+    contact.law = table.choice("law", contact_laws, {contact.law});
     const bool softens = contact.law != ContactLaw::brittle;
     if (softens) {
         table.require({"Kn", "sigma_nt", "tau", "mu", "Gfn", "Gfs"});
@@ -251,9 +241,7 @@ NumericsSpec read_numerics(const std::optional<TableReader>& found) {
     NumericsSpec numerics;
     if (!found) return numerics;
     const TableReader& table = *found;
-    numerics.kind = table.choice<NumericsKind>(
-        "kind", {{"adaptive", NumericsKind::adaptive}, {"paper", NumericsKind::paper}, {"dynamic", NumericsKind::dynamic}},
-        numerics.kind);
+    numerics.kind = table.choice("kind", numerics_kinds, {numerics.kind});
     refuse_other_numerics(table, numerics.kind);
     const bool adaptive = numerics.kind == NumericsKind::adaptive, dynamic = numerics.kind == NumericsKind::dynamic;
     if (adaptive) read_accuracy(table, numerics);

@@ -82,10 +82,7 @@ struct ReadTest {
 
 ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants) {
     TestSpec test;
-    test.kind = table.choice<TestKind>("kind", {{"uniaxial-compression", TestKind::uniaxial_compression},
-                                                {"direct-tension", TestKind::direct_tension},
-                                                {"biaxial", TestKind::biaxial},
-                                                {"brazilian", TestKind::brazilian}});
+    test.kind = table.choice("kind", test_kinds);
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
     const bool brazilian = test.kind == TestKind::brazilian;
     if (!brazilian) table.refuse({"diameter"}, setting, "only with kind = \"brazilian\"");

@@ -3,6 +3,8 @@
 // upper ones first, and a complaint points to the table that gave it.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
@@ -116,6 +118,17 @@ public:
             if (word == given) return value;
             words.push_back(word);
         }
+        fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
+    }
+    /// One of several values, by the names that name(value) gives them.
+    template <class Value, std::size_t count>
+    Value choice(std::string_view key, const std::array<Value, count>& values, std::optional<Value> fallback = {}) const {
+        if (!has(key) && fallback) return *fallback;
+        const std::string given = text(key);
+        const auto found = std::find_if(values.begin(), values.end(), [&](Value value) { return name(value) == given; });
+        if (found != values.end()) return *found;
+        std::vector<std::string_view> words;
+        for (const Value value : values) words.emplace_back(name(value));
         fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
     }
 

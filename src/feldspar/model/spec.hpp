@@ -59,7 +59,6 @@ struct NumericsSpec {
 };
 
 enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian };
-inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian};
 
 struct TestSpec {
     TestKind kind = TestKind::uniaxial_compression;
@@ -74,6 +73,15 @@ struct TestSpec {
     int snapshots = 8;                   ///< fields kept between the first crack and the end, besides start, peak and end
     std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
 };
+
+// All values of each, in the order in which users are told; name() is how files call them.
+inline constexpr std::array grain_kinds{GrainKind::flexible, GrainKind::rigid, GrainKind::inner_particles};
+inline constexpr std::array contact_kinds{ContactKind::lobatto3, ContactKind::point};
+inline constexpr std::array contact_normals{ContactNormal::centres, ContactNormal::edge};
+inline constexpr std::array plane_states{PlaneState::stress, PlaneState::strain};
+inline constexpr std::array contact_laws{ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle};
+inline constexpr std::array numerics_kinds{NumericsKind::adaptive, NumericsKind::paper, NumericsKind::dynamic};
+inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian};
 
 inline const char* name(TestKind kind) {
     switch (kind) {
