@@ -111,25 +111,14 @@ public:
     template <class Value>
     Value choice(std::string_view key, std::initializer_list<std::pair<std::string_view, Value>> choices,
                  std::optional<Value> fallback = {}) const {
-        if (!has(key) && fallback) return *fallback;
-        const std::string given = text(key);
-        std::vector<std::string_view> words;
-        for (const auto& [word, value] : choices) {
-            if (word == given) return value;
-            words.push_back(word);
-        }
-        fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
+        return choice_among<Value>(key, std::span(choices.begin(), choices.size()), fallback);
     }
     /// One of several values, by the names that name(value) gives them.
     template <class Value, std::size_t count>
     Value choice(std::string_view key, const std::array<Value, count>& values, std::optional<Value> fallback = {}) const {
-        if (!has(key) && fallback) return *fallback;
-        const std::string given = text(key);
-        const auto found = std::find_if(values.begin(), values.end(), [&](Value value) { return name(value) == given; });
-        if (found != values.end()) return *found;
-        std::vector<std::string_view> words;
-        for (const Value value : values) words.emplace_back(name(value));
-        fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
+        std::array<std::pair<std::string_view, Value>, count> choices;
+        std::transform(values.begin(), values.end(), choices.begin(), [](Value value) { return std::pair<std::string_view, Value>(name(value), value); });
+        return choice_among<Value>(key, choices, fallback);
     }
 
     /// The same readings for a value that stands in a list; `key` is what messages call it.
@@ -146,6 +135,17 @@ public:
                               const std::string& allowed = {}, const std::string& suggestion = {}) const;
 
 private:
+    template <class Value>
+    Value choice_among(std::string_view key, std::span<const std::pair<std::string_view, Value>> choices, std::optional<Value> fallback) const {
+        if (!has(key) && fallback) return *fallback;
+        const std::string given = text(key);
+        std::vector<std::string_view> words;
+        for (const auto& [word, value] : choices) {
+            if (word == given) return value;
+            words.push_back(word);
+        }
+        fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
+    }
     const TableReader& owner(std::string_view key) const;  // the table that gives the key, or this one
     std::string full(std::string_view key) const;
     const toml::node& must_have(std::string_view key) const;

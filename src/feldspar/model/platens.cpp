@@ -31,14 +31,15 @@ struct OutlineSite {
 std::vector<OutlineSite> outline_sites(const Assembly& assembly, const Specimen& specimen) {
     std::vector<OutlineSite> sites;
     const std::vector<Cell>& cells = specimen.cells.cells;
-    for (const OutlineShare& share : specimen.filling.outline) {
-        if (!assembly.edges.empty()) break;   // the bodies are the grains
-        const std::int32_t particle = assembly.body_of_particle[share.particle];
-        const Body& body = assembly.bodies[particle];
-        sites.push_back({particle, -1, {body.node(0), body.node(1), -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
+    if (assembly.edges.empty()) {   // the bodies are the particles
+        for (const OutlineShare& share : specimen.filling.outline) {
+            const std::int32_t particle = assembly.body_of_particle[share.particle];
+            const Body& body = assembly.bodies[particle];
+            sites.push_back({particle, -1, {body.node(0), body.node(1), -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
+        }
+        std::stable_sort(sites.begin(), sites.end(), [](const OutlineSite& l, const OutlineSite& r) { return l.body < r.body; });
+        return sites;
     }
-    std::stable_sort(sites.begin(), sites.end(), [](const OutlineSite& l, const OutlineSite& r) { return l.body < r.body; });
-    if (assembly.edges.empty()) return sites;
     for (int g = 0; g < std::ssize(cells); ++g)
         for (int k = 0; k < std::ssize(cells[g].vertices); ++k) {
             if (cells[g].neighbours[k] >= 0) continue;
