@@ -1,7 +1,8 @@
+#include "feldspar/fast/choose_kernels.hpp"
+
+#include <atomic>
 #include <cstdlib>
 #include <string_view>
-
-#include "feldspar/fast/kernels.hpp"
 
 namespace feldspar {
 namespace {
@@ -99,16 +100,26 @@ bool is_supported([[maybe_unused]] const Kernels& kernels) {
     return true;
 }
 
-const Kernels& best_kernels() {
-    static const Kernels& best = []() -> const Kernels& {
-        const char* wanted = std::getenv("FELDSPAR_KERNELS");
-        for (const Kernels* kernels : all_kernels())
-            if (is_supported(*kernels) && (wanted == nullptr || std::string_view(wanted) == kernels->name)) return *kernels;
-        for (const Kernels* kernels : all_kernels())
-            if (is_supported(*kernels)) return *kernels;
-        return kernels_portable;
-    }();
-    return best;
+namespace {
+
+const Kernels& wanted_kernels() {
+    const char* wanted = std::getenv("FELDSPAR_KERNELS");
+    for (const Kernels* kernels : all_kernels())
+        if (is_supported(*kernels) && (wanted == nullptr || std::string_view(wanted) == kernels->name)) return *kernels;
+    for (const Kernels* kernels : all_kernels())
+        if (is_supported(*kernels)) return *kernels;
+    return kernels_portable;
 }
+
+std::atomic<const Kernels*>& chosen() {
+    static std::atomic<const Kernels*> kernels{&wanted_kernels()};
+    return kernels;
+}
+
+}  // namespace
+
+const Kernels& best_kernels() { return *chosen().load(std::memory_order_relaxed); }
+
+void use_kernels(const Kernels& kernels) { chosen().store(&kernels, std::memory_order_relaxed); }
 
 }  // namespace feldspar

@@ -1,0 +1,67 @@
+#include "feldspar/model/state_hash.hpp"
+
+#include <new>
+#include <type_traits>
+
+#include <xxhash.h>
+
+namespace feldspar {
+namespace {
+
+// XXH3 of values as they come.
+class Hasher {
+public:
+    Hasher() : state_(XXH3_createState()) {
+        if (state_ == nullptr || XXH3_64bits_reset(state_) != XXH_OK) throw std::bad_alloc();
+    }
+    Hasher(const Hasher&) = delete;
+    Hasher& operator=(const Hasher&) = delete;
+    ~Hasher() { XXH3_freeState(state_); }
+
+    template <class T>
+    void add(const T& value) {
+        static_assert(std::is_arithmetic_v<T>, "a structure may have bytes between its members");
+        XXH3_64bits_update(state_, &value, sizeof value);
+    }
+    void add(Vec2 value) {
+        add(value.x);
+        add(value.y);
+    }
+    std::uint64_t digest() const { return XXH3_64bits_digest(state_); }
+
+private:
+    XXH3_state_t* state_;
+};
+
+}  // namespace
+
+StateHash hash_state(const Assembly& assembly) {
+    Hasher motion, bonds, breaks, work;
+    for (const Body& body : assembly.bodies)
+        for (const int n : body.nodes()) {
+            motion.add(assembly.nodes.displacement[n]);
+            motion.add(assembly.nodes.velocity[n]);
+        }
+    for (const Contact& contact : assembly.contacts) {
+        breaks.add(contact.a.body);
+        breaks.add(contact.b.body);
+        breaks.add(contact.dropped);
+        breaks.add(contact.initial_shape);
+    }
+    for (int p = 0; p < static_cast<int>(assembly.points.size()); ++p) {
+        const ContactPoint& point = assembly.points[p];
+        const BondState bond = assembly.bond(p);
+        for (const double value : {bond.un_m, bond.us_m, bond.Fn_N, bond.Fs_N, bond.max_un_m, bond.max_us_m, bond.damage}) bonds.add(value);
+        for (const double value : {bond.fracture_J, bond.friction_J}) work.add(value);
+        breaks.add(point.broken_step);
+        breaks.add(point.broke_in_tension);
+        breaks.add(point.lost_compression);
+    }
+    for (const BodyWork& of_body : assembly.body_work) {
+        work.add(of_body.damping);
+        work.add(of_body.pressure);
+    }
+    return {motion.digest(), bonds.digest(), breaks.digest(), work.digest()};
+}
+
+}  // namespace feldspar
