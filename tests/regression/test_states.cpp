@@ -165,6 +165,9 @@ INSTANTIATE_TEST_SUITE_P(Regression, States, testing::Combine(testing::ValuesIn(
 
 TEST_P(States, AreThoseRecorded) {
     const auto& [kernels, grains] = GetParam();
+#ifdef FELDSPAR_FUSES_OTHERWISE
+    if (kernels == "avx2" || kernels == "avx512") GTEST_SKIP() << "under a sanitizer the compiler fuses other products and sums of these kernels than in a usual build";
+#endif
     for (const Case& one : all_cases()) {
         if (one.kernels != kernels || one.grains != grains) continue;
         if (one.set() == nullptr || !is_supported(*one.set()))
