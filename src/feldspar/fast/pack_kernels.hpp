@@ -6,6 +6,7 @@
 
 #include "feldspar/fast/kernels.hpp"
 #include "feldspar/fast/lanes.hpp"
+#include "feldspar/laws/damping.hpp"
 
 namespace feldspar {
 namespace {
@@ -490,41 +491,41 @@ struct Moved {
     Real velocity, damping_work;
 };
 
-// m dV/dt = F - alpha |F| sign(V), one component.
-FELDSPAR_INLINE Moved damp_locally(const KernelStep& step, Real V, Real F, Real inverse_mass) {
-    const Real drag = (inverse_mass == 0.0) | (V == 0.0) ? Real{} : with_sign_of(step.alpha * F, V);
+// m dV/dt = F - drag, one component (laws/damping.hpp).
+FELDSPAR_INLINE Moved damp_locally(const KernelStep& step, Real V, Real F, Real inverse_mass, Real loading) {
+    const Real drag = inverse_mass == 0.0 ? Real{} : local_drag(V, loading, F, step.alpha);
     const Real next = V + step.dt * inverse_mass * (F - drag);
     return {next, 0.5 * step.dt * drag * (V + next)};
 }
 
-// w <- (w (1 - h) + dt F/m) / (1 + h), h = c dt / 2, V = v B + w.
-struct DeviationDamping {
+// V <- (V (1 - h) + dt F/m) / (1 + h), h = c dt / 2.
+struct ViscousDamping {
     double kept, pushed;   // (1 - h) / (1 + h), dt / (1 + h)
     double half;           // h
 
-    FELDSPAR_INLINE explicit DeviationDamping(const KernelStep& step)
+    FELDSPAR_INLINE explicit ViscousDamping(const KernelStep& step)
         : kept((1.0 - 0.5 * step.viscous * step.dt) / (1.0 + 0.5 * step.viscous * step.dt)), pushed(step.dt / (1.0 + 0.5 * step.viscous * step.dt)),
           half(0.5 * step.viscous * step.dt) {}
 };
 
 // New velocity and displacement of a node from its force; the velocity is left in its place.
-// @return work taken out by the damping; of the deviation: that over h / 2
+// @return work taken out by the damping; viscous: that over h / 2
 template <bool local>
-FELDSPAR_INLINE Real move_node(const KernelArrays& a, const KernelStep& step, const DeviationDamping& damping, int node, int count, NodeLanes& n) {
+FELDSPAR_INLINE Real move_node(const KernelArrays& a, const KernelStep& step, const ViscousDamping& damping, int node, int count, NodeLanes& n) {
     const Real2 F = n.f;
     const Real2 V = load_points(a.velocity + 2 * node, count), inverse_mass = load_points(a.inverse_mass + 2 * node, count);
     Real work;
     if constexpr (local) {
-        const Moved x = damp_locally(step, V.x, F.x, inverse_mass.x), y = damp_locally(step, V.y, F.y, inverse_mass.y);
+        const Real2 B = load_points(a.loading_mode + 2 * node, count);
+        const Moved x = damp_locally(step, V.x, F.x, inverse_mass.x, step.speed * B.x), y = damp_locally(step, V.y, F.y, inverse_mass.y, step.speed * B.y);
         n.f = {x.velocity, y.velocity};
         work = x.damping_work + y.damping_work;
     } else {
-        const Real2 B = load_points(a.loading_mode + 2 * node, count);
         const Real mass = load(a.mass + node, count);
-        const Real2 loading = {step.speed * B.x, step.speed * B.y}, w = V - loading;   // w is 0 where the motion is imposed
-        const Real2 next = {w.x * damping.kept + damping.pushed * F.x * inverse_mass.x, w.y * damping.kept + damping.pushed * F.y * inverse_mass.y};
-        n.f = loading + next;
-        work = mass * ((w.x + next.x) * (V.x + n.f.x) + (w.y + next.y) * (V.y + n.f.y));
+        const auto next = [&](Real v, Real f, Real free) FELDSPAR_LAMBDA { return free == 0.0 ? v : v * damping.kept + damping.pushed * f * free; };
+        const auto twice_mean = [&](Real v, Real after, Real free) FELDSPAR_LAMBDA { return free == 0.0 ? Real{} : (v + after) * (v + after); };
+        n.f = {next(V.x, F.x, inverse_mass.x), next(V.y, F.y, inverse_mass.y)};
+        work = mass * (twice_mean(V.x, n.f.x, inverse_mass.x) + twice_mean(V.y, n.f.y, inverse_mass.y));
     }
     n.u = {n.u.x + step.dt * n.f.x, n.u.y + step.dt * n.f.y};
     store_points(a.velocity + 2 * node, n.f, count);
@@ -599,7 +600,7 @@ FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelSte
     if (forces != PackForces::own || step.keep_forces)
         for (int i = 0; i < count; ++i) store_points(a.force + 2 * (first + i * pack.lanes), g.node[i].f, chunk.count);
     Real work{};
-    const DeviationDamping damping(step);
+    const ViscousDamping damping(step);
     for (int i = 0; i < count; ++i) work += move_node<local>(a, step, damping, first + i * pack.lanes, chunk.count, g.node[i]);
     if constexpr (!local) work *= 0.5 * damping.half;
     for (int lane = 0; lane < chunk.count; ++lane) a.body_work[pack.grain[chunk.begin + lane]].damping += work[lane];
@@ -637,22 +638,18 @@ void grain_lines(const KernelArrays& a, int begin, int end) {
 
 // Centre and turn of a body as one vector of four: x, y, arc, and nothing.
 template <bool local>
-FELDSPAR_INLINE Quad move_rigid(const KernelStep& step, const DeviationDamping& damping, Quad V, Quad F, Quad inverse_mass, Quad mass, Quad B, Quad& damping_work) {
+FELDSPAR_INLINE Quad move_rigid(const KernelStep& step, const ViscousDamping& damping, Quad V, Quad F, Quad inverse_mass, Quad mass, Quad B, Quad& damping_work) {
     const Quad none{};
     if constexpr (local) {
-        typedef std::int64_t QuadMask __attribute__((vector_size(32)));
-        const Quad size = step.alpha * F;
-        const Quad signed_size = reinterpret_cast<Quad>((reinterpret_cast<QuadMask>(size) & INT64_MAX) | (reinterpret_cast<QuadMask>(V) & INT64_MIN));
-        const Quad drag = (inverse_mass == 0.0) | (V == 0.0) ? none : signed_size;
+        const Quad drag = inverse_mass == 0.0 ? none : local_drag(V, step.speed * B, F, step.alpha);
         const Quad next = V + step.dt * inverse_mass * (F - drag);
         damping_work = 0.5 * step.dt * drag * (V + next);
         return next;
     } else {
-        const Quad loading = step.speed * B, w = V - loading;
-        const Quad next = w * damping.kept + damping.pushed * inverse_mass * F;
+        const Quad next = inverse_mass == 0.0 ? V : V * damping.kept + damping.pushed * inverse_mass * F;
         const Quad moving = inverse_mass == 0.0 ? none : mass;
-        damping_work = 0.5 * damping.half * moving * ((w + next) * (V + loading + next));
-        return loading + next;
+        damping_work = 0.5 * damping.half * moving * ((V + next) * (V + next));
+        return next;
     }
 }
 
@@ -682,7 +679,7 @@ template <bool local>
 FELDSPAR_INLINE void rigid_bodies(const KernelArrays& arrays, const KernelStep& settings, int begin, int end) {
     const KernelArrays a = arrays;   // copies that nobody else can change: their members stay in registers
     const KernelStep step = settings;
-    const DeviationDamping damping(step);
+    const ViscousDamping damping(step);
     for (int i = begin; i < end; ++i) {
         const RigidBody& body = a.rigid_bodies[i];
         const Quad F = forces_on(a, body);
@@ -729,8 +726,8 @@ NodeSums node_sums(const KernelArrays& a, const KernelStep& step) {
     const auto add = [&](int at, int count, Real mass) FELDSPAR_LAMBDA {   // components [at, at + count)
         const Real V = load(a.velocity + at, count), F = load(a.force + at, count), inverse_mass = load(a.inverse_mass + at, count);
         const Real loading = step.speed * load(a.loading_mode + at, count), w = V - loading;
-        const Real before = step.local_damping ? V - step.dt * inverse_mass * (F - with_sign_of(step.alpha * F, V))
-                                               : loading + (w * (1.0 + half) - step.dt * inverse_mass * F) * inverse;
+        const Real before = step.local_damping ? before_local_drag(V, loading, F, step.dt * inverse_mass, step.alpha)
+                                               : (V * (1.0 + half) - step.dt * inverse_mass * F) * inverse;
         const Real m = inverse_mass == 0.0 ? Real{} : mass;
         kinetic += m * V * before;
         deviation += m * w * w;

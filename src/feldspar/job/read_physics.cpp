@@ -209,8 +209,8 @@ void refuse_other_numerics(const TableReader& table, NumericsKind kind) {
         case NumericsKind::adaptive:
             table.refuse({"speed"}, "kind = \"adaptive\", which finds its own speed",
                          "accuracy; or kind = \"paper\" or \"dynamic\" with a speed", decided_at);
-            table.refuse({"damping", "time_step"}, "kind = \"adaptive\"",
-                         "accuracy, residual_target, mass_factor, maximum_steps, confirm", decided_at);
+            table.refuse({"time_step"}, "kind = \"adaptive\"",
+                         "accuracy, residual_target, damping, mass_factor, maximum_steps, confirm", decided_at);
             break;
         case NumericsKind::paper:
             table.refuse({"accuracy", "residual_target", "time_step"}, "kind = \"paper\"",
@@ -245,8 +245,7 @@ NumericsSpec read_numerics(const std::optional<TableReader>& found) {
     refuse_other_numerics(table, numerics.kind);
     const bool adaptive = numerics.kind == NumericsKind::adaptive, dynamic = numerics.kind == NumericsKind::dynamic;
     if (adaptive) read_accuracy(table, numerics);
-    if (!adaptive)
-        numerics.damping = table.number("damping", {0.0, 1.0, true, false, "0 or greater and less than 1"}, numerics.damping);
+    numerics.damping = table.number("damping", {0.0, 1.0, true, false, "0 or greater and less than 1"}, numerics.damping);
     if (!adaptive && table.has("speed"))
         numerics.speed_m = table.quantity("speed", dynamic ? Dimension::speed : Dimension::speed_per_step, positive);
     if (!dynamic && table.has("mass_factor")) numerics.mass_factor = table.number("mass_factor", positive);

@@ -143,9 +143,8 @@ void write_numerics(Lines& out, const NumericsSpec& numerics, const std::string&
             out.number("residual_target", *numerics.residual_target);
         else
             out.number("accuracy", numerics.accuracy);
-    } else {
-        out.number("damping", numerics.damping);
     }
+    out.number("damping", numerics.damping);
     if (numerics.speed_m)
         out.quantity("speed", *numerics.speed_m,
                      numerics.kind == NumericsKind::paper ? Dimension::speed_per_step : Dimension::speed);

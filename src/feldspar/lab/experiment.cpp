@@ -146,8 +146,9 @@ void keep_margin(Experiment& e, MassBound bound) {
 void choose_step(Experiment& e) {
     const NumericsSpec& n = e.setup.numerics;
     if (n.kind == NumericsKind::adaptive) {
-        e.settings.damping = Damping::deviation;
-        e.mass_factor = n.mass_factor.value_or(1.0);
+        e.settings.damping = Damping::local;
+        e.settings.alpha = n.damping;
+        e.mass_factor = n.mass_factor.value_or(1.0 + n.damping);
         set_scaled_masses(e.assembly, MassBound::tensor, e.mass_factor);
     } else if (n.kind == NumericsKind::paper) {
         e.settings.damping = Damping::local;
@@ -176,12 +177,10 @@ void choose_step(Experiment& e) {
                          fmt::format("a mass factor of {:.4g} is unstable for this body: largest omega^2 {:.4g}, limit {:.4g}", e.mass_factor,
                                      e.omega2, e.omega2_bound),
                          fmt::format("at least {:.4g}", e.mass_factor * e.omega2 / e.omega2_bound),
-                         n.kind == NumericsKind::paper ? fmt::format("leave the key out: 1 + damping = {:.4g} is then used", 1.0 + n.damping)
-                                                       : "leave the key out: 1 is then used");
+                         fmt::format("leave the key out: 1 + damping = {:.4g} is then used", 1.0 + n.damping));
     }
     const double density = mass(e.assembly) / volume(*e.setup.specimen);
     e.travel_time = e.height_m * std::sqrt(density / e.elastic_guess.E_Pa);   // refined by the elastic start
-    if (n.kind == NumericsKind::adaptive) e.settings.viscous = (e.brazilian() ? 1.0 : 2.0) * std::numbers::pi / e.travel_time;
 }
 
 }  // namespace feldspar

@@ -77,7 +77,6 @@ void learn_from(Experiment& e, double force_change, double travel_change) {
     const double stiffness = std::abs(force_change / travel_change);
     e.travel_time *= std::sqrt(e.axial_stiffness / stiffness);
     e.axial_stiffness = stiffness;
-    if (e.settings.damping == Damping::deviation) e.settings.viscous = 2.0 * std::numbers::pi / e.travel_time;
 }
 
 void go_to(Experiment& e, const BodyState& state) {

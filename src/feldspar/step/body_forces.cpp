@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "feldspar/laws/damping.hpp"
 #include "feldspar/model/attachment.hpp"
 #include "feldspar/step/step.hpp"
 
@@ -69,19 +70,18 @@ struct Motion {
     double damping_work;
 };
 
-// m dV/dt = F - alpha |F| sign(V), one component; the work is taken with the mean velocity.
-Motion damp_locally(double V, double F, double inverse_mass, double alpha, double dt) {
-    const double drag = inverse_mass == 0.0 || V == 0.0 ? 0.0 : std::copysign(alpha * std::abs(F), V);
+// m dV/dt = F - alpha |F| sign(V - v B) where that takes energy, one component; the work is taken with the mean velocity.
+Motion damp_locally(double V, double F, double inverse_mass, double loading, double alpha, double dt) {
+    const double drag = inverse_mass == 0.0 ? 0.0 : local_drag(V, loading, F, alpha);
     const double next = V + dt * inverse_mass * (F - drag);
     return {next, 0.5 * dt * drag * (V + next)};
 }
 
-// w <- (w (1 - c dt/2) + dt F/m) / (1 + c dt/2), V = v B + w.
-Motion damp_deviation(double V, double F, double inverse_mass, double mass, double loading, double c, double dt) {
-    const double w = V - loading;
-    const double next = (w * (1.0 - 0.5 * c * dt) + dt * inverse_mass * F) / (1.0 + 0.5 * c * dt);
+// V <- (V (1 - c dt/2) + dt F/m) / (1 + c dt/2), one component.
+Motion damp_viscously(double V, double F, double inverse_mass, double mass, double c, double dt) {
+    const double next = inverse_mass == 0.0 ? V : (V * (1.0 - 0.5 * c * dt) + dt * inverse_mass * F) / (1.0 + 0.5 * c * dt);
     const double moving_mass = inverse_mass == 0.0 ? 0.0 : mass;
-    return {loading + next, 0.5 * dt * c * moving_mass * 0.5 * (w + next) * (V + loading + next)};
+    return {next, 0.5 * dt * c * moving_mass * 0.5 * (V + next) * (V + next)};
 }
 
 template <Damping damping>
@@ -93,14 +93,15 @@ void integrate(Assembly& assembly, const Body& body, const StepSettings& setting
         Vec2& V = nodes.velocity[n];
         const Vec2 F = nodes.force[n], inverse_mass = nodes.inverse_mass[n], B = nodes.loading_mode[n];
         if constexpr (damping == Damping::local) {
-            const Motion x = damp_locally(V.x, F.x, inverse_mass.x, settings.alpha, dt);
-            const Motion y = damp_locally(V.y, F.y, inverse_mass.y, settings.alpha, dt);
+            const double v = settings.speed;
+            const Motion x = damp_locally(V.x, F.x, inverse_mass.x, v * B.x, settings.alpha, dt);
+            const Motion y = damp_locally(V.y, F.y, inverse_mass.y, v * B.y, settings.alpha, dt);
             V = {x.velocity, y.velocity};
             dissipated += x.damping_work + y.damping_work;
         } else {
-            const double m = nodes.mass[n], c = settings.viscous, v = settings.speed;
-            const Motion x = damp_deviation(V.x, F.x, inverse_mass.x, m, v * B.x, c, dt);
-            const Motion y = damp_deviation(V.y, F.y, inverse_mass.y, m, v * B.y, c, dt);
+            const double m = nodes.mass[n], c = settings.viscous;
+            const Motion x = damp_viscously(V.x, F.x, inverse_mass.x, m, c, dt);
+            const Motion y = damp_viscously(V.y, F.y, inverse_mass.y, m, c, dt);
             V = {x.velocity, y.velocity};
             dissipated += x.damping_work + y.damping_work;
         }
@@ -137,7 +138,7 @@ void body_forces(Assembly& assembly, IndexRange bodies, const StepSettings& sett
         if (settings.damping == Damping::local) {
             integrate<Damping::local>(assembly, body, settings, work);
         } else {
-            integrate<Damping::deviation>(assembly, body, settings, work);
+            integrate<Damping::viscous>(assembly, body, settings, work);
         }
         finish_pressure_work(assembly, body, work, settings.dt);
     }

@@ -22,17 +22,18 @@ namespace feldspar {
 
 /// How free nodes are damped.
 enum class Damping {
-    local,     ///< a force alpha |F| against the velocity, component by component (paper, equations (2)-(3))
-    deviation  ///< viscous, on w = V - v B only: the loading motion itself is not dragged
+    local,    ///< a force alpha |F| against w = V - v B, component by component, where it takes energy: what moves like the loading is
+              ///< not dragged. With B = 0 the paper's own, equations (2)-(3)
+    viscous   ///< in proportion to the velocity: dynamic relaxation
 };
 
 enum class Strength { real, unlimited };   ///< unlimited: intact points stay elastic (the computed elastic start)
 
 struct StepSettings {
     double dt = 1.0;                       ///< 1 with scaled masses, else s
-    Damping damping = Damping::deviation;
+    Damping damping = Damping::viscous;
     double alpha = 0.7;                    ///< local: 0 <= alpha < 1
-    double viscous = 0.0;                  ///< deviation: c, 1 per unit of time
+    double viscous = 0.0;                  ///< viscous: c, 1 per unit of time; 0: no damping
     Strength strength = Strength::real;
     double speed = 0.0;                    ///< v: platen motion per unit of time
     const Kernels* kernels = &best_kernels();   ///< of the packs; none: the readable stages only
