@@ -19,9 +19,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The error of a strength that is estimated from the test alone has two parts (L8): what the typical body leaves unbalanced is carried by
-// inertia and damping instead of the rock (in tension a third of it counts, as measured), and the load rises on while an unstable crack
+// inertia and damping instead of the rock (residual_share()), and the load rises on while an unstable crack
 // takes a quarter of a travel time to show.
-constexpr double kTensionShare = 1.0 / 3.0;
 constexpr double kTravelTimesToShow = 0.25;
 constexpr double kNearPeak = 0.9;     // share of the peak from which on the evidence decides
 constexpr double kOfTheRepeat = 1.5;  // an error in proportion to the rate loses two thirds of itself in a repeat at a third
@@ -77,8 +76,8 @@ double excess(const std::vector<Criterion>& table, bool against_a) {
 std::string advice(const TestResult& result, double slower) {
     switch (result.numerics.kind) {
         case NumericsKind::adaptive: {
-            const double target = residual_target(result.numerics, result.test.kind, result.model.kind) / slower;
-            const double accuracy = accuracy_of(target, result.test.kind, result.model.kind);
+            const double target = residual_target(result.numerics, result.test.kind) / slower;
+            const double accuracy = accuracy_of(target, result.test.kind);
             const bool by_accuracy = !result.numerics.residual_target && accuracy >= 0.0005;
             return by_accuracy ? fmt::format("run with accuracy = \"{:.1g} %\"", 100.0 * accuracy) : fmt::format("run with residual_target = {:.1g}", target);
         }
@@ -169,7 +168,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
         e.residual_median = medians_near / rows_near;
         e.load_per_travel_time = result.travel_time > 0.0 ? speeds_near / rows_near * result.travel_time : nan;
         e.imbalance_mean = imbalances_near / rows_near;
-        e.error_estimate = (pulls_apart(result.test.kind) ? kTensionShare : 1.0) * e.residual_median + kTravelTimesToShow * e.load_per_travel_time;
+        e.error_estimate = residual_share(result.test.kind) * e.residual_median + kTravelTimesToShow * e.load_per_travel_time;
     }
     if (e.confirmed) e.error_estimate = kOfTheRepeat * std::abs(e.peak_change_at_third);   // measured instead of estimated
     e.residual_mean = residuals / rows;

@@ -93,7 +93,19 @@ void set_loading_mode(Experiment& e, const BodyState& from, const BodyState& to)
     for (const int node : e.assembly.platens[1].nodes) nodes.loading_mode[node].y = 0.0;
 }
 
-// Axial loading of the relaxed state `base` up to just below the first damage; sets B. Platens that stay in touch.
+// The factor of superpose() at which the stress reaches the maximum that the user has set; infinite without one.
+double factor_at_maximum(const Experiment& e, double force_at_base, double force_now) {
+    if (!e.setup.test.maximum_stress_Pa) return std::numeric_limits<double>::infinity();
+    const double most = *e.setup.test.maximum_stress_Pa * e.section_m2, base = std::abs(force_at_base);
+    return (most - base) / (std::abs(force_now) - base);
+}
+
+// Whether the state stands where the elastic phase ends: at the maximum stress, or just below the first damage at a further factor.
+bool is_end_of_elastic_phase(double damage_factor, double nearly, double maximum_factor) {
+    return damage_factor > 1.0 && (damage_factor < nearly || std::abs(maximum_factor - 1.0) < 1e-3);
+}
+
+// Axial loading of the relaxed state `base` up to the maximum stress or just below the first damage; sets B. Platens that stay in touch.
 void elastic_loading(Experiment& e, const BodyState& base) {
     const double force_before = platen_force(e);
     add_affine(e, 1e-5 * e.height_m);
@@ -103,8 +115,9 @@ void elastic_loading(Experiment& e, const BodyState& base) {
         const BodyState reached = capture(e.assembly, e.platen_travel_m);
         const double factor = first_damage(e.assembly, base, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded");
-        if (attempt > 0 && factor > 1.0 && factor < 1.05) break;
-        go_to(e, superpose(base, reached, kBelowDamage * factor));
+        const double most = factor_at_maximum(e, force_before, platen_force(e));
+        if (attempt > 0 && is_end_of_elastic_phase(factor, 1.05, most)) break;
+        go_to(e, superpose(base, reached, std::min(kBelowDamage * factor, most)));
         relax_or_throw(e);
     }
     set_loading_mode(e, base, capture(e.assembly, e.platen_travel_m));
@@ -122,8 +135,9 @@ void elastic_plates(Experiment& e) {
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the disc is loaded");
-        if (round > 0 && factor > 1.0 && factor < 1.04) break;
-        go_to(e, superpose(unloaded, reached, std::min(kBelowDamage * factor, 20.0)));
+        const double most = factor_at_maximum(e, 0.0, platen_force(e));
+        if (round > 0 && is_end_of_elastic_phase(factor, 1.04, most)) break;
+        go_to(e, superpose(unloaded, reached, std::min({kBelowDamage * factor, most, 20.0})));
         reached = settle(kOnTheWay);
     }
     reached = settle();

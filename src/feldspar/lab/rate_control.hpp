@@ -9,16 +9,25 @@
 
 namespace feldspar {
 
-/// Target of R* for a wanted relative accuracy of the strength: 5e-3 for 0.5 % and 1e-2 for 2 % (Brazilian of deformable grains
-/// 1e-2 and 3e-2), and powers of the accuracy in between and beyond.
-double residual_target(const NumericsSpec& numerics, TestKind kind, GrainKind grains);
+/// Share of R* that is an error of the strength: 1 in compression, a third in tension (direct or Brazilian), as measured (docs/decisions).
+double residual_share(TestKind kind);
+
+/// Target of R* with which a strength is first looked for, from the wanted relative accuracy; or what the user gives in its place.
+double residual_target(const NumericsSpec& numerics, TestKind kind);
 
 /// The accuracy that has this target: the inverse of residual_target().
-double accuracy_of(double residual_target, TestKind kind, GrainKind grains);
+double accuracy_of(double residual_target, TestKind kind);
 
-/// A first estimate of the strength from the contacts alone, Pa: tension sigma_nt; compression the Mohr-Coulomb strength of
-/// a material with the contacts' cohesion and friction, 2 tau (mu + sqrt(1 + mu^2)) + N sigma_3. Only the rate control uses it.
-double expected_strength(const ContactMaterial& contact, const TestSpec& test);
+/// How fast the load may pass: both limits fall together when a passage was too fast.
+struct PassageLimits {
+    double residual = 0.0;   ///< target of R*
+    double growth = 0.0;     ///< of the platen travel in a travel time of a wave, relative to the travel so far
+
+    PassageLimits times(double factor) const { return {factor * residual, factor * growth}; }
+};
+
+/// Of the first passage. @param accuracy  wanted, relative
+PassageLimits first_passage(const NumericsSpec& numerics, TestKind kind);
 
 /// What the free degrees of freedom leave unbalanced, sums of |F|.
 struct Unbalanced {
@@ -29,34 +38,37 @@ struct Unbalanced {
 
 Unbalanced unbalanced(const Assembly& assembly);
 
-/// Adjusts the platen speed every few steps so that the unbalanced force stays at its target.
+/// Adjusts the platen speed every few steps so that the unbalanced force stays at its target: down to rest while the typical body is
+/// out of balance, so that an unstable crack runs out at a platen that stands still. It knows no strength and no length: only the
+/// travel so far, the time in which a wave crosses the specimen, and its limits.
 class RateControl {
 public:
-    /// @param target       wanted R*
-    /// @param relative_target  target over that of an accuracy of 0.5 %: the slowest and the fastest speed go with it
-    /// @param height_m     of the specimen
     /// @param travel_time  of a wave over the height, in steps
-    /// @param expected_N   about what the specimen will carry, so that the first weak points at a tenth of the strength do not
-    ///                     slow the test down as if it were failing, and the strength is not approached too fast
-    RateControl(TestKind kind, double target, double relative_target, double height_m, double travel_time, double expected_N);
+    RateControl(PassageLimits limits, double travel_time) : limits_(limits), travel_time_(travel_time) {}
 
-    double start() const { return 6e-8 * height_m_; }
+    /// @param platen_travel_m  where loading begins
+    double start(double platen_travel_m) const;
 
     /// @param speed              now, m a step
     /// @param platen_force_N     mean of both platens, magnitude
     /// @param platen_travel_m    so far
-    /// @param share_of_peak      the present stress over the largest so far
     /// @return the speed for the next steps
-    double next(double speed, const Unbalanced& unbalanced, double platen_force_N, double platen_travel_m, double share_of_peak);
+    /// @param slowest_growth     at least so much of the travel in a travel time of a wave, whatever is out of balance
+    double next(double speed, const Unbalanced& unbalanced, double platen_force_N, double platen_travel_m, double slowest_growth = 0.0);
+
+    /// Whether the typical body was within the target when next() was asked last.
+    bool balanced() const { return balanced_; }
+
+    void set_limits(PassageLimits limits) { limits_ = limits; }
+    const PassageLimits& limits() const { return limits_; }
 
 private:
-    double target_;
-    double relative_target_;
-    double height_m_;
+    double fastest(double platen_travel_m) const;
+
+    PassageLimits limits_;
     double travel_time_;
-    double near_N_;         ///< load from which an unstable crack may be the strength
-    double local_events_;   ///< targets that the total R* may reach while the typical body is in balance
-    double largest_force_N_;
+    double largest_force_N_ = 0.0;
+    bool balanced_ = true;
     std::array<double, 3> recent_{};   ///< total R* of the last blocks, the oldest first
 };
 

@@ -38,12 +38,12 @@ HistoryRow Recorder::present(Phase phase) {
     row.stress_bottom_Pa = e_.stress(-reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
     row.sigma3_Pa = e_.assembly.pressure_Pa;
-    row.cracks_tensile = tensile_;
-    row.cracks_shear = shear_;
+    row.cracks_tensile = now_.tensile;
+    row.cracks_shear = now_.shear;
     const double force = 0.5 * (std::abs(reactions.loading) + std::abs(reactions.rest));
-    unbalanced_ = feldspar::unbalanced(e_.assembly);
-    row.residual = force > 0.0 ? unbalanced_.total_N / force : 0.0;
-    row.residual_median = force > 0.0 ? unbalanced_.typical_N / force : 0.0;
+    now_.unbalanced = feldspar::unbalanced(e_.assembly);
+    row.residual = force > 0.0 ? now_.unbalanced.total_N / force : 0.0;
+    row.residual_median = force > 0.0 ? now_.unbalanced.typical_N / force : 0.0;
     row.platen_speed = e_.settings.speed;
     StepSettings last = e_.settings;
     if (!e_.stepped) last.dt = 0.0;
@@ -86,11 +86,11 @@ const HistoryRow& Recorder::record(Phase phase) {
     collect_cracks();
     result_.history.push_back(present(phase));
     const HistoryRow& row = result_.history.back();
-    for (std::size_t c = result_.cracks.size(); c-- > 0 && result_.cracks[c].step >= cracks_seen_until_;) {   // those of this interval
+    for (std::size_t c = result_.cracks.size(); c-- > 0 && result_.cracks[c].step >= now_.cracks_seen_until;) {   // those of this interval
         result_.cracks[c].axial_strain = row.axial_strain;
         result_.cracks[c].axial_stress_Pa = row.axial_stress_Pa;
     }
-    cracks_seen_until_ = e_.step;
+    now_.cracks_seen_until = e_.step;
     keep_snapshots(row);
     return row;
 }
@@ -104,7 +104,7 @@ void Recorder::collect_cracks() {
     const std::vector<Contact>& contacts = e_.assembly.contacts;   // in the order of their points
     for (int p = 0; p < std::ssize(e_.assembly.points); ++p) {
         const long long step = e_.assembly.points[p].broken_step;
-        if (step < std::max(0LL, cracks_seen_until_)) continue;
+        if (step < std::max(0LL, now_.cracks_seen_until)) continue;
         const auto behind = std::upper_bound(contacts.begin(), contacts.end(), p, [](int point, const Contact& c) { return point < c.first_point; });
         found.push_back({step, static_cast<int>(behind - contacts.begin()) - 1, p});
     }
@@ -126,9 +126,9 @@ void Recorder::collect_cracks() {
         crack.place = p0 + share.middle * (p1 - p0);
         crack.area_m2 = point.area_m2;
         crack.energy_J = e_.assembly.bond(f.point).fracture_J;
-        ++(crack.mode == CrackMode::tensile ? tensile_ : shear_);
+        ++(crack.mode == CrackMode::tensile ? now_.tensile : now_.shear);
         result_.cracks.push_back(crack);
-        crack_points_.push_back(f.point);
+        now_.crack_points.push_back(f.point);
     }
 }
 
@@ -147,19 +147,28 @@ Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& ro
 void Recorder::keep_snapshots(const HistoryRow& row) {
     if (row.phase == Phase::consolidation) return;
     const int cracks = static_cast<int>(result_.cracks.size()), most = result_.test.snapshots;
-    if (start_.empty()) start_.push_back(fields("start", row));
-    if (cracks > 0 && first_crack_.empty()) first_crack_.push_back(fields("first-crack", row));
+    const auto kept = [&](const char* label) { return std::make_shared<const Fields>(fields(label, row)); };
+    if (!now_.start) now_.start = kept("start");
+    if (cracks > 0 && !now_.first_crack) now_.first_crack = kept("first-crack");
     const double load = strength_sign() * row.axial_stress_Pa;
-    if (peak_.empty() || load > 1.001 * strength_sign() * peak_.back().row.axial_stress_Pa) peak_.assign(1, fields("peak", row));
-    if (most <= 0 || cracks == 0 || cracks < next_cracks_) return;
-    loading_.push_back(fields("load", row));
-    if (static_cast<int>(loading_.size()) > 2 * most) {   // keep every second one
-        std::vector<Fields> kept;
-        for (std::size_t i = 1; i < loading_.size(); i += 2) kept.push_back(std::move(loading_[i]));
-        loading_ = std::move(kept);
-        crack_spacing_ *= 2;
+    if (!now_.peak || load > 1.001 * strength_sign() * now_.peak->row.axial_stress_Pa) now_.peak = kept("peak");
+    if (most <= 0 || cracks == 0 || cracks < now_.next_cracks) return;
+    now_.loading.push_back(kept("load"));
+    if (static_cast<int>(now_.loading.size()) > 2 * most) {   // keep every second one
+        std::vector<Kept> thinned;
+        for (std::size_t i = 1; i < now_.loading.size(); i += 2) thinned.push_back(now_.loading[i]);
+        now_.loading = std::move(thinned);
+        now_.crack_spacing *= 2;
     }
-    next_cracks_ = cracks + crack_spacing_;
+    now_.next_cracks = cracks + now_.crack_spacing;
+}
+
+Recorder::Mark Recorder::mark() const { return {now_, result_.history.size(), result_.cracks.size()}; }
+
+void Recorder::go_back_to(const Mark& mark) {
+    now_ = mark.state;
+    result_.history.resize(mark.rows);
+    result_.cracks.resize(mark.cracks);
 }
 
 Snapshot Recorder::complete(const Fields& f) const {
@@ -190,19 +199,21 @@ Snapshot Recorder::complete(const Fields& f) const {
         }
     }
     s.cracks = f.cracks;
-    for (int c = 0; c < f.cracks; ++c) s.crack_opening_m.push_back(f.opening[crack_points_[c]]);
+    for (int c = 0; c < f.cracks; ++c) s.crack_opening_m.push_back(f.opening[now_.crack_points[c]]);
     return s;
 }
 
 void Recorder::finish() {
     if (result_.history.empty()) return;
     std::vector<Fields> all;
-    for (auto* group : {&start_, &first_crack_, &peak_}) all.insert(all.end(), group->begin(), group->end());
+    for (const Kept& one : {now_.start, now_.first_crack, now_.peak})
+        if (one) all.push_back(*one);
     all.push_back(fields("end", result_.history.back()));
-    for (std::size_t i = 0; i < loading_.size(); ++i) {
-        if (static_cast<int>(loading_.size()) > result_.test.snapshots && i % 2 == 0) continue;
-        if (std::any_of(all.begin(), all.end(), [&](const Fields& f) { return f.row.step == loading_[i].row.step; })) continue;
-        all.push_back(loading_[i]);
+    const std::vector<Kept>& loading = now_.loading;
+    for (std::size_t i = 0; i < loading.size(); ++i) {
+        if (static_cast<int>(loading.size()) > result_.test.snapshots && i % 2 == 0) continue;
+        if (std::any_of(all.begin(), all.end(), [&](const Fields& f) { return f.row.step == loading[i]->row.step; })) continue;
+        all.push_back(*loading[i]);
     }
     std::stable_sort(all.begin(), all.end(), [](const Fields& l, const Fields& r) { return l.row.step < r.row.step; });
     int number = 0;

@@ -1,6 +1,7 @@
 // Writes down what a test does: history rows, cracks, fields. It only reads the body.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "feldspar/lab/experiment.hpp"
@@ -20,7 +21,12 @@ public:
     const HistoryRow& record(Phase phase);
 
     /// What was unbalanced in the state of the last row.
-    const Unbalanced& unbalanced() const { return unbalanced_; }
+    const Unbalanced& unbalanced() const { return now_.unbalanced; }
+
+    /// Where a record stands, to go back to.
+    struct Mark;
+    Mark mark() const;
+    void go_back_to(const Mark& mark);
 
     /// Puts the snapshots in order and adds the end and the peak. @param last_row  the last row of the history
     void finish();
@@ -42,16 +48,26 @@ private:
     void keep_snapshots(const HistoryRow& row);
     int strength_sign() const { return e_.direction < 0.0 ? -1 : 1; }
 
+    using Kept = std::shared_ptr<const Fields>;
+    struct State {   // everything that recording changes here
+        long long cracks_seen_until = -1;   // step
+        std::vector<int> crack_points;      // contact point of each crack
+        std::vector<Kept> loading;          // evenly spaced in cracks, thinned out as their number grows
+        int crack_spacing = 1;
+        int next_cracks = 0;
+        Kept start, first_crack, peak;      // may be empty
+        int tensile = 0, shear = 0;
+        Unbalanced unbalanced;
+    };
+
     const Experiment& e_;
     TestResult& result_;
-    long long cracks_seen_until_ = -1;      // step
-    std::vector<int> crack_points_;         // contact point of each crack
-    std::vector<Fields> loading_;           // evenly spaced in cracks, thinned out as their number grows
-    int crack_spacing_ = 1;
-    int next_cracks_ = 0;
-    std::vector<Fields> start_, first_crack_, peak_;
-    int tensile_ = 0, shear_ = 0;
-    Unbalanced unbalanced_;
+    State now_;
+};
+
+struct Recorder::Mark {
+    State state;
+    std::size_t rows = 0, cracks = 0;   // of the result
 };
 
 }  // namespace feldspar

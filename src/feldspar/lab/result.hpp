@@ -140,8 +140,9 @@ struct TestResult {
     TestProperties properties{};
     std::string stop_reason;              ///< in words
     bool interrupted = false;
-    long long steps = 0;                  ///< all steps of the loading
-    long long steps_to_peak = 0;          ///< loading steps up to the peak
+    long long steps = 0;                  ///< all steps of the loading, those of earlier passages too
+    long long steps_to_peak = 0;          ///< loading steps up to the peak, those of earlier passages too
+    int passages = 1;                     ///< how often the strength was passed: again, more slowly, where the first time was too fast
     long long preparation_steps = 0;      ///< steps of the elastic start and the consolidation
     double wall_s = 0.0;
     double ms_per_step = 0.0;

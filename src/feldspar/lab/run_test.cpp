@@ -65,6 +65,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
             result.history.push_back(from);
         }
         if (setup.numerics.kind == NumericsKind::adaptive && e.computed_start) recorder.elastic_phase(from);
+        result.travel_time = e.travel_time;
         load(e, recorder, result);
     } catch (const Interrupted&) {
         result.interrupted = true;
@@ -87,7 +88,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
 TestSetup at_a_third(TestSetup setup) {
     NumericsSpec& n = setup.numerics;
     if (n.kind == NumericsKind::adaptive) {
-        n.residual_target = residual_target(n, setup.test.kind, setup.model.kind) / 3.0;
+        n.residual_target = residual_target(n, setup.test.kind) / 3.0;
     } else {
         n.speed_m = n.speed_m.value_or(kPaperSpeed) / 3.0;
     }

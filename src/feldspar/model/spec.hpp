@@ -48,11 +48,11 @@ enum class NumericsKind { adaptive, paper, dynamic };
 
 struct NumericsSpec {
     NumericsKind kind = NumericsKind::adaptive;
-    double accuracy = 0.005;                        ///< adaptive: relative accuracy wanted of a strength (0.0005 ... 0.1)
+    double accuracy = 0.01;                         ///< adaptive: relative accuracy wanted of a strength (0.0005 ... 0.1)
     std::optional<double> residual_target;          ///< adaptive, for experts: R* itself; overrides accuracy
-    double damping = 0.7;                           ///< paper and dynamic: local non-viscous damping alpha, 0 <= alpha < 1
+    double damping = 0.7;                           ///< local non-viscous damping alpha, 0 <= alpha < 1; adaptive: of the deviation from the loading motion
     std::optional<double> speed_m;                  ///< paper: platen speed in metres a step (default 6.25e-9); dynamic: m/s (must be given)
-    std::optional<double> mass_factor;              ///< adaptive and paper: m = factor x 0.25 K; default 1 (adaptive), 1 + alpha (paper)
+    std::optional<double> mass_factor;              ///< adaptive and paper: m = factor x 0.25 K; default 1 + alpha
     std::optional<double> time_step_s;              ///< dynamic; default: 0.8 of the stability limit
     std::optional<long long> maximum_steps;         ///< stop with what there is
     bool confirm = false;                           ///< repeat each test at a third of the target (or speed) and report the change

@@ -79,6 +79,8 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["sigma_cd_MPa"] = in_MPa(p.sigma_cd_Pa);
     test["steps"] = result.steps;
     test["steps_to_peak"] = result.steps_to_peak;
+    test["passages"] = result.passages;
+    test["passages"] = result.passages;
     test["preparation_steps"] = result.preparation_steps;
     test["wall_s"] = number(result.wall_s);
     test["ms_per_step"] = number(result.ms_per_step);
