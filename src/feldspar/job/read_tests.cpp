@@ -3,6 +3,8 @@
 #include <set>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/lab/specimen_shape.hpp"
+#include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 namespace {
@@ -16,7 +18,14 @@ bool has_label(const OutlineSpec& outline, std::string_view label) {
 // Platens need a flat top and bottom.
 void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& outline) {
     if (kind == TestKind::brazilian || outline.shape == Shape::rectangle) return;
-    if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) return;
+    if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) {
+        const SectionWidths widths = section_widths(make_outline(outline));
+        if (kind == TestKind::biaxial && widths.widest > (1.0 + uniform_width) * widths.narrowest)
+            table.fail("kind", "'biaxial' presses on the sides too, which would load a specimen whose width varies from " + format_exact(1000.0 * widths.narrowest) + " to " +
+                                   format_exact(1000.0 * widths.widest) + " mm along its axis as well",
+                       "a rectangle, or a polygon of one width");
+        return;
+    }
     const std::string shape = outline.shape == Shape::disc ? "a disc" : "a polygon without edges labelled \"top\" and \"bottom\"";
     table.fail("kind", "'" + std::string(name(kind)) + "' presses on flat ends, which " + shape + " has not",
                "shape = \"rectangle\", or a polygon with edges labelled \"top\" and \"bottom\"");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "feldspar/lab/body_energy.hpp"
@@ -197,18 +198,19 @@ Snapshot Recorder::complete(const Fields& f) const {
 void Recorder::finish() {
     if (result_.history.empty()) return;
     std::vector<Fields> all;
-    for (auto* group : {&start_, &first_crack_, &peak_}) all.insert(all.end(), group->begin(), group->end());
+    for (auto* group : {&start_, &first_crack_, &peak_}) all.insert(all.end(), std::make_move_iterator(group->begin()), std::make_move_iterator(group->end()));
     all.push_back(fields("end", result_.history.back()));
     for (std::size_t i = 0; i < loading_.size(); ++i) {
         if (static_cast<int>(loading_.size()) > result_.test.snapshots && i % 2 == 0) continue;
         if (std::any_of(all.begin(), all.end(), [&](const Fields& f) { return f.row.step == loading_[i].row.step; })) continue;
-        all.push_back(loading_[i]);
+        all.push_back(std::move(loading_[i]));
     }
     std::stable_sort(all.begin(), all.end(), [](const Fields& l, const Fields& r) { return l.row.step < r.row.step; });
     int number = 0;
     for (Fields& f : all) {
         if (f.label == "load") f.label = "load-" + std::to_string(++number);
         result_.snapshots.push_back(complete(f));
+        f = {};   // its memory is enough for a part of the next
     }
 }
 
