@@ -43,19 +43,19 @@ void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
     const double width = section_widths(outline).narrowest, height = box.upper.y - box.lower.y;
     if (!(width > 0.0)) return;
     for (const Variant& variant : job.variants) {
-        if (!variant.runs(TestKind::uniaxial_compression) && !variant.runs(TestKind::biaxial)) continue;
         const ContactMaterial& contact = variant.contact;
-        const double contacts_E = variant.model.kind == GrainKind::flexible ? variant.grain.E_Pa : contact.Kn_Pa_m * typical_diameter_m(specimen.grain_sizes);
-        const double E = known(job, "E", contacts_E);
+        const double own_E = variant.model.kind == GrainKind::flexible ? variant.grain.E_Pa : contact.Kn_Pa_m * typical_diameter_m(specimen.grain_sizes);
+        const double E = known(job, "E", own_E);
         const double root_N = contact.mu + std::sqrt(1.0 + contact.mu * contact.mu), UCS = known(job, "UCS", 2.0 * contact.tau_Pa * root_N);
         const bool pressed = std::any_of(job.tests.begin(), job.tests.end(), [&](const TestSpec& test) {
             return variant.runs(test.kind) && (test.kind == TestKind::uniaxial_compression || test.kind == TestKind::biaxial);
         });
         const double limit = slenderest(E, UCS);
         if (!pressed || height / width <= kCaution * limit) continue;
-        sentences.push_back(fmt::format("{}the specimen is {:.3g} times as high as wide. A column of an expected E of {:.3g} GPa bends aside at {:.3g} MPa (Euler, platens that may "
-                                        "slide); with an expected strength of {:.3g} MPa that happens above height / width of {:.3g}, and what a straight test then "
-                                        "measures is no strength and gets no grade above C. Laboratories use 2 to 3",
+        sentences.push_back(fmt::format("{}the specimen is {:.3g} times as high as wide. A column of an expected E of {:.3g} GPa bends aside at "
+                                        "{:.3g} MPa (Euler, platens that may slide); with an expected strength of {:.3g} MPa that happens above "
+                                        "height / width of {:.3g}, and what a straight test then measures is no strength and gets no grade "
+                                        "above C. Laboratories use 2 to 3",
                                         variant.name.empty() ? "" : variant.name + ": ", height / width, E / 1e9, euler_stress_Pa(E, width, height) / 1e6, UCS / 1e6, limit));
     }
 }

@@ -114,7 +114,7 @@ Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint
                          fmt::format("sizes closer together (now {:.3g} to {:.3g} mm), or fewer grains by a porosity above {:g}",
                                      1e3 * *std::min_element(diameters.begin(), diameters.end()), 1e3 * *std::max_element(diameters.begin(), diameters.end()),
                                      spec.porosity),
-                         "raise the smallest diameter first: a few hundredths of the mass are in the finest grains; or try another seed");
+                         "raise the smallest diameter first: the finest grains hold little of the area; or try another seed");
     }
 }
 
