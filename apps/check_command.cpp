@@ -16,6 +16,11 @@
 namespace feldspar {
 namespace {
 
+// The grains are the cells, which fill the outline: larger than the discs that were asked for, which leave pores.
+std::string sizes_text(const SizeSummary& sizes) {
+    return fmt::format("mean {:.3g}, {:.3g} to {:.3g}, D50 {:.3g}", 1e3 * sizes.mean_m, 1e3 * sizes.minimum_m, 1e3 * sizes.maximum_m, 1e3 * sizes.D50_m);
+}
+
 void print_specimen(const char* what, const Specimen& specimen) {
     const SpecimenQuality& q = specimen.quality;
     fmt::print("{} (seed {})\n", what, specimen.seed);
@@ -29,6 +34,9 @@ void print_specimen(const char* what, const Specimen& specimen) {
                1e3 * q.smallest_triangle_height_m);
     fmt::print("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
                100.0 * q.overlap_max);
+    fmt::print("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
+    fmt::print("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
+    fmt::print("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
     fmt::print("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
     fmt::print("  area error            {:.1e}\n", q.area_error);
     for (const std::string& warning : q.warnings) fmt::print("  warning: {}\n", warning);

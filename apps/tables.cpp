@@ -166,6 +166,9 @@ std::string test_table(std::span<const TestResult> results) {
     std::string text = aligned(rows, 1);
     text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n";
     text += "quasi-static: A to about 0.5 %, B to about 2 %, C not shown\n";
+    for (const TestResult& r : results) {   // a section other than the whole width is said beside the number
+        for (const std::string& remark : r.properties.remarks) text += wrapped_text(fmt::format("{}, seed {}: {}", title(r.variant, r.test), r.seed, remark));
+    }
     if (std::any_of(results.begin(), results.end(), [](const TestResult& r) { return !r.variant.empty(); }))
         return text + "the verdicts in words are in the report\n";
     for (const TestResult& r : results) {

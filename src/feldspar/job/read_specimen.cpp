@@ -4,6 +4,8 @@
 
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
+#include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 namespace {
@@ -50,6 +52,8 @@ void read_polygon(const TableReader& table, OutlineSpec& outline) {
             "edge_labels",
             std::to_string(outline.edge_labels.size()) + " labels for " + std::to_string(outline.vertices_m.size()) + " edges",
             "one label an edge; edge i runs from vertex i to vertex i + 1");
+    if (const auto fault = end_fault(outline))
+        table.fail_at(*table.array("edge_labels").get(static_cast<std::size_t>(fault->edge)), "edge_labels", fault->problem, fault->allowed, fault->suggestion);
 }
 
 OutlineSpec read_outline(const TableReader& table) {
@@ -72,7 +76,7 @@ OutlineSpec read_outline(const TableReader& table) {
 
 void read_sieve(const TableReader& table, GrainSizeSpec& sizes) {
     table.refuse({"minimum", "maximum", "median", "log_standard_deviation"}, "distribution = \"sieve\"", "curve");
-    const std::string allowed = "points such as [\"2 mm\", \"0 %\"], both columns increasing from 0 % to 100 %";
+    const std::string allowed = "points such as [\"2 mm\", \"0 %\"], diameters increasing, shares from 0 % to 100 % that never fall";
     for (const toml::node& row : table.array("curve")) {
         const toml::array* pair = row.as_array();
         if (pair == nullptr || pair->size() != 2)
@@ -81,8 +85,8 @@ void read_sieve(const TableReader& table, GrainSizeSpec& sizes) {
                                table.fraction_of(*pair->get(1), "curve", {0.0, 1.0, true, true, "from 0 % to 100 %"})};
         if (!sizes.sieve.empty() && point.diameter_m <= sizes.sieve.back().diameter_m)
             table.fail_at(*pair->get(0), "curve", shown(*pair->get(0)) + " is not larger than the sieve before it", allowed);
-        if (!sizes.sieve.empty() && point.passing <= sizes.sieve.back().passing)
-            table.fail_at(*pair->get(1), "curve", shown(*pair->get(1)) + " is not more than passes the sieve before it", allowed);
+        if (!sizes.sieve.empty() && point.passing < sizes.sieve.back().passing)
+            table.fail_at(*pair->get(1), "curve", shown(*pair->get(1)) + " is less than passes the sieve before it", allowed);
         sizes.sieve.push_back(point);
     }
     if (sizes.sieve.size() < 2) table.fail("curve", "a sieve curve needs at least two points", allowed);
@@ -132,7 +136,7 @@ double rough_area_m2(const OutlineSpec& outline) {
 }  // namespace
 
 double largest_diameter_m(const GrainSizeSpec& sizes) {
-    return sizes.kind == GrainSizeKind::sieve ? sizes.sieve.back().diameter_m : sizes.maximum_m;
+    return sizes.kind == GrainSizeKind::sieve ? largest_of_sieve_m(sizes.sieve) : sizes.maximum_m;
 }
 
 double typical_diameter_m(const GrainSizeSpec& sizes) {

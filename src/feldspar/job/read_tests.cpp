@@ -2,12 +2,19 @@
 #include <cmath>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 namespace {
 
 constexpr long long largest_seed = std::numeric_limits<long long>::max();
+
+// Of a confined specimen's width, as a share of the narrowest: the pressure on sloping sides then adds at most this share of sigma3 to the
+// axial stress.
+constexpr double most_confined_taper = 0.1;
 
 bool has_label(const OutlineSpec& outline, std::string_view label) {
     return std::find(outline.edge_labels.begin(), outline.edge_labels.end(), label) != outline.edge_labels.end();
@@ -16,7 +23,15 @@ bool has_label(const OutlineSpec& outline, std::string_view label) {
 // Platens need a flat top and bottom.
 void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& outline) {
     if (kind == TestKind::brazilian || outline.shape == Shape::rectangle) return;
-    if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) return;
+    if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) {
+        const SectionWidths widths = section_widths(make_outline(outline));
+        if (kind == TestKind::biaxial && widths.widest > (1.0 + most_confined_taper) * widths.narrowest)
+            table.fail("kind",
+                       fmt::format("'biaxial' presses on the sides too, which would load a specimen whose width varies from {:.4g} to {:.4g} mm along "
+                                   "its axis as well", 1000.0 * widths.narrowest, 1000.0 * widths.widest),
+                       "a rectangle, or a polygon whose width varies by a tenth at most");
+        return;
+    }
     const std::string shape = outline.shape == Shape::disc ? "a disc" : "a polygon without edges labelled \"top\" and \"bottom\"";
     table.fail("kind", "'" + std::string(name(kind)) + "' presses on flat ends, which " + shape + " has not",
                "shape = \"rectangle\", or a polygon with edges labelled \"top\" and \"bottom\"");

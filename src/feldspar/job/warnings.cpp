@@ -1,7 +1,12 @@
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
-#include "feldspar/job/job.hpp"
+#include "feldspar/job/job_sections.hpp"
+#include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/laws/softening.hpp"
+#include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 namespace {
@@ -21,11 +26,46 @@ void look_at_softening(const ContactMaterial& contact, const std::string& of, st
              "contacts break in shear without softening, at tau + mu times the pressure");
 }
 
+double known(const Job& job, const char* key, double otherwise) {
+    const auto found = job.laboratory.find(key);
+    return found == job.laboratory.end() ? otherwise : found->second;
+}
+
+// Whether the column would bend aside before it breaks, by what is expected of the rock: the laboratory's numbers, else E of the grains or
+// contacts and the Mohr-Coulomb strength of the contacts. The measured strength is up to 1.4 times that and E a sixth lower, so the
+// warning begins below the limit; the test's own verdict goes by what was measured.
+void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
+    constexpr double kCaution = 0.75;
+    const SpecimenSpec& specimen = job.specimen;
+    if (specimen.outline.shape == Shape::disc) return;
+    const Outline outline = make_outline(specimen.outline);
+    const Box box = bounding_box(outline);
+    const double width = section_widths(outline).narrowest, height = box.upper.y - box.lower.y;
+    if (!(width > 0.0)) return;
+    for (const Variant& variant : job.variants) {
+        const ContactMaterial& contact = variant.contact;
+        const double own_E = variant.model.kind == GrainKind::flexible ? variant.grain.E_Pa : contact.Kn_Pa_m * typical_diameter_m(specimen.grain_sizes);
+        const double E = known(job, "E", own_E);
+        const double root_N = contact.mu + std::sqrt(1.0 + contact.mu * contact.mu), UCS = known(job, "UCS", 2.0 * contact.tau_Pa * root_N);
+        const bool pressed = std::any_of(job.tests.begin(), job.tests.end(), [&](const TestSpec& test) {
+            return variant.runs(test.kind) && (test.kind == TestKind::uniaxial_compression || test.kind == TestKind::biaxial);
+        });
+        const double limit = slenderest(E, UCS);
+        if (!pressed || height / width <= kCaution * limit) continue;
+        sentences.push_back(fmt::format("{}the specimen is {:.3g} times as high as wide. A column of an expected E of {:.3g} GPa bends aside at "
+                                        "{:.3g} MPa (Euler, platens that may slide); with an expected strength of {:.3g} MPa that happens above "
+                                        "height / width of {:.3g}, and what a straight test then measures is no strength and gets no grade "
+                                        "above C. Laboratories use 2 to 3",
+                                        variant.name.empty() ? "" : variant.name + ": ", height / width, E / 1e9, euler_stress_Pa(E, width, height) / 1e6, UCS / 1e6, limit));
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Job& job) {
     std::vector<std::string> sentences;
     for (const Variant& variant : job.variants) look_at_softening(variant.contact, variant.name.empty() ? "" : variant.name + ": ", sentences);
+    look_at_slenderness(job, sentences);
     return sentences;
 }
 

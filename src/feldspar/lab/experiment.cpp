@@ -7,6 +7,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
@@ -95,7 +96,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
         section_m2 = 0.5 * std::numbers::pi * height_m * assembly.thickness_m;
     } else {
         height_m = box.upper.y - box.lower.y;
-        section_m2 = loaded_width_m(assembly, *s.specimen) * assembly.thickness_m;
+        section_m2 = section_width_m(s.specimen->outline, loaded_width_m(assembly, *s.specimen)) * assembly.thickness_m;
         assembly.platens[0].mode = {0.0, -direction};
     }
     axial_stiffness = elastic_guess.E_Pa * section_m2 / height_m;

@@ -2,11 +2,39 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 
 #include "feldspar/geometry/polygon.hpp"
 
 namespace feldspar {
+
+// About the mean point the constant drops out of the normal equations, and a symmetric 2 x 2 matrix is left. Its pseudo-inverse leaves out
+// directions along which the points have no extent.
+SlopeWeights slope_weights(std::span<const Vec2> points, double length_m) {
+    Vec2 mean;
+    for (const Vec2 p : points) mean += p;
+    mean *= 1.0 / static_cast<double>(points.size());
+    Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
+    for (const Vec2 p : points) {
+        const Eigen::Vector2d d((p.x - mean.x) / length_m, (p.y - mean.y) / length_m);
+        moments += d * d.transpose();
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+    solver.computeDirect(moments);
+    Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
+    for (int k = 0; k < 2; ++k) {
+        const double extent2 = solver.eigenvalues()(k);
+        if (extent2 > 1e-12 * static_cast<double>(points.size())) inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / extent2;
+    }
+    SlopeWeights weights;
+    for (const Vec2 p : points) {
+        const Eigen::Vector2d d((p.x - mean.x) / length_m, (p.y - mean.y) / length_m);
+        const Eigen::Vector2d weight = inverse * d / length_m;
+        weights.x.push_back(weight(0));
+        weights.y.push_back(weight(1));
+    }
+    return weights;
+}
 
 StrainGauge::StrainGauge(const Assembly& assembly, const Specimen& specimen) {
     std::vector<Vec2> X;
@@ -22,17 +50,9 @@ StrainGauge::StrainGauge(const Assembly& assembly, const Specimen& specimen) {
         centre_nodes_.clear();
         for (const Body& grain : assembly.bodies) centre_nodes_.push_back(grain.centre_node);
     }
-    const auto count = static_cast<Eigen::Index>(centre_nodes_.size());
-    Eigen::MatrixXd A(count, 3);   // u = c0 + c1 x + c2 y, lengths over the height
-    for (Eigen::Index i = 0; i < count; ++i) {
-        const Vec2 x = assembly.nodes.reference[centre_nodes_[static_cast<std::size_t>(i)]];
-        A.row(i) << 1.0, (x.x - box.lower.x) / height, (x.y - box.lower.y) / height;
-    }
-    const Eigen::MatrixXd weights = A.completeOrthogonalDecomposition().pseudoInverse() / height;
-    for (Eigen::Index i = 0; i < count; ++i) {
-        lateral_weights_.push_back(weights(1, i));
-        axial_weights_.push_back(weights(2, i));
-    }
+    std::vector<Vec2> points;
+    for (const int node : centre_nodes_) points.push_back(assembly.nodes.reference[node]);
+    weights_ = slope_weights(points, height);
 }
 
 double StrainGauge::fit(const Assembly& assembly, const std::vector<double>& weights, double Vec2::*component) const {

@@ -11,6 +11,7 @@
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
+#include "feldspar/lab/specimen_shape.hpp"
 
 namespace feldspar {
 
@@ -182,6 +183,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
     const bool b = std::all_of(table.begin(), table.end(), [](const Criterion& c) { return c.holds_b(); });
     e.grade = a ? 'A' : b ? 'B' : 'C';
     e.verdict = verdict(e, table, result, peak->reached);
+    look_at_buckling(result, e);
     return e;
 }
 

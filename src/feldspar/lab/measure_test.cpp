@@ -7,6 +7,7 @@
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/regression.hpp"
+#include "feldspar/lab/specimen_shape.hpp"
 
 namespace feldspar {
 
@@ -19,6 +20,7 @@ TestProperties nothing() {
     p.peak_stress_Pa = p.first_crack_Pa = nan;
     p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = p.E_gauge_Pa = p.nu = p.nu_tangent = p.E_initial_Pa = p.nu_initial = nan;
     p.sigma_ci_crack_count_Pa = p.sigma_ci_crack_volume_Pa = p.sigma_ci_lateral_strain_Pa = p.sigma_cd_Pa = nan;
+    p.section_width_m = nan;
     return p;
 }
 
@@ -52,9 +54,7 @@ double secant_ratio(const LoadingCurve& curve) {
     return -half->lateral_gauge / half->strain_gauge;
 }
 
-}  // namespace
-
-TestProperties measure(const TestResult& result) {
+TestProperties read_record(const TestResult& result) {
     TestProperties p = nothing();
     p.first_crack_Pa = first_crack(result);
     const auto peak = find_peak(result);
@@ -81,6 +81,14 @@ TestProperties measure(const TestResult& result) {
     p.sigma_ci_crack_volume_Pa = thresholds.crack_volume_Pa;
     p.sigma_ci_lateral_strain_Pa = thresholds.lateral_strain_Pa;
     p.sigma_cd_Pa = thresholds.reversal_Pa;
+    return p;
+}
+
+}  // namespace
+
+TestProperties measure(const TestResult& result) {
+    TestProperties p = read_record(result);
+    note_section(result, p);
     return p;
 }
 

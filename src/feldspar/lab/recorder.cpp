@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "feldspar/lab/body_energy.hpp"
@@ -220,6 +221,7 @@ void Recorder::finish() {
     for (Fields& f : all) {
         if (f.label == "load") f.label = "load-" + std::to_string(++number);
         result_.snapshots.push_back(complete(f));
+        f = {};   // its memory is enough for a part of the next
     }
 }
 

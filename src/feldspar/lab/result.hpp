@@ -40,7 +40,7 @@ struct HistoryRow {
     double axial_strain = 0.0;            ///< from the platens
     double axial_strain_gauge = 0.0;      ///< from the gauge: least squares over the central half of the specimen
     double lateral_strain_gauge = 0.0;    ///< the same, < 0 when the specimen widens
-    double axial_stress_Pa = 0.0;         ///< mean of both platens over the initial section; Brazilian: 2P / (pi D t)
+    double axial_stress_Pa = 0.0;         ///< mean of both platens over the narrowest initial section; Brazilian: 2P / (pi D t)
     double stress_top_Pa = 0.0;
     double stress_bottom_Pa = 0.0;
     double sigma3_Pa = 0.0;
@@ -120,6 +120,8 @@ struct TestProperties {
     double sigma_ci_crack_volume_Pa;      ///< reversal of the crack volumetric strain
     double sigma_ci_lateral_strain_Pa;    ///< lateral strain response
     double sigma_cd_Pa;                   ///< reversal of the volumetric strain
+    double section_width_m;               ///< of the section that the stresses are taken over: the narrowest one across the load
+    std::vector<std::string> remarks;     ///< sentences that a reader of the numbers must know
 };
 
 struct TestResult {

@@ -6,6 +6,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/memory.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
@@ -113,6 +114,8 @@ TestResult run_test(const TestSetup& setup, const RunControl& control) {
 
 TestPreview preview_test(const TestSetup& setup, const RunControl& control) {
     Experiment e(setup, control);
+    set_real_masses(e.assembly, setup.grain.density_kg_m3);   // replaced below
+    const double real_omega2 = largest_omega2(e.assembly, e.team);
     choose_step(e);
     TestPreview preview;
     preview.grains = static_cast<int>(setup.specimen->cells.cells.size());
@@ -121,12 +124,10 @@ TestPreview preview_test(const TestSetup& setup, const RunControl& control) {
     preview.contact_points = static_cast<int>(e.assembly.points.size());
     preview.nodes = e.assembly.nodes.count();
     preview.triangles = static_cast<int>(e.assembly.triangles.size());
-    preview.memory_bytes = e.assembly.memory_bytes();
+    preview.memory_bytes = memory_of_run(*setup.specimen, e.assembly, setup.test);
     preview.omega2 = e.omega2;
     preview.omega2_limit = e.omega2_bound;
-    Assembly real = e.assembly;
-    set_real_masses(real, setup.grain.density_kg_m3);
-    preview.stable_time_step_s = std::sqrt(e.omega2_bound / largest_omega2(real, e.team));
+    preview.stable_time_step_s = std::sqrt(e.omega2_bound / real_omega2);
     constexpr int kTrial = 20;
     evaluate_forces(e.assembly, e.team, Strength::unlimited);
     const Clock::time_point start = Clock::now();

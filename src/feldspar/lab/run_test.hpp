@@ -48,7 +48,7 @@ TestResult run_test(const TestSetup& setup, const RunControl& control);
 struct TestPreview {
     int grains = 0, contacts = 0, contact_points = 0, nodes = 0, triangles = 0;
     int bodies = 0;                  ///< that move by themselves: grains, or their inner particles
-    double memory_bytes = 0.0;       ///< of the assembly while it runs
+    double memory_bytes = 0.0;       ///< at the peak of the run, an estimate (lab/memory.hpp)
     double omega2 = 0.0;             ///< largest omega^2 dt^2 of the initial state
     double omega2_limit = 0.0;       ///< 4, or 4 / (1 + alpha) with local damping
     double stable_time_step_s = 0.0; ///< largest stable time step with real masses

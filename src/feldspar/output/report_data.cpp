@@ -83,6 +83,8 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["sigma3"] = rounded(result.test.sigma3_Pa * MPa);
     test["numerics"] = name(result.numerics.kind);
     test["peak"] = rounded(p.peak_stress_Pa * MPa);
+    test["section_width"] = rounded(p.section_width_m * 1e3);
+    test["remarks"] = p.remarks;
     test["peak_reached"] = p.peak_reached;
     test["first_crack"] = rounded(p.first_crack_Pa * MPa);
     test["E"] = rounded(p.E_secant_Pa * GPa);
@@ -195,6 +197,11 @@ Json specimens_json(std::span<const TestResult> results) {
                         {"nodes", specimen.quality.nodes},
                         {"triangles", specimen.quality.triangles},
                         {"merged_edges", specimen.quality.merged_edges},
+                        {"grain_mean", rounded(specimen.quality.cell_sizes.mean_m * 1e3)},
+                        {"grain_minimum", rounded(specimen.quality.cell_sizes.minimum_m * 1e3)},
+                        {"grain_maximum", rounded(specimen.quality.cell_sizes.maximum_m * 1e3)},
+                        {"grain_D50", rounded(specimen.quality.cell_sizes.D50_m * 1e3)},
+                        {"disc_mean", rounded(specimen.quality.disc_sizes.mean_m * 1e3)},
                         {"width_over_largest_grain", rounded(specimen.quality.width_over_largest_grain)},
                         {"warnings", specimen.quality.warnings}});
     }

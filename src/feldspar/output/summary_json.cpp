@@ -63,6 +63,8 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["seed"] = result.seed;
     test["sigma3_MPa"] = in_MPa(result.test.sigma3_Pa);
     test["peak_stress_MPa"] = in_MPa(p.peak_stress_Pa);
+    test["section_width_mm"] = number(p.section_width_m * 1e3);
+    test["remarks"] = p.remarks;
     test["peak_reached"] = p.peak_reached;
     test["first_crack_MPa"] = in_MPa(p.first_crack_Pa);
     test["E_GPa"] = in_GPa(p.E_secant_Pa);
@@ -114,6 +116,11 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     return test;
 }
 
+Json sizes_json(const SizeSummary& sizes) {
+    return {{"mean", number(sizes.mean_m * 1e3)}, {"minimum", number(sizes.minimum_m * 1e3)}, {"maximum", number(sizes.maximum_m * 1e3)},
+            {"D50", number(sizes.D50_m * 1e3)}};
+}
+
 Json specimen_json(const Specimen& specimen) {
     const SpecimenQuality& q = specimen.quality;
     Json json = {{"grains", q.grains},
@@ -128,6 +135,10 @@ Json specimen_json(const Specimen& specimen) {
                  {"smallest_edge_mm", number(q.smallest_edge_m * 1e3)},
                  {"smallest_triangle_height_mm", number(q.smallest_triangle_height_m * 1e3)},
                  {"mean_diameter_mm", number(q.mean_diameter_m * 1e3)},
+                 {"grain_sizes_mm", sizes_json(q.cell_sizes)},
+                 {"asked_sizes_mm", sizes_json(q.disc_sizes)},
+                 {"size_spread", number(q.size_spread)},
+                 {"hexatic_order", number(q.hexatic_order)},
                  {"width_over_largest_grain", number(q.width_over_largest_grain)},
                  {"area_error", number(q.area_error)},
                  {"warnings", q.warnings}};

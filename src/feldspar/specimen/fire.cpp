@@ -32,7 +32,10 @@ void Fire::move(std::span<Vec2> points, std::span<const Vec2> forces, double tur
         velocity_[i] = (1.0 - mixing_) * velocity_[i] + turn * forces[i];
         Vec2 move = time_step_ * velocity_[i];
         const double length2 = dot(move, move);
-        if (length2 > farthest * farthest) move *= farthest / std::sqrt(length2);
+        if (length2 > farthest * farthest) {
+            move *= farthest / std::sqrt(length2);
+            if (limits_.forget_speed) velocity_[i] = (1.0 / time_step_) * move;
+        }
         points[i] += move;
     }
 }

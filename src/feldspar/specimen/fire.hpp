@@ -14,6 +14,7 @@ struct FireLimits {
     double shortest_step = 0.01;      ///< unit of time (that of unit mass and stiffness), from 0 to the longest step of 0.4
     bool steps_back = true;           ///< where the motion has turned uphill: go back by half a step before starting again
     double farthest_move_m = 0.0;     ///< of a point in one step (> 0)
+    bool forget_speed = false;        ///< a point that would move farther keeps only the speed of the farthest move
 };
 
 /// Points of unit mass under forces whose stiffness is of the order of 1, so that a force is a length (m). They move by

@@ -105,6 +105,11 @@ double counting_diameter(const GrainSizeSpec& spec) {
     return spec.kind == GrainSizeKind::uniform ? moments.mean_m : std::sqrt(moments.mean_square_m2);
 }
 
+double largest_of_sieve_m(const std::vector<SievePoint>& sieve) {
+    const auto all = std::find_if(sieve.begin(), sieve.end(), [](SievePoint p) { return p.passing >= 1.0; });
+    return (all == sieve.end() ? sieve.back() : *all).diameter_m;
+}
+
 namespace {
 
 double sample_log_normal(const GrainSizeSpec& spec, double u) {
@@ -129,6 +134,22 @@ double sample_sieve(const std::vector<SievePoint>& sieve, const std::vector<doub
 
 }  // namespace
 
+namespace {
+
+/// By how much the area of a random sample may miss that of the distribution, as a share of it.
+constexpr double most_area_missed = 0.1;
+
+double diameter_at(const GrainSizeSpec& spec, const std::vector<double>& cumulative, double u) {
+    switch (spec.kind) {
+        case GrainSizeKind::uniform: return spec.minimum_m + u * (spec.maximum_m - spec.minimum_m);
+        case GrainSizeKind::log_normal: return sample_log_normal(spec, u);
+        case GrainSizeKind::sieve: return sample_sieve(spec.sieve, cumulative, u);
+    }
+    return spec.minimum_m;
+}
+
+}  // namespace
+
 std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, RandomStream& random) {
     check_grain_sizes(spec);
     std::vector<double> cumulative = {0.0};
@@ -137,14 +158,14 @@ std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, Rando
     }
     std::vector<double> diameters;
     diameters.reserve(static_cast<std::size_t>(std::max(0, count)));
+    double squares = 0.0;
     for (int i = 0; i < count; ++i) {
-        const double u = random.uniform();
-        switch (spec.kind) {
-            case GrainSizeKind::uniform: diameters.push_back(spec.minimum_m + u * (spec.maximum_m - spec.minimum_m)); break;
-            case GrainSizeKind::log_normal: diameters.push_back(sample_log_normal(spec, u)); break;
-            case GrainSizeKind::sieve: diameters.push_back(sample_sieve(spec.sieve, cumulative, u)); break;
-        }
+        diameters.push_back(diameter_at(spec, cumulative, random.uniform()));
+        squares += diameters.back() * diameters.back();
     }
+    const double wanted = count * diameter_moments(spec).mean_square_m2;
+    if (std::abs(squares - wanted) <= most_area_missed * wanted) return diameters;
+    for (int i = 0; i < count; ++i) diameters[static_cast<std::size_t>(i)] = diameter_at(spec, cumulative, (i + random.uniform()) / count);
     return diameters;
 }
 

@@ -31,8 +31,13 @@ DiameterMoments diameter_moments(const GrainSizeSpec& spec);
 /// area of the discs is (1 - porosity) A on average.
 double counting_diameter(const GrainSizeSpec& spec);
 
+/// The smallest diameter that all grains of a sieve curve pass (m): points behind it hold no grains.
+double largest_of_sieve_m(const std::vector<SievePoint>& sieve);
+
 /// Draws `count` diameters (m) in the stream's order, by inversion of the distribution function: one uniform number each.
 /// Sieve fractions are of area: the share of the area in grains finer than d follows the curve.
+/// Of a wide distribution a few large grains decide the area. Where the sample's area misses that of the distribution by more than a
+/// tenth, another is taken: one grain of each of `count` equal parts of the distribution.
 std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, RandomStream& random);
 
 }  // namespace feldspar

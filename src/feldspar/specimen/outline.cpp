@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -17,6 +18,45 @@ void require_length(double value, const char* key) {
     }
 }
 
+/// Length of the part of the horizontal line at `y` inside the polygon; `y` is not the height of a vertex.
+double width_at(const std::vector<Vec2>& corners, double y) {
+    std::vector<double> crossings;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+        if ((a.y < y) != (b.y < y)) crossings.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+    std::sort(crossings.begin(), crossings.end());
+    double width = 0.0;
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) width += crossings[i + 1] - crossings[i];
+    return width;
+}
+
+struct Extremes {
+    double least = std::numeric_limits<double>::infinity(), most = 0.0;
+};
+
+/// Between two heights. The width is linear between the heights of two vertices, so its extremes are there.
+Extremes extreme_widths(const std::vector<Vec2>& corners, double low, double high) {
+    std::vector<double> levels = {low, high};
+    for (const Vec2 corner : corners) {
+        if (corner.y > low && corner.y < high) levels.push_back(corner.y);
+    }
+    std::sort(levels.begin(), levels.end());
+    Extremes extremes;
+    for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
+        const double height = levels[i + 1] - levels[i];
+        if (!(height > 1e-9 * (high - low))) continue;
+        const double third = width_at(corners, levels[i] + height / 3.0), two_thirds = width_at(corners, levels[i] + 2.0 * height / 3.0);
+        for (const double width : {2.0 * third - two_thirds, 2.0 * two_thirds - third}) {
+            extremes.least = std::min(extremes.least, std::max(0.0, width));
+            extremes.most = std::max(extremes.most, width);
+        }
+    }
+    return extremes;
+}
+
+std::string in_mm(Vec2 a, Vec2 b) { return fmt::format("from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) mm", 1e3 * a.x, 1e3 * a.y, 1e3 * b.x, 1e3 * b.y); }
+
 Outline make_polygon(const OutlineSpec& spec) {
     const std::size_t n = spec.vertices_m.size();
     if (!is_simple_polygon(spec.vertices_m)) {
@@ -28,6 +68,7 @@ Outline make_polygon(const OutlineSpec& spec) {
         throw InputError({"", 0, 0, "specimen.edge_labels"}, fmt::format("{} labels for {} edges", spec.edge_labels.size(), n),
                          "one label an edge, or none at all");
     }
+    if (const auto fault = end_fault(spec)) throw InputError({"", 0, 0, "specimen.edge_labels"}, fault->problem, fault->allowed, fault->suggestion);
     Outline outline;
     outline.vertices = spec.vertices_m;
     outline.edge_labels = spec.edge_labels;
@@ -43,6 +84,72 @@ Outline make_polygon(const OutlineSpec& spec) {
 }
 
 }  // namespace
+
+std::optional<EndFault> end_fault(const OutlineSpec& spec) {
+    const std::vector<Vec2>& corners = spec.vertices_m;
+    const int n = static_cast<int>(corners.size());
+    if (spec.edge_labels.size() != corners.size()) return {};
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double lowest_top = infinity, highest_bottom = -infinity, mean_top = 0.0, mean_bottom = 0.0;
+    int first_top = -1, first_bottom = -1, tops = 0, bottoms = 0;
+    for (int k = 0; k < n; ++k) {
+        const Vec2 a = corners[k], b = corners[(k + 1) % n];
+        if (spec.edge_labels[k] == top_label) {
+            if (first_top < 0) first_top = k;
+            lowest_top = std::min({lowest_top, a.y, b.y});
+            mean_top += 0.5 * (a.y + b.y);
+            ++tops;
+        } else if (spec.edge_labels[k] == bottom_label) {
+            if (first_bottom < 0) first_bottom = k;
+            highest_bottom = std::max({highest_bottom, a.y, b.y});
+            mean_bottom += 0.5 * (a.y + b.y);
+            ++bottoms;
+        }
+    }
+    if (first_top < 0 || first_bottom < 0) return {};
+    const std::string allowed = "\"top\" on the upper end and \"bottom\" on the lower one, both within 10 degrees of horizontal; y points up, and the load acts along it";
+    constexpr double least_cosine = 0.984807753012208;   // of 10 degrees
+    const double turn = signed_area(corners) > 0.0 ? 1.0 : -1.0;
+    for (int k = 0; k < n; ++k) {
+        const bool top = spec.edge_labels[k] == top_label;
+        if (!top && spec.edge_labels[k] != bottom_label) continue;
+        const Vec2 a = corners[k], b = corners[(k + 1) % n];
+        if (std::abs(b.x - a.x) < least_cosine * norm(b - a)) {
+            const double slope = std::atan2(std::abs(b.y - a.y), std::abs(b.x - a.x)) * 180.0 / std::numbers::pi;
+            return EndFault{k, fmt::format("the edge labelled \"{}\", {}, is {:.0f} degrees from horizontal", spec.edge_labels[k], in_mm(a, b), slope), allowed,
+                            "turn the outline so that the load acts along y, or label the horizontal ends; edge i runs from vertex i to vertex i + 1"};
+        }
+    }
+    if (mean_top / tops < mean_bottom / bottoms)
+        return EndFault{first_top, "the label \"top\" lies below \"bottom\"", allowed, "exchange the labels \"top\" and \"bottom\""};
+    for (int k = 0; k < n; ++k) {
+        const bool top = spec.edge_labels[k] == top_label;
+        if (!top && spec.edge_labels[k] != bottom_label) continue;
+        const Vec2 a = corners[k], b = corners[(k + 1) % n];
+        if ((turn * (b.x - a.x) < 0.0) != top)   // counter-clockwise, the rock lies left of an edge: under one that runs to the left
+            return EndFault{k, fmt::format("the edge labelled \"{}\", {}, has the rock {} it", spec.edge_labels[k], in_mm(a, b), top ? "above" : "below"), allowed,
+                            "label the other side; edge i runs from vertex i to vertex i + 1"};
+    }
+    if (!(lowest_top > highest_bottom))
+        return EndFault{first_top, "an edge labelled \"top\" does not lie above every edge labelled \"bottom\"", allowed, "label one end with each"};
+    return {};
+}
+
+SectionWidths section_widths(const Outline& outline) {
+    if (outline.is_disc) return {};
+    const Box box = bounding_box(outline);
+    double low = box.lower.y, high = box.upper.y;
+    for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
+        const double a = outline.vertices[k].y, b = outline.vertices[(k + 1) % outline.vertices.size()].y;
+        if (outline.edge_labels[k] == bottom_label) low = std::max({low, a, b});
+        if (outline.edge_labels[k] == top_label) high = std::min({high, a, b});
+    }
+    if (!(high > low)) return {};
+    const Extremes all = extreme_widths(outline.vertices, low, high);
+    const double middle = 0.5 * (box.lower.y + box.upper.y), quarter = 0.25 * (box.upper.y - box.lower.y);
+    const Extremes gauge = extreme_widths(outline.vertices, std::max(low, middle - quarter), std::min(high, middle + quarter));
+    return {all.least, all.most, gauge.least, gauge.most};
+}
 
 Outline make_outline(const OutlineSpec& spec) {
     Outline outline;

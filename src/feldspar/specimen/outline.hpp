@@ -1,6 +1,8 @@
 // From the user's outline to one that is ready for use: counter-clockwise, labelled, checked.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "feldspar/geometry/polygon.hpp"
@@ -12,6 +14,31 @@ namespace feldspar {
 /// (0, 0). Polygon: turned counter-clockwise where needed, each label staying with its edge.
 /// @throws InputError for lengths that are not positive, a polygon that crosses or touches itself, a wrong number of labels
 Outline make_outline(const OutlineSpec& spec);
+
+/// The labels of the edges that platens press on and hold.
+inline constexpr const char* top_label = "top";
+inline constexpr const char* bottom_label = "bottom";
+
+/// What is wrong with the edges labelled "top" and "bottom", in words for the user.
+struct EndFault {
+    int edge = 0;   ///< into the spec's edge labels
+    std::string problem, allowed, suggestion;
+};
+
+/// Edges labelled "top" must face up and those labelled "bottom" down, within ten degrees, the former above the latter. Says what is
+/// against that; empty if nothing is, or if only one of the labels or none is there. Either orientation of the polygon.
+std::optional<EndFault> end_fault(const OutlineSpec& spec);
+
+/// Widths of the sections across the load, which acts along y (m). Of a section that the outline cuts into pieces, their sum.
+struct SectionWidths {
+    double narrowest = 0.0;          ///< between the ends
+    double widest = 0.0;
+    double gauge_narrowest = 0.0;    ///< in the central half of the height, where the strain gauge is
+    double gauge_widest = 0.0;
+};
+
+/// Sections of an outline with ends between the highest point of its bottom and the lowest of its top. A disc has zeros.
+SectionWidths section_widths(const Outline& outline);
 
 /// Smallest box around the outline.
 Box bounding_box(const Outline& outline);

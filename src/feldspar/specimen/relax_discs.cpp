@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -21,6 +22,13 @@ namespace {
 /// A few loose discs fly about to the last, so the near list, which costs in every step, is short and often sifted from the far one,
 /// for which the discs must be searched.
 constexpr double near_skin_share = 0.2, far_skin_share = 1.3;
+/// A distribution is wide when its largest disc is more than so many times its smallest. In a wide one large discs, which overlap by
+/// many radii of the small ones at first, would gather speed, fly out through the outline and carry small ones along: so no disc keeps
+/// more speed than the farthest move needs, and masses grow with the near discs. Others are relaxed without either.
+constexpr double wide_ratio = 8.0;
+/// In a wide distribution, a disc's mass is its number of near discs over this, at least 1. A contact has stiffness 1, so a large disc among
+/// many small ones would otherwise swing faster than a step of FIRE can follow (fire.cpp).
+constexpr int near_per_mass = 12;
 /// Discs whose sums are taken together, in the order of the discs: fixed, so that sums do not depend on the number of threads.
 constexpr int block = 1024;
 
@@ -35,7 +43,9 @@ struct Share {
 /// Pairs of a disc and a piece of the outline that may touch before the lists are made again.
 struct NearWall {
     int disc = 0;
-    int wall = 0;   ///< edge k as k, re-entrant corner k as -1 - k; 0 on a circle
+    int wall = 0;   ///< edge k as k, re-entrant corner k as -1 - k; 0 on a circle; whole_polygon for a disc that has got outside
+
+    static constexpr int whole_polygon = std::numeric_limits<int>::min();
 };
 
 /// Sums over the contacts; the stiffness is 1, so a force is an overlap (m).
@@ -85,6 +95,10 @@ private:
     void search_far(Share& share) const;
     void sift_near();
     void find_walls();
+    void call_back();
+    bool wide() const { return largest_radius_ > wide_ratio * smallest_radius_; }
+    void choose_masses();
+    const std::vector<Vec2>& accelerations();
     bool moved_beyond(double distance, const std::vector<Vec2>& since) const;
     void forces();
     double wall_overlap(NearWall pair, Vec2& inward) const;
@@ -98,6 +112,8 @@ private:
     const std::vector<double>& radii_;
     int count_;
     std::vector<Vec2> force_;   ///< m (stiffness 1)
+    std::vector<double> inverse_mass_;   ///< a disc; empty where all are 1
+    std::vector<Vec2> acceleration_;     ///< m, where masses differ
     std::vector<Vec2> sifted_at_, searched_at_;   ///< where the discs were when the lists were made; empty before
     DiscGrid grid_;
     std::vector<Share> shares_;   ///< one a thread
@@ -147,7 +163,27 @@ void Relaxation::sift_near() {
         share.near.resize(count);
     });
     find_walls();
+    if (wide()) choose_masses();
     sifted_at_ = centres_;
+}
+
+void Relaxation::choose_masses() {
+    std::vector<int> near(radii_.size(), 0);
+    for (const Share& share : shares_) {
+        for (const DiscPair pair : share.near) {
+            ++near[pair.a];
+            ++near[pair.b];
+        }
+    }
+    inverse_mass_.clear();
+    for (const int count : near) inverse_mass_.push_back(std::min(1.0, static_cast<double>(near_per_mass) / std::max(1, count)));
+}
+
+const std::vector<Vec2>& Relaxation::accelerations() {
+    if (inverse_mass_.empty()) return force_;
+    acceleration_.resize(force_.size());
+    for (std::size_t i = 0; i < force_.size(); ++i) acceleration_[i] = inverse_mass_[i] * force_[i];
+    return acceleration_;
 }
 
 void Relaxation::find_walls() {
@@ -176,6 +212,27 @@ void Relaxation::find_walls() {
             const int i = walls_[w].disc;
             if (norm(centres_[i] - b) < radii_[i] + skin_) walls_.push_back({i, -1 - (k + 1) % n});
         }
+    }
+    call_back();
+}
+
+/// A small disc that large ones have squeezed far out, or past a corner, faces no edge any more.
+void Relaxation::call_back() {
+    const Box box = bounding_box(outline_);
+    std::vector<int> outside;   // in the order of the discs
+    for (int i = 0; i < count_; ++i) {
+        const Vec2 p = centres_[i];
+        const bool in_box = p.x > box.lower.x && p.x < box.upper.x && p.y > box.lower.y && p.y < box.upper.y;
+        if (!in_box || (!convex_ && !contains(outline_, p))) outside.push_back(i);
+    }
+    if (outside.empty()) return;
+    std::vector<bool> faced(radii_.size(), false);
+    Vec2 inward;
+    for (const NearWall pair : walls_) {
+        if (wall_overlap(pair, inward) > 0.0) faced[pair.disc] = true;
+    }
+    for (const int i : outside) {
+        if (!faced[i] && !contains(outline_, centres_[i])) walls_.push_back({i, NearWall::whole_polygon});
     }
 }
 
@@ -207,6 +264,19 @@ double Relaxation::wall_overlap(NearWall pair, Vec2& inward) const {
     }
     const auto& corners = outline_.vertices;
     const std::size_t n = corners.size();
+    if (pair.wall == NearWall::whole_polygon) {
+        if (contains(outline_, centre)) return 0.0;
+        double nearest = std::numeric_limits<double>::infinity();
+        for (std::size_t k = 0; k < n; ++k) {
+            const Vec2 a = corners[k], ab = corners[(k + 1) % n] - a;
+            const Vec2 back = a + std::clamp(dot(centre - a, ab) / dot(ab, ab), 0.0, 1.0) * ab - centre;
+            if (const double distance = norm(back); distance < nearest && distance > 0.0) {
+                nearest = distance;
+                inward = (1.0 / distance) * back;
+            }
+        }
+        return radius + nearest;
+    }
     if (pair.wall < 0) {  // a re-entrant corner, where neither edge is faced
         const std::size_t k = static_cast<std::size_t>(-1 - pair.wall);
         const Vec2 before = corners[k] - corners[(k + n - 1) % n], after = corners[(k + 1) % n] - corners[k];
@@ -295,11 +365,11 @@ void Relaxation::tell(double residual, double wanted) {
 }
 
 void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
-    Fire fire(radii_.size(), {.shortest_step = 0.01, .steps_back = true, .farthest_move_m = 0.1 * smallest_radius_});
+    Fire fire(radii_.size(), {.shortest_step = 0.01, .steps_back = true, .farthest_move_m = 0.1 * smallest_radius_, .forget_speed = wide()});
     for (int step = 0; step <= criterion.most_steps; ++step) {
         forces();
         if (step % 10 != 0) {  // the criterion costs another look at all pairs, so it is judged at every tenth step
-            fire.advance(centres_, force_, control_.team);
+            fire.advance(centres_, accelerations(), control_.team);
             continue;
         }
         const Sums sums = measure();
@@ -311,7 +381,7 @@ void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
         packing.relaxation_steps = step;
         if (packing.residual <= criterion.residual || packing.overlap_mean <= criterion.loose_overlap) return;
         tell(packing.residual, criterion.residual);
-        fire.advance(centres_, force_, control_.team);
+        fire.advance(centres_, accelerations(), control_.team);
     }
     throw NumericalError(fmt::format("the relaxation of the packing stopped after {} steps at a residual of {:.2e} (allowed {:.1e})",
                                      criterion.most_steps, packing.residual, criterion.residual));

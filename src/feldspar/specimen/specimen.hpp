@@ -141,6 +141,14 @@ struct Filling {
     std::vector<OutlineShare> outline;
 };
 
+/// Grain sizes in four numbers.
+struct SizeSummary {
+    double mean_m = 0.0;
+    double minimum_m = 0.0;
+    double maximum_m = 0.0;
+    double D50_m = 0.0;   ///< half of the area is in grains of this diameter or smaller
+};
+
 /// What a user should know of the specimen before trusting it.
 struct SpecimenQuality {
     int grains = 0;
@@ -156,6 +164,10 @@ struct SpecimenQuality {
     double smallest_triangle_m2 = 0.0;
     double smallest_triangle_height_m = 0.0;
     double mean_diameter_m = 0.0;
+    SizeSummary disc_sizes;       ///< of the packed discs: the sizes that were asked for
+    SizeSummary cell_sizes;       ///< of the cells: diameters of circles of the cells' areas. These are the grains of the model
+    double size_spread = 0.0;     ///< coefficient of variation of the discs' diameters
+    double hexatic_order = 0.0;   ///< |mean of exp(6 i angle)| over the neighbours of a grain, mean over the inner grains: 1 for a honeycomb
     double width_over_largest_grain = 0.0;
     double area_error = 0.0;      ///< |sum of the cells - outline| / outline
     int inner_particles = 0;      ///< small discs in all grains, if these are filled
@@ -193,6 +205,10 @@ struct SpecimenControl {
 /// @throws InputError     for impossible specs (grains larger than the specimen, a self-crossing outline, ...)
 /// @throws NumericalError when the relaxation cannot reach its criterion
 Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const SpecimenControl& control = {});
+
+/// Coefficient of variation of the grain diameters below which discs arrange themselves in rows like a crystal
+/// (docs/theory/specimen.md, section 2).
+inline constexpr double least_size_spread = 0.10;
 
 /// Number of grains that the porosity asks for: round((1 - porosity) A / (pi dmean^2 / 4)).
 int grain_count(const SpecimenSpec& spec);

@@ -19,7 +19,7 @@ inline TestResult synthetic_test(TestKind kind, std::uint64_t seed, double stren
     result.test.sigma3_Pa = sigma3_MPa * in_MPa;
     result.seed = seed;
     const double nan = std::nan("");
-    result.properties = {nan, true, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan};
+    result.properties = {nan, true, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, nan, {}};
     result.properties.peak_stress_Pa = strength_MPa * in_MPa;
     result.evidence.grade = 'A';
     result.evidence.verdict = "quasi-static to about 0.5 %";

@@ -307,6 +307,25 @@ TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {
                              edited("kind = \"flexible\"", "kind = \"rigid\"")));
 }
 
+TEST(ReadJob, AGapGradedCurveIsTaken) {
+    const Job job = parse_job(edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
+                                     R"({ distribution = "sieve", curve = [["1 mm", "0 %"], ["2 mm", "40 %"], ["4 mm", "40 %"], ["5 mm", "100 %"]] })"),
+                              "job");
+    ASSERT_EQ(job.specimen.grain_sizes.sieve.size(), 4u);
+    EXPECT_EQ(job.specimen.grain_sizes.sieve[1].passing, job.specimen.grain_sizes.sieve[2].passing);
+}
+
+TEST(ReadJob, ASlenderColumnIsWarnedOf) {
+    const auto column = [](const char* height) { return warnings(parse_job(edited("height = \"160 mm\"", std::string("height = \"") + height + " mm\""), "job")); };
+    EXPECT_TRUE(column("240").empty()) << "three times as high as wide";
+    EXPECT_TRUE(column("640").empty()) << "eight times";
+    // E 25.8 GPa, UCS of the laboratory 122.1 MPa: pi sqrt(25800 / (12 x 122.1)) = 13.2; Euler's stress at 20: pi^2 25800 / (12 x 400) = 53.05
+    const auto sentences = column("1600");
+    ASSERT_EQ(sentences.size(), 1u);
+    for (const char* part : {"20 times as high as wide", "bends aside at 53 MPa", "strength of 122 MPa", "above height / width of 13.2"})
+        EXPECT_NE(sentences.front().find(part), std::string::npos) << part << " in " << sentences.front();
+}
+
 TEST(Warnings, NameADirectionThatDoesNotSoften) {
     EXPECT_TRUE(warnings(parse_job(sample_job, "job")).empty());
     // 8.5^2 / (2 x 18e4) MPa^2 m/GPa = 0.2007 N/m; 29.75^2 / (2 x 0.28 x 18e4) = 8.78 N/m

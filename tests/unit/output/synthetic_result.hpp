@@ -147,7 +147,9 @@ inline TestResult make_result(TestKind kind = TestKind::uniaxial_compression, st
                          .sigma_ci_crack_count_Pa = 50e6,
                          .sigma_ci_crack_volume_Pa = undefined,
                          .sigma_ci_lateral_strain_Pa = 52e6,
-                         .sigma_cd_Pa = undefined};
+                         .sigma_cd_Pa = undefined,
+                         .section_width_m = kind == TestKind::brazilian ? undefined : 0.08,
+                         .remarks = {"A remark on the numbers."}};
     result.evidence.error_estimate = 0.004;
     result.evidence.residual_mean = 0.002;
     result.evidence.grade = 'A';

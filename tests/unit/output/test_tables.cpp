@@ -153,7 +153,7 @@ TEST_F(Tables, SummaryHasEveryPromisedName) {
                              "envelope", "job", "provenance", "complete", "signs"}) {
         EXPECT_TRUE(top.contains(name)) << name;
     }
-    for (const char* name : {"grains", "contacts", "nodes", "triangles", "merged_edges", "vertices_per_grain"}) {
+    for (const char* name : {"grains", "contacts", "nodes", "triangles", "merged_edges", "vertices_per_grain", "grain_sizes_mm", "asked_sizes_mm", "size_spread", "hexatic_order"}) {
         EXPECT_TRUE(top["specimen"].contains(name)) << name;
     }
     for (const char* name : {"kind",
@@ -165,6 +165,8 @@ TEST_F(Tables, SummaryHasEveryPromisedName) {
                              "seed",
                              "sigma3_MPa",
                              "peak_stress_MPa",
+                             "section_width_mm",
+                             "remarks",
                              "peak_reached",
                              "first_crack_MPa",
                              "E_GPa",
@@ -206,6 +208,9 @@ TEST_F(Tables, SummaryIsInUserUnits) {
     EXPECT_EQ(test["plane"], "stress");
     EXPECT_NEAR(test["peak_stress_MPa"].get<double>(), 122.1, 1e-12);
     EXPECT_NEAR(test["E_GPa"].get<double>(), 25.0, 1e-12);
+    EXPECT_NEAR(test["section_width_mm"].get<double>(), 80.0, 1e-12);
+    EXPECT_EQ(test["remarks"][0], "A remark on the numbers.");
+    for (const char* part : {"mean", "minimum", "maximum", "D50"}) EXPECT_TRUE(top["specimen"]["grain_sizes_mm"].contains(part));
     EXPECT_EQ(test["cracks_tensile"], 1);
     EXPECT_EQ(test["cracks_shear"], 1);
     EXPECT_EQ(test["quasi_static"], "A");

@@ -132,5 +132,24 @@ TEST(GrainSizes, ImpossibleDistributionsAreRefused) {
     refused(curve);
 }
 
+
+TEST(GrainSizes, ALongTailOfASieveCurveHoldsNoGrains) {
+    EXPECT_EQ(largest_of_sieve_m({{0.001, 0.0}, {0.002, 1.0}, {0.05, 1.0}}), 0.002);
+    EXPECT_EQ(largest_of_sieve_m({{0.001, 0.0}, {0.002, 0.5}, {0.05, 1.0}}), 0.05);
+}
+
+TEST(GrainSizes, AFewGrainsOfAWideDistributionHaveTheAreaAskedFor) {
+    // one grain of 16 mm has the area of a thousand of 0.5 mm: random samples miss the area by half
+    GrainSizeSpec wide;
+    wide.kind = GrainSizeKind::sieve;
+    wide.sieve = {{0.0005, 0.0}, {0.0016, 0.1}, {0.003, 0.3}, {0.008, 0.7}, {0.016, 1.0}};
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        RandomStream random(seed, "wide");
+        double squares = 0.0;
+        for (const double d : sample_diameters(wide, 1270, random)) squares += d * d;
+        EXPECT_NEAR(squares / (1270 * diameter_moments(wide).mean_square_m2), 1.0, 0.1) << seed;
+    }
+}
+
 }  // namespace
 }  // namespace feldspar

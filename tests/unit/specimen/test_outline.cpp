@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
@@ -63,6 +64,64 @@ TEST(Outline, ImpossibleOutlinesAreRefused) {
     OutlineSpec labels = triangle().outline;
     labels.edge_labels = {"one"};
     EXPECT_THROW(make_outline(labels), InputError);
+}
+
+
+OutlineSpec labelled(std::vector<Vec2> vertices, std::vector<std::string> labels) {
+    OutlineSpec spec;
+    spec.shape = Shape::polygon;
+    spec.vertices_m = std::move(vertices);
+    spec.edge_labels = std::move(labels);
+    return spec;
+}
+
+const std::vector<Vec2> upright = {{0, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}}, upright_clockwise = {{0, 0}, {0, 0.04}, {0.02, 0.04}, {0.02, 0}};
+
+TEST(Outline, EndsOnTheirOwnSidesAreFineInEitherOrientation) {
+    EXPECT_FALSE(end_fault(labelled(upright, {"bottom", "right", "top", "left"})));
+    EXPECT_FALSE(end_fault(labelled(upright_clockwise, {"left", "top", "right", "bottom"})));
+    EXPECT_FALSE(end_fault(labelled({{0, 0}, {0.02, 0.003}, {0.02, 0.04}, {0, 0.038}}, {"bottom", "right", "top", "left"}))) << "8.5 degrees";
+    EXPECT_FALSE(end_fault(labelled({{0, 0}, {0.01, 0}, {0.02, 0}, {0.02, 0.04}, {0.01, 0.04}, {0, 0.04}}, {"bottom", "b", "right", "c", "top", "left"}))) << "half of each side";
+    EXPECT_FALSE(end_fault(labelled(upright, {"a", "b", "c", "d"}))) << "a specimen that no platen touches";
+}
+
+TEST(Outline, EndsOnTheWrongSidesAreRefused) {
+    const auto problem = [](const OutlineSpec& spec) {
+        EXPECT_THROW(make_outline(spec), InputError);
+        const auto fault = end_fault(spec);
+        return fault ? fmt::format("{}: {}", fault->edge, fault->problem) : std::string();
+    };
+    EXPECT_EQ(problem(labelled(upright, {"top", "right", "bottom", "left"})), "0: the label \"top\" lies below \"bottom\"");
+    EXPECT_EQ(problem(labelled(upright_clockwise, {"left", "bottom", "right", "top"})), "3: the label \"top\" lies below \"bottom\"");
+    EXPECT_EQ(problem(labelled(upright, {"left", "top", "right", "bottom"})).substr(0, 25), "1: the edge labelled \"top");
+    EXPECT_NE(problem(labelled(upright, {"left", "top", "right", "bottom"})).find("90 degrees from horizontal"), std::string::npos);
+    EXPECT_NE(problem(labelled({{0, 0}, {0.02, 0.004}, {0.02, 0.04}, {0, 0.04}}, {"bottom", "right", "top", "left"})).find("11 degrees"), std::string::npos);
+    // both on the lower side
+    EXPECT_EQ(problem(labelled({{0, 0}, {0.01, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}}, {"bottom", "top", "right", "c", "left"})).substr(0, 25), "1: the edge labelled \"top");
+    // a step: the lower shoulder is called top, the rock above it bottom
+    EXPECT_NE(problem(labelled({{0, 0}, {0.02, 0}, {0.02, 0.02}, {0.01, 0.02}, {0.01, 0.04}, {0, 0.04}}, {"top", "a", "bottom", "b", "c", "d"})), "");
+}
+
+TEST(Outline, SectionsAreMeasuredAcrossTheLoad) {
+    const SectionWidths straight = section_widths(make_outline(rectangle(0.08, 0.16).outline));
+    EXPECT_DOUBLE_EQ(straight.narrowest, 0.08);
+    EXPECT_DOUBLE_EQ(straight.widest, 0.08);
+    // a bone of 20 mm with a waist of 8 mm from 16 to 34 mm of its 50
+    const Outline bone = make_outline(labelled({{0, 0}, {0.020, 0}, {0.020, 0.008}, {0.014, 0.016}, {0.014, 0.034}, {0.020, 0.042}, {0.020, 0.050}, {0, 0.050}, {0, 0.042},
+                                                {0.006, 0.034}, {0.006, 0.016}, {0, 0.008}},
+                                               {"bottom", "a", "b", "c", "d", "e", "top", "f", "g", "h", "i", "j"}));
+    const SectionWidths waist = section_widths(bone);
+    EXPECT_NEAR(waist.narrowest, 0.008, 1e-15);
+    EXPECT_NEAR(waist.widest, 0.020, 1e-15);
+    EXPECT_NEAR(waist.gauge_narrowest, 0.008, 1e-15);
+    EXPECT_NEAR(waist.gauge_widest, 0.008 + 2.0 * 0.0035 * 6.0 / 8.0, 1e-15);   // at a quarter of the height, 3.5 mm below the waist
+    const SectionWidths tapered = section_widths(make_outline(labelled({{0, 0}, {0.02, 0}, {0.01, 0.04}, {0.005, 0.04}}, {"bottom", "right", "top", "left"})));
+    EXPECT_NEAR(tapered.narrowest, 0.005, 1e-15);
+    EXPECT_NEAR(tapered.widest, 0.020, 1e-15);
+    // two legs of 5 mm count together; where an arm hangs down beside them, it does too
+    EXPECT_NEAR(section_widths(make_outline(labelled({{0, 0}, {0.005, 0}, {0.005, 0.02}, {0.015, 0.02}, {0.015, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}},
+                                                     {"bottom", "a", "b", "c", "bottom", "d", "top", "e"})))
+                    .narrowest, 0.010, 1e-15);
 }
 
 }  // namespace

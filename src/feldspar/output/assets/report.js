@@ -183,6 +183,8 @@ function testFacts(tests, updates) {
     const add = (name, value) => rows.push(h("dt", {}, name), h("dd", {}, value));
     add("Packing", "seed " + t.seed);
     add("Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)"));
+    if (t.section_width !== null) add("Section", show(t.section_width) + " mm wide");
+    for (const remark of t.remarks) add("Note", remark);
     if (t.E !== null) add("E, secant at 50 %", show(t.E) + " GPa");
     if (t.nu !== null) add("Poisson's ratio", show(t.nu));
     add("First crack", show(t.first_crack) + " MPa");
@@ -376,8 +378,8 @@ function writeProvenance() {
   const add = (name, value) => list.append(h("dt", {}, name), h("dd", {}, value));
   page.append(h("h2", {}, "Specimens and provenance"));
   if (data.specimens.length) {
-    page.append(table("evidence", [th("Specimen"), th("Shape"), th("Thickness (mm)", true), th("Grains", true), th("Contacts", true), th("Nodes", true), th("Triangles", true), th("Merged edges", true), th("Width / largest grain", true)],
-      data.specimens.map((s) => h("tr", {}, td("for " + s.for), td(s.shape.replace(" x ", " \u00d7 ")), td(show(s.thickness), true), ...["grains", "contacts", "nodes", "triangles", "merged_edges"].map((k) => td(s[k].toLocaleString("en"), true)), td(show(s.width_over_largest_grain), true)))));
+    page.append(table("evidence", [th("Specimen"), th("Shape"), th("Thickness (mm)", true), th("Grains", true), th("Contacts", true), th("Nodes", true), th("Triangles", true), th("Merged edges", true), th("Grain size (mm)", true, "circles of the cells' areas: mean, smallest to largest; D50: half of the area is in smaller grains; in brackets the mean of the discs that were asked for"), th("Width / largest grain", true)],
+      data.specimens.map((s) => h("tr", {}, td("for " + s.for), td(s.shape.replace(" x ", " \u00d7 ")), td(show(s.thickness), true), ...["grains", "contacts", "nodes", "triangles", "merged_edges"].map((k) => td(s[k].toLocaleString("en"), true)), td(show(s.grain_mean) + ", " + show(s.grain_minimum) + " to " + show(s.grain_maximum) + "; D50 " + show(s.grain_D50) + " (" + show(s.disc_mean) + ")", true), td(show(s.width_over_largest_grain), true)))));
     for (const warning of new Set(data.specimens.flatMap((s) => s.warnings))) page.append(h("p", {class: "notice"}, warning));
   }
   add("Program", "Feldspar " + p.version + ", commit " + p.commit);

@@ -1,0 +1,38 @@
+#include "feldspar/lab/memory.hpp"
+
+namespace feldspar {
+namespace {
+
+template <class List>
+double bytes(const List& list) {
+    return static_cast<double>(list.capacity() * sizeof(list[0]));
+}
+
+}  // namespace
+
+double memory_of(const Specimen& specimen) {
+    constexpr double kHeapBlock = 16.0;   // what an allocation takes besides
+    double sum = bytes(specimen.packing.centres) + bytes(specimen.packing.radii_m) + bytes(specimen.cells.vertices) + bytes(specimen.cells.cells);
+    for (const Cell& cell : specimen.cells.cells) sum += bytes(cell.vertices) + bytes(cell.neighbours) + bytes(cell.outline_edges) + 3.0 * kHeapBlock;
+    const GrainMesh& m = specimen.mesh;
+    sum += bytes(m.nodes) + bytes(m.node_begin) + bytes(m.triangles) + bytes(m.triangle_begin) + bytes(m.vertex_count) + bytes(m.centre_node) +
+           bytes(m.edge_begin) + bytes(m.edge_triangle);
+    const Filling& f = specimen.filling;
+    return sum + bytes(f.particle_begin) + bytes(f.centres) + bytes(f.radii_m) + bytes(f.places) + bytes(f.inside) + bytes(f.across) + bytes(f.outline);
+}
+
+double memory_of_run(const Specimen& specimen, const Assembly& assembly, const TestSpec& test) {
+    constexpr double kProgram = 15e6;   // code, libraries, stacks
+    constexpr double kHeapOverArrays = 1.25;   // with what the heap does not give back and the writing of files; measured on 5,000 and 20,000 grains
+    // what the recorder holds of a snapshot while the test runs: start, first crack, peak, end, and up to twice those asked for
+    const double raw = static_cast<double>(assembly.nodes.count()) * sizeof(Vec2) + static_cast<double>(assembly.points.size()) * (sizeof(float) + sizeof(double)) +
+                       (assembly.triangles.empty() ? static_cast<double>(specimen.cells.cells.size()) * sizeof(Mat2) : 0.0);
+    const double held = 4.0 + 2.0 * test.snapshots;
+    // and of one that is complete: displacements of the mesh; three stresses and the damage of a triangle, in lists that grew by doubling
+    const double triangles = static_cast<double>(specimen.mesh.triangles.size());
+    const double complete = static_cast<double>(specimen.mesh.nodes.size()) * sizeof(Vec2) + triangles * (3.0 * 1.5 * sizeof(double) + sizeof(float));
+    const double kept = 4.0 + test.snapshots;
+    return kProgram + kHeapOverArrays * (memory_of(specimen) + assembly.memory_bytes() + held * raw + kept * complete);
+}
+
+}  // namespace feldspar
