@@ -129,7 +129,11 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
     const Clock::time_point start = Clock::now();
     for (;;) {
         e.run(block);
-        maintain_contacts(e, finder, watch, result, block);
+        try {
+            maintain_contacts(e, finder, watch, result, block);
+        } catch (const NumericalError& error) {
+            throw NumericalError(fmt::format("{} at step {} (platen travel {:.3g} m): the motion has become unstable", error.what(), e.step, e.platen_travel_m));
+        }
         const HistoryRow& row = recorder.record(Phase::loading);
         if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa))
             throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g})", e.step, row.axial_strain));
