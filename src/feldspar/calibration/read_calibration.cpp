@@ -56,8 +56,8 @@ public:
           result_{file, text, {}, {}, BaseJob(root_, file), {}, {}, {}, {}, 300, {}} {}
 
     Calibration read() {
-        result_.name = root_.text("name", variant_stem(result_.file.stem().string()));
-        result_.results = std::filesystem::path("results") / root_.text("results", result_.name);
+        result_.name = read_directory_name(root_, "name", variant_stem(result_.file.stem().string()));
+        result_.results = std::filesystem::path("results") / read_directory_name(root_, "results", result_.name);
         if (result_.base.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
         read_set();
         read_seeds();

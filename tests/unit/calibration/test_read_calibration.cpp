@@ -102,6 +102,18 @@ TEST_F(ReadCalibration, MistakesAreSaid) {
     EXPECT_NE(mistake("[targets]\nUCS = { value = \"1 MPa\", tolerance = \"1 %\", standard_deviation = \"1 MPa\" }\n" + mu).problem().find("beside"), std::string::npos);
 }
 
+TEST_F(ReadCalibration, ResultsStayInTheResultsDirectory) {
+    const std::string rest = "[targets]\nUCS = \"120 MPa\"\n[[unknown]]\nkey = \"material.contact.mu\"\n";
+    for (const char* key : {"results", "name"}) {
+        for (const char* name : {"../../../escaped", "/tmp/escaped", "..", "a/b", ""}) {
+            const InputError error = mistake(std::string(key) + " = \"" + name + "\"\n" + rest);
+            EXPECT_EQ(error.place().key, key) << name;
+            EXPECT_EQ(error.place().line, 2) << name;
+        }
+    }
+    EXPECT_EQ(folder_.read("results = \"granite-1.2\"\n" + rest).results, std::filesystem::path("results") / "granite-1.2");
+}
+
 TEST(ExamplesOfCalibrations, Read) {
     struct Example {
         const char* name;
