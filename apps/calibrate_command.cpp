@@ -43,6 +43,8 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     if (!contradicting.empty() && !options.insist)
         throw InputError({options.calibration, 0, 0, "targets"}, "the targets contradict each other, so no run was made", "targets of one rock, or --insist to see how near one can come");
 
+    check_budget(calibration);
+
     Ledger ledger(calibration.results, Ledger::Access::write);
     CalibrationProgress progress(calibration.budget);
     ExecuteControl control;

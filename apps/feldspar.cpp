@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "feldspar/base/printable.hpp"
 #include "feldspar/output/results.hpp"
 
 namespace feldspar {
@@ -31,7 +32,7 @@ Exit codes: 0 done, 2 mistake in the input (no file is left), 3 numerical failur
 130 interrupted (the results so far are kept).)";
 
 int complain(ExitCode code, const std::string& message) {
-    fmt::print(stderr, "feldspar: {}\n", message);
+    fmt::print(stderr, "feldspar: {}\n", printable(message));
     return static_cast<int>(code);
 }
 

@@ -1,5 +1,7 @@
 #include "progress.hpp"
 
+#include "feldspar/base/printable.hpp"
+
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -82,7 +84,7 @@ void Progress::rewrite(const std::vector<std::string>& lines) {
 
 void Progress::note(const std::string& line) {
     clear();
-    fmt::print(stderr, "{}\n", line);
+    fmt::print(stderr, "{}\n", printable(line));
     std::fflush(stderr);
     last_rewrite_ = {};
 }

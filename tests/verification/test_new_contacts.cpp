@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "feldspar/base/error.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/platens.hpp"
@@ -29,6 +30,16 @@ TEST(NewContacts, IntactContactsAreNeverDropped) {
     ContactFinder finder(assembly, kSkin);
     lift(assembly, 10.0 * kSkin);
     EXPECT_EQ(finder.update(assembly, 1.0).dropped, 0);
+}
+
+TEST(NewContacts, APositionThatIsNotANumberIsAnErrorAndNeverSearched) {
+    for (const double wrong : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+        Assembly assembly = bar();
+        ContactFinder finder(assembly, kSkin);
+        lift(assembly, wrong);
+        EXPECT_THROW(finder.update(assembly, 1.0), NumericalError) << wrong;
+        EXPECT_THROW(ContactFinder(assembly, kSkin), NumericalError) << wrong;
+    }
 }
 
 TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {

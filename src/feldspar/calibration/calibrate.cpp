@@ -32,10 +32,31 @@ std::vector<std::size_t> numbers_below(std::size_t count) {
     return numbers;
 }
 
+// Runs that cannot be saved.
+struct LeastRuns {
+    int tests = 0;          // of a point
+    int confirmation = 0;
+    int first_look = 0;     // at the strengths: three points, and as many runs again for the search
+    int elastic_points = 0; // one short test each
+    int all() const { return confirmation + first_look + elastic_points; }
+};
+
+LeastRuns least_runs(const Calibration& calibration) {
+    std::set<std::pair<TestKind, double>> tests;
+    for (const Observable& q : observables_for(calibration)) tests.insert({q.test, q.sigma3_Pa});
+    const auto elastic = static_cast<std::size_t>(std::count_if(calibration.unknowns.begin(), calibration.unknowns.end(), [](const Unknown& u) { return u.elastic; }));
+    LeastRuns least;
+    least.tests = static_cast<int>(tests.size());
+    least.confirmation = static_cast<int>(tests.size() * calibration.confirm_seeds.size());
+    if (elastic < calibration.unknowns.size()) least.first_look = 6 * least.tests;
+    if (elastic > 0) least.elastic_points = static_cast<int>(2 + first_points_per_unknown * elastic);
+    return least;
+}
+
 class Calibrate {
 public:
     Calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note)
-        : calibration_(calibration), laboratory_(laboratory), note_(note), quantities_(observables_for(calibration)) {
+        : calibration_(calibration), laboratory_(laboratory), note_(note), quantities_(observables_for(calibration)), least_(least_runs(calibration)) {
         for (std::size_t u = 0; u < calibration.unknowns.size(); ++u) (calibration.unknowns[u].elastic ? elastic_ : strength_).push_back(u);
         best_.assign(calibration.unknowns.size(), 0.5);
     }
@@ -83,11 +104,7 @@ private:
 
     int runs_left() const { return calibration_.budget - laboratory_.used(); }
 
-    int confirmation_runs() const {
-        std::set<std::pair<TestKind, double>> tests;
-        for (const Observable& q : quantities_) tests.insert({q.test, q.sigma3_Pa});
-        return static_cast<int>(tests.size() * calibration_.confirm_seeds.size());
-    }
+    int confirmation_runs() const { return least_.confirmation; }
 
     // ---- elastic constants, by tests that end before the first damage
 
@@ -100,13 +117,15 @@ private:
             if (q.name == "E" || q.name == "nu") quantities.push_back(q);
         elastic_learner_.emplace(quantities, targets);
         note(fmt::format("elastic constants: {} unknowns, short tests", elastic_.size()));
-        see_elastic(evenly(elastic_.size(), 2 + first_points_per_unknown * elastic_.size()));
+        see_elastic(evenly(elastic_.size(), static_cast<std::size_t>(least_.elastic_points)));
         for (std::size_t round = 0; round < most_elastic_rounds; ++round) {
             learn(*elastic_learner_);
             const std::vector<double> x = best_point(*elastic_learner_, elastic_.size());
             put_best(elastic_, x);
             if (settled(*elastic_learner_, x)) break;
-            see_elastic(promising_points(*elastic_learner_, elastic_.size(), 3, round));
+            constexpr int more = 3;
+            if (runs_left() - more < confirmation_runs() + least_.first_look) break;   // the strengths need what is left
+            see_elastic(promising_points(*elastic_learner_, elastic_.size(), more, round));
         }
         learn(*elastic_learner_);
         put_best(elastic_, best_point(*elastic_learner_, elastic_.size()));
@@ -159,13 +178,10 @@ private:
     void find_strength() {
         strength_learner_.emplace(quantities_, calibration_.targets);
         Learner& learner = *strength_learner_;
-        const std::size_t tests = static_cast<std::size_t>(confirmation_runs()) / calibration_.confirm_seeds.size();
+        const auto tests = static_cast<std::size_t>(least_.tests);   // check_budget: at least three points are affordable
         const int for_learning = runs_left() - confirmation_runs();
         const std::size_t affordable = static_cast<std::size_t>(std::max(0, for_learning / 2)) / tests;
         const std::size_t first = std::min(affordable, first_points_per_unknown * strength_.size() + 2);
-        if (first < 3) throw InputError({calibration_.file.string(), 0, 0, "budget"},
-                                        fmt::format("{} runs are too few: {} confirm the answer, and a first look takes {} more", calibration_.budget, confirmation_runs(), 6 * tests),
-                                        "more runs, or fewer confirm_seeds");
         note(fmt::format("strengths: {} unknowns, {} points spread over their ranges, {} tests each", strength_.size(), first, tests));
         look_first(evenly(strength_.size(), first));
         learn(learner);
@@ -374,6 +390,7 @@ private:
     Laboratory& laboratory_;
     const std::function<void(const std::string&)>& note_;
     std::vector<Observable> quantities_;
+    LeastRuns least_;
     std::vector<std::size_t> elastic_, strength_;   // unknowns
     std::vector<double> best_;                      // of all unknowns, 0 ... 1
     std::optional<Learner> elastic_learner_, strength_learner_;
@@ -384,7 +401,18 @@ private:
 
 }  // namespace
 
+void check_budget(const Calibration& calibration) {
+    const LeastRuns least = least_runs(calibration);
+    if (calibration.budget >= least.all()) return;
+    std::string parts = fmt::format("{} confirm the answer", least.confirmation);
+    if (least.elastic_points > 0) parts += fmt::format(", the elastic constants take {}", least.elastic_points);
+    if (least.first_look > 0) parts += fmt::format(", a first look at the strengths takes {}", least.first_look);
+    throw InputError({calibration.file.string(), 0, 0, "budget"}, fmt::format("{} runs are too few: {}", calibration.budget, parts),
+                     fmt::format("at least {} runs, or fewer confirm_seeds", least.all()));
+}
+
 CalibrationResult calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note) {
+    check_budget(calibration);
     return Calibrate(calibration, laboratory, note)();
 }
 

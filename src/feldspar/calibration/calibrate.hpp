@@ -109,6 +109,10 @@ private:
     int left_ = 0;                         // of them not run: interrupted
 };
 
+/// To be called before any run and before there is a directory. @throws InputError if the budget does not cover the runs that confirm
+/// the answer and the first ones to learn from
+void check_budget(const Calibration& calibration);
+
 /// Learns, chooses and confirms. Everything it decides follows from the file and from what it sees, so that a second call goes the same way
 /// over the runs in the ledger, and on from where the first one was interrupted.
 /// @param note  told in words what it does now; may be empty

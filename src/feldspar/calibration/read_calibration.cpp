@@ -56,8 +56,8 @@ public:
           result_{file, text, {}, {}, BaseJob(root_, file), {}, {}, {}, {}, 300, {}} {}
 
     Calibration read() {
-        result_.name = root_.text("name", variant_stem(result_.file.stem().string()));
-        result_.results = std::filesystem::path("results") / root_.text("results", result_.name);
+        result_.name = read_directory_name(root_, "name", variant_stem(result_.file.stem().string()));
+        result_.results = std::filesystem::path("results") / read_directory_name(root_, "results", result_.name);
         if (result_.base.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
         read_set();
         read_seeds();
@@ -122,6 +122,7 @@ private:
             }
         }
         if (result_.targets.empty()) root_.fail("targets", "there is no target", listed(names));
+        check_order(table);
         std::vector<double>& sigma3 = result_.sigma3_Pa;
         for (const TestSpec& test : rock_.tests)
             if (test.kind == TestKind::biaxial) sigma3.push_back(test.sigma3_Pa);
@@ -135,6 +136,26 @@ private:
         for (const Observable& quantity : observables_for(result_))
             if (std::none_of(rock_.tests.begin(), rock_.tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
                 root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name), fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
+    }
+
+    // No rock is weaker in compression than in tension: Griffith's criterion has a ratio of 8, rocks have 5 to 30.
+    void check_order(const TableReader& table) const {
+        constexpr const char* allowed = "a uniaxial strength above the tensile one; rocks have 5 to 30 times as much. Are the two exchanged?";
+        const double UCS = wanted_UCS_Pa(result_.targets);
+        for (const char* tension : {"BTS", "DTS"}) {
+            const double strength = target_value(tension, result_.targets);
+            if (UCS <= strength)
+                table.fail(table.has("UCS") ? "UCS" : "cohesion",
+                           fmt::format("a uniaxial strength of {:.4g} MPa is not above {} = {:.4g} MPa", UCS / 1e6, tension, strength / 1e6), allowed);
+            const std::string ratio = std::string("UCS_over_") + tension;
+            const double given = target_value(ratio, result_.targets);
+            if (given <= 1.0) table.fail(ratio, fmt::format("a ratio of {:.4g} means a uniaxial strength that is not above {}", given, tension), allowed);
+        }
+        for (const Target& target : result_.targets)
+            if (target.name == "sigma1" && target.value <= UCS)
+                table.fail("sigma1", fmt::format("a strength of {:.4g} MPa under {:g} MPa is not above the uniaxial one of {:.4g} MPa", target.value / 1e6,
+                                                 target.sigma3_Pa / 1e6, UCS / 1e6),
+                           "strengths that grow with the confinement");
     }
 
     double read_value(const TableReader& table, std::string_view key, const TargetKind& kind) const {
@@ -181,7 +202,7 @@ private:
                 {"material.contact.sigma_nt", 0.5 * tension, 2.5 * tension},
                 {"material.contact.tau", 0.1 * UCS, 0.6 * UCS},
                 {"material.contact.mu", 0.1, 1.0, false, false},
-                {"material.contact.Gfn", 0.6 * energy, 13.0 * energy},
+                {"material.contact.Gfn", 0.1 * energy, 13.0 * energy},
                 {"material.contact.Gfs", 12.0 * energy, 500.0 * energy}};
     }
 

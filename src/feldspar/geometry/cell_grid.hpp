@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "feldspar/base/error.hpp"
 #include "feldspar/base/vec2.hpp"
 #include "feldspar/geometry/polygon.hpp"
 
@@ -20,8 +21,11 @@ public:
     /// @param cell_size       edge of a cell, about the usual search distance (> 0); enlarged where the box would need more than
     ///                        about four cells a point, because memory then counts for more
     /// @param expected_count  how many points will be inserted, about
+    /// @throws NumericalError if the box or the cell is not finite
     CellGrid(const Box& box, double cell_size, std::size_t expected_count) : lower_(box.lower) {
         const Vec2 size = box.upper - box.lower;
+        if (!std::isfinite(size.x) || !std::isfinite(size.y) || !std::isfinite(cell_size))
+            throw NumericalError("a position is not a finite number");
         const double most_cells = 4.0 * static_cast<double>(expected_count) + 64.0;
         const double cell = std::max({cell_size, std::sqrt(std::max(0.0, size.x * size.y) / most_cells),
                                       std::max(size.x, size.y) / most_cells});
@@ -72,8 +76,11 @@ private:
 
     int column(double x) const { return bounded((x - lower_.x) * inverse_, columns_); }
     int row(double y) const { return bounded((y - lower_.y) * inverse_, rows_); }
+    // What is not a number goes into the first cell: a cell outside the grid is never touched.
     static int bounded(double position, int count) {
-        return static_cast<int>(std::clamp(position, 0.0, static_cast<double>(count - 1)));
+        const double last = static_cast<double>(count - 1);
+        if (!(position > 0.0)) return 0;
+        return static_cast<int>(std::min(position, last));
     }
     std::size_t index(int c, int r) const { return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c); }
 

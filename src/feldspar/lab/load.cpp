@@ -170,7 +170,11 @@ public:
         for (;;) {
             e_.run(block);
             result_.steps += block;
-            maintain_contacts(e_, finder_, watch_, result_, block);
+            try {
+                maintain_contacts(e_, finder_, watch_, result_, block);
+            } catch (const NumericalError& error) {
+                throw NumericalError(fmt::format("{} at step {} (platen travel {:.3g} m): the motion has become unstable", error.what(), e_.step, e_.platen_travel_m));
+            }
             const HistoryRow& row = recorder_.record(Phase::loading);
             if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa))
                 throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g})", e_.step, row.axial_strain));

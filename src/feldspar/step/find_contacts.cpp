@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/attachment.hpp"
@@ -16,6 +19,11 @@ std::vector<Vec2> all_centres(const Assembly& assembly) {
     std::vector<Vec2> centres(assembly.bodies.size());
     for (std::size_t b = 0; b < centres.size(); ++b) centres[b] = assembly.centre(static_cast<int>(b));
     return centres;
+}
+
+// Nothing is searched or sorted by a place before it is known to be one.
+void expect_finite(double length, std::size_t body) {
+    if (!std::isfinite(length)) throw NumericalError(fmt::format("the position of body {} is not a finite number", body));
 }
 
 std::vector<Pair> pairs_in_contact(const Assembly& assembly) {
@@ -50,6 +58,7 @@ ContactFinder::ContactFinder(const Assembly& assembly, double skin_m) : skin_m_(
 
 void ContactFinder::search(const Assembly& assembly) {
     centres_at_search_ = all_centres(assembly);
+    for (std::size_t b = 0; b < centres_at_search_.size(); ++b) expect_finite(centres_at_search_[b].x + centres_at_search_[b].y, b);
     candidates_.clear();
     double largest = 0.0;
     for (const Body& body : assembly.bodies) largest = std::max(largest, body.radius_m);
@@ -75,8 +84,11 @@ void ContactFinder::search(const Assembly& assembly) {
 ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_factor) {
     Changes changes;
     double moved = 0.0;
-    for (std::size_t b = 0; b < assembly.bodies.size() && assembly.bodies[b].kind != BodyKind::plate; ++b)   // plates stand at the end
-        moved = std::max(moved, norm(assembly.centre(static_cast<int>(b)) - centres_at_search_[b]));
+    for (std::size_t b = 0; b < assembly.bodies.size() && assembly.bodies[b].kind != BodyKind::plate; ++b) {   // plates stand at the end
+        const double distance = norm(assembly.centre(static_cast<int>(b)) - centres_at_search_[b]);
+        expect_finite(distance, b);
+        moved = std::max(moved, distance);
+    }
     const bool research = moved > 0.5 * skin_m_;
     if (research) {
         for (Contact& contact : assembly.contacts) {

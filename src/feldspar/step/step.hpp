@@ -100,6 +100,7 @@ public:
     };
     /// To be called every few steps: looks for candidates again only when some body has moved by half the skin.
     /// @param mass_factor  factor of the scaled masses; 0 with real masses
+    /// @throws NumericalError if a body's position is not a finite number
     Changes update(Assembly& assembly, double mass_factor);
 
 private:

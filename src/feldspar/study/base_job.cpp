@@ -122,6 +122,15 @@ toml::table read_piece(const TableReader& table, std::string_view key) {
     return *node.as_table();
 }
 
+std::string read_directory_name(const TableReader& table, std::string_view key, const std::string& fallback) {
+    const std::string name = table.text(key, fallback);
+    const bool fits = !name.empty() && name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+    });
+    if (!fits) table.fail(key, "'" + name + "' cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+    return name;
+}
+
 BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : file_(root.text("job")) {
     if (file_.is_relative()) file_ = file.parent_path() / file_;
     try {

@@ -40,6 +40,10 @@ std::string read_job_key(const TableReader& table, std::string_view key, const s
 /// `coupled` of a table, such as { material.contact.Gfs = 31.5 }: dotted keys and the factors by which they follow another one.
 std::vector<std::pair<std::string, double>> read_coupled(const TableReader& table);
 
+/// The name that a key gives to a directory of results, which lies under results/ and nowhere else.
+/// @param fallback  if the key is missing  @throws InputError unless it is up to 100 letters, digits, '-', '_' and '.', not beginning with '.'
+std::string read_directory_name(const TableReader& table, std::string_view key, const std::string& fallback);
+
 /// The job that a file names by `job`, with the file's `[set]`, if there is one, laid over it. In a piece `test.plate_mu` is for every test,
 /// `test.brazilian.plate_Kn` for those of that kind. [specimen] and [[test]] are changed in place; [model], [material] and [numerics] are given as a variant, so that what goes before what
 /// is decided in one place (job/read_physics.cpp).

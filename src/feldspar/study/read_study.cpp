@@ -71,19 +71,10 @@ private:
     }
 
     void read_names() {
-        study_.name = read_name("name", variant_stem(study_.file.stem().string()));
+        study_.name = read_directory_name(root_, "name", variant_stem(study_.file.stem().string()));
         study_.title = root_.text("title", study_.name);
-        study_.results = std::filesystem::path("results") / read_name("results", study_.name);
+        study_.results = std::filesystem::path("results") / read_directory_name(root_, "results", study_.name);
         study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
-    }
-
-    std::string read_name(std::string_view key, const std::string& fallback) const {
-        const std::string name = root_.text(key, fallback);
-        const bool fits = name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
-            return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
-        });
-        if (!fits) root_.fail(key, "'" + name + "' cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
-        return name;
     }
 
     void read_common() {

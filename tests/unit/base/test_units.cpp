@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/printable.hpp"
 #include "feldspar/base/units.hpp"
 
 namespace feldspar {
@@ -197,6 +198,13 @@ TEST(Units, RubbishNeverCrashes) {
         } catch (const InputError&) {
         }
     }
+}
+
+TEST(Printable, ShowsControlCharactersEscaped) {
+    EXPECT_EQ(printable("a \x1b[31mred\x7f\r"), "a \\x1b[31mred\\x7f\\x0d");
+    EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\x9b" "31m");
+    EXPECT_EQ(printable("Größe, σ\n\tµm"), "Größe, σ\n\tµm");
+    EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
 }
 
 }  // namespace

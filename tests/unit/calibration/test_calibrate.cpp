@@ -212,6 +212,16 @@ TEST_F(CalibrateRock, AnInterruptionIsSaid) {
 TEST_F(CalibrateRock, TooFewRunsAreRefused) {
     FormulaLaboratory laboratory;
     EXPECT_THROW((void)calibrate(read(targets_of(rocks[0]), 60), laboratory, {}), InputError);
+    EXPECT_EQ(laboratory.used(), 0);   // before any run
+    try {   // four tests on ten packings, six points of elastic constants, six looks at each test
+        check_budget(read(targets_of(rocks[0]), 69));
+        ADD_FAILURE() << "69 runs are taken";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.place().key, "budget");
+        EXPECT_NE(error.allowed().find("at least 70 runs"), std::string::npos) << error.what();
+    }
+    EXPECT_NO_THROW(check_budget(read(targets_of(rocks[0]), 70)));
+    EXPECT_TRUE(calibrate(read(targets_of(rocks[0]), 70), laboratory, {}).complete);
 }
 
 // The data that a page holds.

@@ -38,7 +38,7 @@ TEST_F(ReadCalibration, RangesFollowFromTheRock) {
     EXPECT_FALSE(sigma_nt.elastic);
     EXPECT_DOUBLE_EQ(sigma_nt.low, 4.5);
     const Unknown& Gfn = calibration.unknowns[5];   // (9 MPa)^2 / 25 GPa in a grain of 3 mm: 9.72 N/m
-    EXPECT_DOUBLE_EQ(Gfn.low, 5.832);
+    EXPECT_DOUBLE_EQ(Gfn.low, 0.972);   // a tenth: rocks wanted 0.2 to 0.4 of the rule
     EXPECT_DOUBLE_EQ(Gfn.high, 126.36);
     EXPECT_EQ(calibration.targets[1].tolerance, 0.04 * 120e6);
     EXPECT_EQ(calibration.targets[2].tolerance, 1.5e6);
@@ -100,6 +100,29 @@ TEST_F(ReadCalibration, MistakesAreSaid) {
     EXPECT_NE(mistake("confirm_seeds = [3]\n" + targets + mu).problem().find("learns from"), std::string::npos);
     EXPECT_NE(mistake("[targets]\nsigma1 = [{ sigma3 = \"7 MPa\", value = \"150 MPa\" }]\n" + mu).problem().find("no biaxial test"), std::string::npos);
     EXPECT_NE(mistake("[targets]\nUCS = { value = \"1 MPa\", tolerance = \"1 %\", standard_deviation = \"1 MPa\" }\n" + mu).problem().find("beside"), std::string::npos);
+}
+
+TEST_F(ReadCalibration, StrengthsInTheWrongOrderAreRefused) {
+    const std::string mu = "[[unknown]]\nkey = \"material.contact.mu\"\n";
+    const auto key = [&](const std::string& targets) { return mistake("[targets]\n" + targets + mu).place().key; };
+    EXPECT_EQ(key("UCS = \"8.8 MPa\"\nBTS = \"122 MPa\"\n"), "targets.UCS");
+    EXPECT_EQ(key("UCS = \"8.8 MPa\"\nDTS = \"8.8 MPa\"\n"), "targets.UCS");
+    EXPECT_EQ(key("cohesion = \"2 MPa\"\nfriction_angle = \"30 deg\"\nBTS = \"9 MPa\"\n"), "targets.cohesion");   // 2 c sqrt(3) = 6.93 MPa
+    EXPECT_EQ(key("BTS = \"9 MPa\"\nUCS_over_BTS = 0.9\n"), "targets.UCS_over_BTS");
+    EXPECT_EQ(key("UCS = \"120 MPa\"\nsigma1 = [{ sigma3 = \"10 MPa\", value = \"100 MPa\" }]\n"), "targets.sigma1");
+    EXPECT_NO_THROW(folder_.read("[targets]\nUCS = \"120 MPa\"\nBTS = \"9 MPa\"\n" + mu));
+}
+
+TEST_F(ReadCalibration, ResultsStayInTheResultsDirectory) {
+    const std::string rest = "[targets]\nUCS = \"120 MPa\"\n[[unknown]]\nkey = \"material.contact.mu\"\n";
+    for (const char* key : {"results", "name"}) {
+        for (const char* name : {"../../../escaped", "/tmp/escaped", "..", "a/b", ""}) {
+            const InputError error = mistake(std::string(key) + " = \"" + name + "\"\n" + rest);
+            EXPECT_EQ(error.place().key, key) << name;
+            EXPECT_EQ(error.place().line, 2) << name;
+        }
+    }
+    EXPECT_EQ(folder_.read("results = \"granite-1.2\"\n" + rest).results, std::filesystem::path("results") / "granite-1.2");
 }
 
 TEST(ExamplesOfCalibrations, Read) {
