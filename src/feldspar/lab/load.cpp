@@ -8,6 +8,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/body_energy.hpp"
+#include "feldspar/lab/disc_splitting.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
@@ -52,7 +53,9 @@ private:
 // When a test is over.
 class StopRule {
 public:
-    StopRule(const Experiment& e, long long first_step) : e_(e), first_step_(first_step) {}
+    StopRule(const Experiment& e, const TestResult& result, long long first_step) : e_(e), result_(result), first_step_(first_step) {
+        if (const auto disc = loaded_disc(result)) splitting_.emplace(*disc);
+    }
 
     /// Strength so far, a positive magnitude.
     double peak() const { return peak_Pa_; }
@@ -61,13 +64,18 @@ public:
     /// @return why the test ends now, in words; nothing if it goes on
     std::optional<std::string> ended(const HistoryRow& row) {
         const double load = e_.direction * row.axial_stress_Pa;
-        if (load > peak_Pa_) {
+        if (load > peak_Pa_ && !split()) {
             peak_Pa_ = load;
             peak_step_ = e_.step;
+            peak_strain_ = row.axial_strain;
         }
+        look_for_split();
         const TestSpec& test = e_.setup.test;
         const long long after = e_.step - peak_step_;
-        if (after >= 100 && load <= test.stop_fraction * peak_Pa_)
+        if (splitting_ && after >= 100 && row.axial_strain >= kPressedOn * peak_strain_)
+            return fmt::format("the plates have approached {:g} times as far as at the {}", kPressedOn,
+                               split() ? "strength of the disc" : "largest stress, and the disc is not split");
+        if (after >= 100 && load <= test.stop_fraction * peak_Pa_ && (!splitting_ || split()))
             return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * test.stop_fraction);
         if (std::abs(row.axial_strain) >= test.maximum_strain)
             return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
@@ -79,8 +87,21 @@ public:
     }
 
 private:
+    static constexpr double kPressedOn = 2.0;   // a disc that was not split by then, or does not let go, is pressed no farther
+
+    bool split() const { return splitting_ && splitting_->split(); }
+
+    void look_for_split() {
+        if (!splitting_) return;
+        for (; cracks_seen_ < result_.cracks.size(); ++cracks_seen_) splitting_->add(result_.cracks[cracks_seen_]);
+    }
+
     const Experiment& e_;
+    const TestResult& result_;
     long long first_step_;
+    std::optional<SplittingCrack> splitting_;   // of a Brazilian test: a first dip does not end it
+    std::size_t cracks_seen_ = 0;
+    double peak_strain_ = 0.0;
     double peak_Pa_ = 0.0;
     long long peak_step_ = 0;
 };
@@ -122,7 +143,7 @@ void load(Experiment& e, Recorder& recorder, TestResult& result) {
                         expected_strength(e.setup.contact, e.setup.test) * e.section_m2);
     LoadingModeUpdate mode_update(e.travel_time);
     const long long first_step = e.step;
-    StopRule stop(e, first_step);
+    StopRule stop(e, result, first_step);
     ProgressReporter progress(e);
     if (adaptive) e.change_speed(control.start());
     stop.ended(recorder.record(Phase::loading));
