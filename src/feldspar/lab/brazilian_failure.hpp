@@ -1,4 +1,4 @@
-// Where and how a Brazilian disc failed, beside its strength (P22)-(P24), docs/theory/properties.md.
+// Where and how a Brazilian disc failed, beside its strength (P27)-(P29), docs/theory/properties.md.
 #pragma once
 
 #include <string>

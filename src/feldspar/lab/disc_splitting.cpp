@@ -8,7 +8,7 @@
 namespace feldspar {
 namespace {
 
-// Half the width of the central band (P21). A path along grain edges departs from a straight line by a grain to either side and starts
+// Half the width of the central band (P26). A path along grain edges departs from a straight line by a grain to either side and starts
 // beside the axis by as much: two grains. In a disc of many grains the stress decides: within 0.1 D of the axis the tension across the
 // loaded diameter is at least 0.85 of that in the centre, ((1 - x^2)/(1 + x^2))^2 with x = 0.2 R.
 constexpr double band_of_diameter = 0.10;

@@ -1,4 +1,4 @@
-// When a Brazilian disc is split: a connected path of cracks along the loaded diameter (P21), docs/theory/properties.md.
+// When a Brazilian disc is split: a connected path of cracks along the loaded diameter (P26), docs/theory/properties.md.
 #pragma once
 
 #include <cstdint>

@@ -22,7 +22,7 @@ double loading_sign(TestKind kind);
 /// The strength of a history; for a Brazilian test the largest stress until the disc is split. Empty without a single loaded row.
 std::optional<Peak> find_peak(const TestResult& result);
 
-/// The largest stress before the first fall to 0.95 of it (P22): of a Brazilian test often a grain that settles under a plate.
+/// The largest stress before the first fall to 0.95 of it (P27): of a Brazilian test often a grain that settles under a plate.
 std::optional<Peak> first_dip(const TestResult& result);
 
 /// Largest stress of all rows of the loading, a positive magnitude; 0 without one.

@@ -106,7 +106,7 @@ struct QuasiStaticEvidence {
     bool confirmed = false;               ///< the repeat at a third of the target was run
 };
 
-/// How a disc failed in a Brazilian test (P21)-(P24). Places: distance from the centre over the radius; angle from the direction of the
+/// How a disc failed in a Brazilian test (P26)-(P29). Places: distance from the centre over the radius; angle from the direction of the
 /// loading plate, clockwise, -180 ... 180 degrees. Not-a-number where the record shows none.
 struct BrazilianFailure {
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
