@@ -142,7 +142,7 @@ struct TestProperties {
     double sigma_ci_crack_volume_Pa;      ///< reversal of the crack volumetric strain
     double sigma_ci_lateral_strain_Pa;    ///< lateral strain response
     double sigma_cd_Pa;                   ///< reversal of the volumetric strain
-    BrazilianFailure brazilian;           ///< Brazilian test only
+    BrazilianFailure brazilian{};         ///< Brazilian test only
 };
 
 struct TestResult {
