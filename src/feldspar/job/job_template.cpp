@@ -115,6 +115,7 @@ std::string brazilian_test() {
 kind = "brazilian"                  # a disc pressed between two plates: gives the indirect tensile strength BTS
 # diameter = "80 mm"                # of the disc; the specimen's width unless given
 # plate_stiffness_factor = 1.0      # stiffness of the plates, as a multiple of the contacts' Kn; bearing strips: docs/job.md, plate_Kn
+# plates = "flat"                   # or "curved": jaws of 1.5 times the disc's radius (jaw_radius), as ISRM suggests
 # plate_mu = 0.4                    # friction between plates and disc
 )") + common_test;
 }

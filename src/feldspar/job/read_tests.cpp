@@ -81,7 +81,13 @@ void read_plates(const TableReader& table, bool particles, TestSpec& test) {
                      "plate_stiffness_factor");
     if (test.kind != TestKind::biaxial)
         table.refuse({"membrane_plates"}, setting, "only with kind = \"biaxial\", which has a membrane");
+    if (!brazilian) table.refuse({"plates", "jaw_radius"}, setting, "only with kind = \"brazilian\"");
     if (!brazilian && !particles) return;
+    if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
+    if (table.has("jaw_radius")) {
+        if (test.plates != PlateShape::curved) table.fail("jaw_radius", "given for flat plates", "plates = \"curved\"");
+        test.jaw_radius = table.number("jaw_radius", {1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}, test.jaw_radius);
+    }
     if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
         table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them");
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn", Dimension::stiffness_gradient, positive);
@@ -148,7 +154,7 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     TestList result;
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",
-                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "maximum_stress", "diameter", "plate_stiffness_factor", "plate_Kn",
+                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "maximum_stress", "diameter", "plates", "jaw_radius", "plate_stiffness_factor", "plate_Kn",
                                                  "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
         ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {

@@ -49,6 +49,7 @@ PlateContact plate_contact(const TestSetup& setup) {
     contact.Kn_Pa_m = test.plate_Kn_Pa_m.value_or(test.plate_stiffness_factor * setup.contact.Kn_Pa_m);
     contact.eta = setup.contact.eta;
     contact.mu = test.plate_mu.value_or(test.kind == TestKind::brazilian ? 0.4 : 0.0);
+    if (test.kind == TestKind::brazilian && test.plates == PlateShape::curved) contact.jaw_radius_m = test.jaw_radius * setup.specimen->outline.radius_m;
     contact.glued = test.kind == TestKind::direct_tension;
     return contact;
 }

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
@@ -182,7 +183,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
     const bool a = std::all_of(table.begin(), table.end(), [](const Criterion& c) { return c.holds_a(); });
     const bool b = std::all_of(table.begin(), table.end(), [](const Criterion& c) { return c.holds_b(); });
     e.grade = a ? 'A' : b ? 'B' : 'C';
-    e.verdict = verdict(e, table, result, peak->reached);
+    e.verdict = verdict(e, table, result, peak->reached) + start_remark(result, *peak);
     look_at_buckling(result, e);
     return e;
 }

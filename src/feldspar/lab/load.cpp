@@ -8,6 +8,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/body_energy.hpp"
+#include "feldspar/lab/disc_splitting.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
@@ -53,22 +54,32 @@ private:
 // When a test is over.
 class StopRule {
 public:
-    explicit StopRule(const Experiment& e) : e_(&e), first_step_(e.step) {}
+    StopRule(const Experiment& e, const TestResult& result) : e_(&e), result_(&result), first_step_(e.step) {
+        if (const auto disc = loaded_disc(result)) splitting_.emplace(*disc);
+    }
 
     /// Strength so far, a positive magnitude.
     double peak() const { return peak_Pa_; }
     long long peak_step() const { return peak_step_; }
 
+    /// Whether the largest stress was the strength: the load has fallen below it, and a disc is split, for it dips and rises again before.
+    bool past_peak(double load_Pa) const { return load_Pa < kPastPeak * peak_Pa_ && (!splitting_ || split()); }
+
     /// @return why the test ends now, in words; nothing if it goes on
     std::optional<std::string> ended(const HistoryRow& row) {
         const double load = e_->direction * row.axial_stress_Pa;
-        if (load > peak_Pa_) {
+        if (load > peak_Pa_ && !split()) {
             peak_Pa_ = load;
             peak_step_ = e_->step;
+            peak_strain_ = row.axial_strain;
         }
+        look_for_split();
         const TestSpec& test = e_->setup.test;
         const long long after = e_->step - peak_step_;
-        if (after >= 100 && load <= test.stop_fraction * peak_Pa_)
+        if (splitting_ && after >= 100 && row.axial_strain >= kPressedOn * peak_strain_)
+            return fmt::format("the plates have approached {:g} times as far as at the {}", kPressedOn,
+                               split() ? "strength of the disc" : "largest stress, and the disc is not split");
+        if (after >= 100 && load <= test.stop_fraction * peak_Pa_ && (!splitting_ || split()))
             return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * test.stop_fraction);
         if (std::abs(row.axial_strain) >= test.maximum_strain)
             return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
@@ -80,8 +91,22 @@ public:
     }
 
 private:
+    static constexpr double kPastPeak = 0.98;
+    static constexpr double kPressedOn = 2.0;   // a disc that was not split by then, or does not let go, is pressed no farther
+
+    bool split() const { return splitting_ && splitting_->split(); }
+
+    void look_for_split() {
+        if (!splitting_) return;
+        for (; cracks_seen_ < result_->cracks.size(); ++cracks_seen_) splitting_->add(result_->cracks[cracks_seen_]);
+    }
+
     const Experiment* e_;
+    const TestResult* result_;
     long long first_step_;
+    std::optional<SplittingCrack> splitting_;   // of a Brazilian test: a first dip does not end it
+    std::size_t cracks_seen_ = 0;
+    double peak_strain_ = 0.0;
     double peak_Pa_ = 0.0;
     long long peak_step_ = 0;
 };
@@ -134,9 +159,7 @@ struct Loading {
 
 constexpr double kBetweenStates = 1.1;      // growth of the load between states that are kept
 constexpr std::size_t kStates = 2;
-// Shares of the peak: where it counts as passed (a disc dips and rises again before it splits), and from where it is passed again, which is
-// where the estimated error of the strength begins to look.
-constexpr double kPastPeak = 0.98, kPastDiscPeak = 0.8, kBeforePeak = 0.9;
+constexpr double kBeforePeak = 0.9;         // share of the peak from where it is passed again: there the estimated error begins to look
 // Of the wanted error: what each of its two parts may take in the next passage, and by how much two strengths that are the same may differ.
 constexpr double kAim = 0.4, kSame = 0.5;
 // How much stricter one passage is than the one before at most, and any than the first; and what counts as a repeat at a third.
@@ -156,7 +179,7 @@ class Loader {
 public:
     Loader(Experiment& e, Recorder& recorder, TestResult& result)
         : e_(e), recorder_(recorder), result_(result), finder_(e.assembly, 0.1 * mean_body_diameter(e.assembly)), watch_(e.assembly),
-          mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time), stop_(e), progress_(e) {}
+          mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time), stop_(e, result), progress_(e) {}
 
     void run() {
         const long long first_step = e_.step;
@@ -187,7 +210,7 @@ public:
             }
             const double load = e_.direction * row.axial_stress_Pa;
             const double peak = stop_.peak(), unrest = static_cast<double>(e_.step - balanced_step_) / e_.travel_time;
-            const bool past_peak = load < past_peak_ * peak;
+            const bool past_peak = stop_.past_peak(load);
             if (adaptive_ && (reason || past_peak || (unrest > kRunOut && !e_.brazilian())) && passed_too_fast()) continue;
             if (reason) {
                 result_.stop_reason = *reason;
@@ -287,7 +310,6 @@ private:
     ProgressReporter progress_;
     std::vector<Loading> states_;   // the oldest first
     const double wanted_ = accuracy_of(residual_target(e_.setup.numerics, e_.setup.test.kind), e_.setup.test.kind);
-    const double past_peak_ = e_.brazilian() ? kPastDiscPeak : kPastPeak;
     double settled_Pa_ = 0.0;       // the peak whose passage was judged last
     long long first_steps_ = 0;     // of the first passage
     double passed_Pa_ = 0.0;        // strength of the passage before, and its limits

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "feldspar/lab/disc_splitting.hpp"
+
 namespace feldspar {
 
 namespace {
@@ -33,17 +35,24 @@ std::size_t first_at_or_above(const LoadingCurve& curve, double stress_Pa) {
 
 double loading_sign(TestKind kind) { return kind == TestKind::direct_tension ? -1.0 : 1.0; }
 
-std::optional<Peak> find_peak(const TestResult& result) {
+double largest_stress(const TestResult& result) {
+    const double sign = loading_sign(result.test.kind);
+    double largest = 0.0;
+    for (const HistoryRow& row : result.history) {
+        if (is_loading(row) && is_finite(row)) largest = std::max(largest, sign * row.axial_stress_Pa);
+    }
+    return largest;
+}
+
+namespace {
+
+/// @param first_only  end at the first fall to drop_fraction, unless that is the settling of the plates
+std::optional<Peak> peak_before_a_fall(const TestResult& result, bool first_only) {
     const double sign = loading_sign(result.test.kind);
     const auto& history = result.history;
-    double overall = 0.0;
-    for (const HistoryRow& row : history) {
-        if (is_loading(row) && is_finite(row)) overall = std::max(overall, sign * row.axial_stress_Pa);
-    }
+    const double overall = largest_stress(result);
     if (!(overall > 0.0)) return std::nullopt;
-
     Peak peak;
-    const bool first_only = result.test.kind == TestKind::brazilian;
     for (std::size_t i = 0; i < history.size(); ++i) {
         if (!is_loading(history[i]) || !is_finite(history[i])) continue;
         const double stress = sign * history[i].axial_stress_Pa;
@@ -56,6 +65,30 @@ std::optional<Peak> find_peak(const TestResult& result) {
     }
     return peak;
 }
+
+/// The largest stress of the rows up to the one in which the disc is split.
+std::optional<Peak> peak_until_split(const TestResult& result) {
+    const auto splitting = splitting_crack(result);
+    const bool split = splitting && splitting->split();
+    Peak peak;
+    for (std::size_t i = 0; i < result.history.size(); ++i) {
+        const HistoryRow& row = result.history[i];
+        if (!is_loading(row) || !is_finite(row)) continue;
+        if (row.axial_stress_Pa > peak.stress_Pa) peak = {i, row.axial_stress_Pa, false};
+        if (split && row.step >= *splitting->split_step() && row.phase == Phase::loading) break;
+    }
+    if (!(peak.stress_Pa > 0.0)) return std::nullopt;
+    peak.reached = split;
+    return peak;
+}
+
+}  // namespace
+
+std::optional<Peak> find_peak(const TestResult& result) {
+    return result.test.kind == TestKind::brazilian ? peak_until_split(result) : peak_before_a_fall(result, false);
+}
+
+std::optional<Peak> first_dip(const TestResult& result) { return peak_before_a_fall(result, true); }
 
 LoadingCurve loading_curve(const TestResult& result, const Peak& peak) {
     const double sign = loading_sign(result.test.kind);

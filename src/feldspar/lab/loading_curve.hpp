@@ -13,14 +13,20 @@ namespace feldspar {
 struct Peak {
     std::size_t row = 0;       ///< into TestResult::history
     double stress_Pa = 0.0;    ///< magnitude, total axial stress
-    bool reached = false;      ///< the stress fell to 0.95 of it or below afterwards
+    bool reached = false;      ///< the stress fell to 0.95 of it or below afterwards; Brazilian: the disc was split
 };
 
 /// +1 for tests that press, -1 for direct tension: histories are compression positive, strengths are magnitudes.
 double loading_sign(TestKind kind);
 
-/// The strength of a history; the first peak for a Brazilian test. Empty without a single loaded row.
+/// The strength of a history; for a Brazilian test the largest stress until the disc is split. Empty without a single loaded row.
 std::optional<Peak> find_peak(const TestResult& result);
+
+/// The largest stress before the first fall to 0.95 of it (P27): of a Brazilian test often a grain that settles under a plate.
+std::optional<Peak> first_dip(const TestResult& result);
+
+/// Largest stress of all rows of the loading, a positive magnitude; 0 without one.
+double largest_stress(const TestResult& result);
 
 /// One moment of loading, measured from the unloaded (biaxial: consolidated) state; all values positive in the sense of
 /// the loading, so that tension and compression read alike.

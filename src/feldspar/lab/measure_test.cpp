@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/properties.hpp"
@@ -61,7 +62,10 @@ TestProperties read_record(const TestResult& result) {
     if (!peak) return p;
     p.peak_stress_Pa = peak->stress_Pa;
     p.peak_reached = peak->reached;
-    if (result.test.kind == TestKind::brazilian) return p;
+    if (result.test.kind == TestKind::brazilian) {
+        p.brazilian = brazilian_failure(result, *peak);
+        return p;
+    }
 
     const LoadingCurve curve = loading_curve(result, *peak);
     if (curve.points.empty()) return p;

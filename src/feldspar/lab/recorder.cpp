@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/grain_fields.hpp"
@@ -20,6 +21,26 @@ EdgeShare share_of_edge(int point, int points) {
     if (points == 1) return {0.0, 1.0, 0.5};
     constexpr EdgeShare kLobatto[3] = {{0.0, 1.0 / 6.0, 0.0}, {1.0 / 6.0, 5.0 / 6.0, 0.5}, {5.0 / 6.0, 1.0, 1.0}};
     return kLobatto[point];
+}
+
+// Between the ends of the outermost grain edges that press on a plate, seen from the centre of the disc.
+double contact_arc_deg(const Experiment& e, int side) {
+    const Assembly& assembly = e.assembly;
+    const Vec2 centre = e.setup.specimen->outline.centre;
+    double least = 0.0, most = 0.0;
+    bool any = false;
+    for (std::size_t c = assembly.contacts.size(); c-- > 0;) {
+        const Contact& contact = assembly.contacts[c];
+        if (!contact.plate || contact.b.body != assembly.platens[side].plate) continue;
+        if (!(assembly.bond(contact.first_point).Fn_N > 0.0)) continue;
+        for (const Vec2 end : {assembly.origins[c].from, assembly.origins[c].to}) {
+            const double angle = std::atan2(end.x - centre.x, std::abs(end.y - centre.y));
+            least = any ? std::min(least, angle) : angle;
+            most = any ? std::max(most, angle) : angle;
+            any = true;
+        }
+    }
+    return (most - least) * 180.0 / std::numbers::pi;
 }
 
 }  // namespace
@@ -46,6 +67,10 @@ HistoryRow Recorder::present(Phase phase) {
     row.residual = force > 0.0 ? now_.unbalanced.total_N / force : 0.0;
     row.residual_median = force > 0.0 ? now_.unbalanced.typical_N / force : 0.0;
     row.platen_speed = e_.settings.speed;
+    if (e_.brazilian()) {
+        row.contact_arc_top_deg = contact_arc_deg(e_, 0);
+        row.contact_arc_bottom_deg = contact_arc_deg(e_, 1);
+    }
     StepSettings last = e_.settings;
     if (!e_.stepped) last.dt = 0.0;
     const StoredEnergy stored = stored_energy(e_.assembly, last.dt);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ struct HistoryRow {
     double residual_median = 0.0;         ///< the same with the median body's |F| times the number of bodies as sum
     double platen_speed = 0.0;            ///< m a step (dynamic: m/s)
     double kinetic_deviation = 0.0;       ///< J, of the motion that departs from the loading motion
+    double contact_arc_top_deg = 0.0;     ///< Brazilian: arc of the disc that presses on the plate, between the ends of its outermost pressed grain edges
+    double contact_arc_bottom_deg = 0.0;
     EnergyLedger energy;
 };
 
@@ -103,10 +106,29 @@ struct QuasiStaticEvidence {
     bool confirmed = false;               ///< the repeat at a third of the target was run
 };
 
+/// How a disc failed in a Brazilian test (P26)-(P29). Places: distance from the centre over the radius; angle from the direction of the
+/// loading plate, clockwise, -180 ... 180 degrees. Not-a-number where the record shows none.
+struct BrazilianFailure {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    bool split = false;                    ///< a connected path of cracks spans the disc
+    bool valid = false;                    ///< ISRM: the crack that split the disc began in the central part of the loaded diameter
+    double first_dip_Pa = none;            ///< largest stress before the first fall of 5 %
+    double largest_Pa = none;              ///< of the record
+    double crack_span = none;              ///< extent of the longest connected path at the end, over the diameter
+    double first_crack_radius = none;
+    double first_crack_angle_deg = none;
+    double first_crack_share = none;       ///< stress at it over the strength
+    double splitting_radius = none;        ///< where the path that split the disc (without a split: the longest) has its earliest crack
+    double splitting_angle_deg = none;
+    double splitting_share = none;         ///< stress at it over the strength
+    double contact_arc_top_deg = none;     ///< at the strength
+    double contact_arc_bottom_deg = none;
+};
+
 /// Properties read from one test. Not-a-number where the test does not define one.
 struct TestProperties {
-    double peak_stress_Pa;        ///< strength, a positive magnitude; Brazilian: the first peak
-    bool peak_reached = false;
+    double peak_stress_Pa;        ///< strength, a positive magnitude; Brazilian: the largest until the disc is split
+    bool peak_reached = false;    ///< Brazilian: the disc was split
     double first_crack_Pa;
     double E_secant_Pa;           ///< at 50 % of the peak, from the platens
     double E_tangent_Pa;          ///< at 50 % of the peak (40 ... 60 %), from the platens
@@ -122,6 +144,7 @@ struct TestProperties {
     double sigma_cd_Pa;                   ///< reversal of the volumetric strain
     double section_width_m;               ///< of the section that the stresses are taken over: the narrowest one across the load
     std::vector<std::string> remarks;     ///< sentences that a reader of the numbers must know
+    BrazilianFailure brazilian{};         ///< Brazilian test only
 };
 
 struct TestResult {

@@ -144,6 +144,12 @@ PropertySummary summarise(std::span<const TestResult> results) {
     add(summary, "UCS_Pa", ucs);
     add(summary, "DTS_Pa", dts);
     add(summary, "BTS_Pa", bts);
+    const auto add_brazilian = [&](const std::string& name, double BrazilianFailure::* member) {
+        add(summary, name, collect(results, TestKind::brazilian, [member](const TestProperties& p) { return p.brazilian.*member; }));
+    };
+    add_brazilian("BTS_first_dip_Pa", &BrazilianFailure::first_dip_Pa);
+    add_brazilian("BTS_largest_Pa", &BrazilianFailure::largest_Pa);
+    add(summary, "BTS_valid_share", collect(results, TestKind::brazilian, [](const TestProperties& p) { return p.brazilian.valid ? 1.0 : 0.0; }));
     add(summary, "UCS_over_DTS", ratio(ucs, dts));
     add(summary, "UCS_over_BTS", ratio(ucs, bts));
     add(summary, "BTS_over_DTS", ratio(bts, dts));

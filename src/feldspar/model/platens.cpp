@@ -94,17 +94,19 @@ struct Touch {
 };
 
 // One platen as a plate: at first touch with the highest of the places (lowest for the bottom).
-void attach_plate(Assembly& assembly, int side, const std::vector<Touch>& touches, const std::function<double(const OutlineSite&)>& area_m2) {
+// `bend_m` is by how much the plate's surface stands out towards the specimen, as a function of x (a jaw's; flat: 0).
+void attach_plate(Assembly& assembly, int side, const std::vector<Touch>& touches, const std::function<double(const OutlineSite&)>& area_m2,
+                  const std::function<double(double)>& bend_m = [](double) { return 0.0; }) {
     const double sign = side == 0 ? 1.0 : -1.0;
     double level = -kInfinity, left = kInfinity, right = -kInfinity;
     for (const Touch& touch : touches) {
-        level = std::max(level, sign * touch.place.y);
+        level = std::max(level, sign * touch.place.y + bend_m(touch.place.x));
         left = std::min(left, touch.place.x);
         right = std::max(right, touch.place.x);
     }
     const int plate = add_plate(assembly, {0.5 * (left + right), sign * level}, {0.0, sign}, {0.0, 0.0});
     for (const Touch& touch : touches)
-        add_plate_contact(assembly, touch.site, plate, touch.place, area_m2(touch.site), level - sign * touch.place.y, at_plates);
+        add_plate_contact(assembly, touch.site, plate, touch.place, area_m2(touch.site), level - bend_m(touch.place.x) - sign * touch.place.y, at_plates);
     Platen& platen = assembly.platens[side];
     platen.mode = {0.0, side == 0 ? -1.0 : 0.0};
     platen.nodes = {assembly.bodies[plate].centre_node};
@@ -216,7 +218,11 @@ void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const
             if (best != nullptr) touches.push_back({*best, at_x(*best, x)});
         }
         if (touches.empty()) throw InputError({}, "no grain of the disc faces the plates");
-        attach_plate(assembly, side, touches, [&](const OutlineSite& site) { return 2.0 * assembly.bodies[site.body].radius_m * assembly.thickness_m; });
+        const auto sagitta = [&](double x) {   // how far a jaw's arc has come down at x
+            const double from_axis = x - specimen.outline.centre.x, radius = contact.jaw_radius_m;
+            return radius > 0.0 ? radius - std::sqrt(radius * radius - from_axis * from_axis) : 0.0;
+        };
+        attach_plate(assembly, side, touches, [&](const OutlineSite& site) { return 2.0 * assembly.bodies[site.body].radius_m * assembly.thickness_m; }, sagitta);
     }
     index_bodies(assembly);
     index_contacts(assembly);

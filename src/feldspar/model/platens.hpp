@@ -15,11 +15,13 @@ struct PlateContact {
     double Kn_Pa_m = 0.0;      ///< normal stiffness per area
     double eta = 0.0;          ///< ks / kn
     double mu = 0.0;           ///< friction; 0 = frictionless
+    double jaw_radius_m = 0.0; ///< of curved jaws of a Brazilian test, more than that of the disc; 0 = flat
     bool glued = false;        ///< unbreakable in the normal direction and free along the plate (direct tension)
 };
 
 /// Horizontal plates below and above a disc, touching grains on the outline through one-point contacts. Each point starts at the
 /// outermost point of the body's circle, moved vertically onto the grain's own edge; the plates start at first touch. kn = Kn 2R t.
+/// Curved jaws differ in the gaps that are left at first touch; they press along the loading axis as plates do.
 void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const PlateContact& contact);
 
 /// Horizontal plates on the outline's edges "bottom" and "top": a one-point contact for each grain edge there (for the share of

@@ -58,6 +58,8 @@ struct NumericsSpec {
     bool confirm = false;                           ///< repeat each test at a third of the target (or speed) and report the change
 };
 
+enum class PlateShape { flat, curved };   ///< of the plates of a Brazilian test; curved: the jaws of ISRM
+
 enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian };
 
 struct TestSpec {
@@ -66,6 +68,8 @@ struct TestSpec {
     double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
     double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
     std::optional<double> maximum_stress_Pa; ///< ... or when the stress has reached this, a positive magnitude (biaxial: sigma1)
+    PlateShape plates = PlateShape::flat;    ///< Brazilian only
+    double jaw_radius = 1.5;             ///< of curved plates, over the radius of the disc; more than 1
     double plate_stiffness_factor = 1.0; ///< plates: their Kn as a multiple of the contacts' Kn
     std::optional<double> plate_Kn_Pa_m; ///< plates: their Kn itself, as of a bearing strip; in place of the factor
     std::optional<double> plate_mu;      ///< plates: friction; default 0.4 in the Brazilian test, else 0
@@ -81,6 +85,7 @@ inline constexpr std::array contact_normals{ContactNormal::centres, ContactNorma
 inline constexpr std::array plane_states{PlaneState::stress, PlaneState::strain};
 inline constexpr std::array contact_laws{ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle};
 inline constexpr std::array numerics_kinds{NumericsKind::adaptive, NumericsKind::paper, NumericsKind::dynamic};
+inline constexpr std::array plate_shapes{PlateShape::flat, PlateShape::curved};
 inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian};
 
 inline const char* name(TestKind kind) {
@@ -119,6 +124,7 @@ inline const char* name(GrainKind kind) {
     }
     return "?";
 }
+inline const char* name(PlateShape shape) { return shape == PlateShape::flat ? "flat" : "curved"; }
 inline const char* name(ContactNormal normal) { return normal == ContactNormal::centres ? "centres" : "edge"; }
 
 }  // namespace feldspar

@@ -87,6 +87,20 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["remarks"] = p.remarks;
     test["peak_reached"] = p.peak_reached;
     test["first_crack"] = rounded(p.first_crack_Pa * MPa);
+    if (result.test.kind == TestKind::brazilian) {
+        const BrazilianFailure& b = p.brazilian;
+        test["brazilian"] = {{"split", b.split},
+                             {"valid", b.valid},
+                             {"first_dip", rounded(b.first_dip_Pa * MPa)},
+                             {"largest", rounded(b.largest_Pa * MPa)},
+                             {"first_crack_radius", rounded(b.first_crack_radius)},
+                             {"first_crack_angle", rounded(b.first_crack_angle_deg)},
+                             {"splitting_radius", rounded(b.splitting_radius)},
+                             {"splitting_angle", rounded(b.splitting_angle_deg)},
+                             {"splitting_share", rounded(b.splitting_share)},
+                             {"arc_top", rounded(b.contact_arc_top_deg)},
+                             {"arc_bottom", rounded(b.contact_arc_bottom_deg)}};
+    }
     test["E"] = rounded(p.E_secant_Pa * GPa);
     test["nu"] = rounded(p.nu);
     test["sigma_ci"] = {{"crack count", rounded(p.sigma_ci_crack_count_Pa * MPa)},

@@ -67,6 +67,23 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["remarks"] = p.remarks;
     test["peak_reached"] = p.peak_reached;
     test["first_crack_MPa"] = in_MPa(p.first_crack_Pa);
+    if (result.test.kind == TestKind::brazilian) {
+        const BrazilianFailure& b = p.brazilian;
+        test["brazilian"] = {{"plates", name(result.test.plates)},
+                             {"split", b.split},
+                             {"valid", b.valid},
+                             {"BTS_first_dip_MPa", in_MPa(b.first_dip_Pa)},
+                             {"BTS_largest_MPa", in_MPa(b.largest_Pa)},
+                             {"crack_span", number(b.crack_span)},
+                             {"first_crack_radius", number(b.first_crack_radius)},
+                             {"first_crack_angle_deg", number(b.first_crack_angle_deg)},
+                             {"first_crack_share", number(b.first_crack_share)},
+                             {"splitting_radius", number(b.splitting_radius)},
+                             {"splitting_angle_deg", number(b.splitting_angle_deg)},
+                             {"splitting_share", number(b.splitting_share)},
+                             {"contact_arc_top_deg", number(b.contact_arc_top_deg)},
+                             {"contact_arc_bottom_deg", number(b.contact_arc_bottom_deg)}};
+    }
     test["E_GPa"] = in_GPa(p.E_secant_Pa);
     test["E_tangent_GPa"] = in_GPa(p.E_tangent_Pa);
     test["E_average_GPa"] = in_GPa(p.E_average_Pa);

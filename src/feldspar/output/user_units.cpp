@@ -28,6 +28,8 @@ constexpr auto known = std::to_array<Words>({
     {"UCS_Pa", "Uniaxial compressive strength", "UCS"},
     {"DTS_Pa", "Direct tensile strength", "DTS"},
     {"BTS_Pa", "Brazilian tensile strength", "BTS"},
+    {"BTS_first_dip_Pa", "Brazilian test, stress at the first fall of 5 %", "BTS dip"},
+    {"BTS_largest_Pa", "Brazilian test, largest stress of the record", "BTS largest"},
     {"cohesion_Pa", "Cohesion, Mohr-Coulomb", "c"},
     {"friction_angle_deg", "Friction angle, Mohr-Coulomb", "\u03c6"},
     {"hoek_brown_mi", "Hoek-Brown constant, intact rock", "mi"},

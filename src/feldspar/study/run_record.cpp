@@ -40,6 +40,18 @@ Number pattern(const char* name) {
     return {name, [](const TestResult& r) { return failure_pattern(r).*member; }};
 }
 
+template <double BrazilianFailure::* member>
+Number brazilian(const char* name) {
+    return {name, [](const TestResult& r) { return r.test.kind == TestKind::brazilian ? r.properties.brazilian.*member : BrazilianFailure::none; },
+            [](TestResult& r, double value) { r.properties.brazilian.*member = value; }};
+}
+
+template <bool BrazilianFailure::* member>
+Number brazilian_is(const char* name) {
+    return {name, [](const TestResult& r) { return r.test.kind == TestKind::brazilian ? (r.properties.brazilian.*member ? 1.0 : 0.0) : BrazilianFailure::none; },
+            [](TestResult& r, double value) { r.properties.brazilian.*member = value == 1.0; }};
+}
+
 const std::vector<Number>& numbers() {
     static const std::vector<Number> all{
         property<&TestProperties::peak_stress_Pa>("strength_Pa"),
@@ -58,6 +70,19 @@ const std::vector<Number>& numbers() {
         property<&TestProperties::sigma_ci_crack_volume_Pa>("sigma_ci_crack_volume_Pa"),
         property<&TestProperties::sigma_ci_lateral_strain_Pa>("sigma_ci_lateral_strain_Pa"),
         property<&TestProperties::sigma_cd_Pa>("sigma_cd_Pa"),
+        brazilian_is<&BrazilianFailure::split>("BTS_split"),
+        brazilian_is<&BrazilianFailure::valid>("BTS_valid"),
+        brazilian<&BrazilianFailure::first_dip_Pa>("BTS_first_dip_Pa"),
+        brazilian<&BrazilianFailure::largest_Pa>("BTS_largest_Pa"),
+        brazilian<&BrazilianFailure::crack_span>("BTS_crack_span"),
+        brazilian<&BrazilianFailure::first_crack_radius>("BTS_first_crack_radius"),
+        brazilian<&BrazilianFailure::first_crack_angle_deg>("BTS_first_crack_angle_deg"),
+        brazilian<&BrazilianFailure::first_crack_share>("BTS_first_crack_share"),
+        brazilian<&BrazilianFailure::splitting_radius>("BTS_splitting_radius"),
+        brazilian<&BrazilianFailure::splitting_angle_deg>("BTS_splitting_angle_deg"),
+        brazilian<&BrazilianFailure::splitting_share>("BTS_splitting_share"),
+        brazilian<&BrazilianFailure::contact_arc_top_deg>("BTS_contact_arc_top_deg"),
+        brazilian<&BrazilianFailure::contact_arc_bottom_deg>("BTS_contact_arc_bottom_deg"),
         {"cracks_tensile", [](const TestResult& r) { return count(r, CrackMode::tensile); }},
         {"cracks_shear", [](const TestResult& r) { return count(r, CrackMode::shear); }},
         pattern<&FailurePattern::tensile_share>("tensile_share"),

@@ -243,6 +243,8 @@ void expect_same(const Job& a, const Job& b) {
         EXPECT_EQ(a.tests[i].maximum_stress_Pa, b.tests[i].maximum_stress_Pa);
         EXPECT_EQ(a.tests[i].plate_stiffness_factor, b.tests[i].plate_stiffness_factor);
         EXPECT_EQ(a.tests[i].plate_Kn_Pa_m, b.tests[i].plate_Kn_Pa_m);
+        EXPECT_EQ(a.tests[i].plates, b.tests[i].plates);
+        EXPECT_EQ(a.tests[i].jaw_radius, b.tests[i].jaw_radius);
         EXPECT_EQ(a.tests[i].plate_mu, b.tests[i].plate_mu);
         EXPECT_EQ(a.tests[i].membrane_plates, b.tests[i].membrane_plates);
         EXPECT_EQ(a.tests[i].snapshots, b.tests[i].snapshots);
@@ -282,6 +284,7 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
                "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = "
                "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\"\nmaximum_stress = \"300 MPa\""));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplate_Kn = \"3.6e3 GPa/m\""));
+    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplates = \"curved\"\njaw_radius = 1.25"));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));

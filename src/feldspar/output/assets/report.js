@@ -185,6 +185,14 @@ function testFacts(tests, updates) {
     add("Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)"));
     if (t.section_width !== null) add("Section", show(t.section_width) + " mm wide");
     for (const remark of t.remarks) add("Note", remark);
+    if (t.brazilian) {
+      const b = t.brazilian, at = (radius, angle) => "r/R " + show(radius, 2) + ", " + show(angle, 3) + "\u00b0 from the loading plate";
+      add("First dip of 5 %, largest", show(b.first_dip, 4) + " MPa, " + show(b.largest, 4) + " MPa");
+      if (b.first_crack_radius !== null) add("First crack at", at(b.first_crack_radius, b.first_crack_angle));
+      if (b.splitting_radius !== null) add(b.split ? "Splitting crack began at" : "Longest crack began at", at(b.splitting_radius, b.splitting_angle) + ", " + show(100 * b.splitting_share, 2) + " % of the strength");
+      add("Valid by ISRM", b.valid ? "yes: split from the central part" : b.split ? "no: not a centre start" : "no: not split");
+      add("Arc of contact at the strength", show(b.arc_top, 2) + "\u00b0 top, " + show(b.arc_bottom, 2) + "\u00b0 bottom");
+    }
     if (t.E !== null) add("E, secant at 50 %", show(t.E) + " GPa");
     if (t.nu !== null) add("Poisson's ratio", show(t.nu));
     add("First crack", show(t.first_crack) + " MPa");
