@@ -17,10 +17,10 @@ double paper_grains(Load load) { return load == Load::brazilian ? kPaperDiscGrai
 
 // Every stage and state of a specimen on every number of threads.
 void add_all(std::vector<Case>& cases, const SpecimenChoice& specimen, const std::vector<int>& threads) {
-    for (const State state : {State::elastic, State::local_damping, State::breaking}) {
+    for (const State state : {State::elastic, State::relaxing, State::breaking}) {
         for (const Stage stage : {Stage::contacts, Stage::bodies, Stage::step}) {
             // Damping is a matter of the bodies, damage one of the contacts; elsewhere they cost what the elastic state costs.
-            if (state == State::local_damping && stage == Stage::contacts) continue;
+            if (state == State::relaxing && stage == Stage::contacts) continue;
             if (state == State::breaking && stage == Stage::bodies) continue;
             for (const int n : threads) cases.push_back({specimen, state, stage, n});
         }
@@ -36,7 +36,7 @@ void add_some_of_paper(std::vector<Case>& cases, GrainKind grains, const std::ve
     const SpecimenChoice uniaxial{grains, Load::uniaxial, Size::paper}, brazilian{grains, Load::brazilian, Size::paper};
     for (const Stage stage : {Stage::contacts, Stage::bodies, Stage::step})
         for (const int n : threads) cases.push_back({uniaxial, State::elastic, stage, n});
-    cases.push_back({uniaxial, State::local_damping, Stage::step, threads.front()});
+    cases.push_back({uniaxial, State::relaxing, Stage::step, threads.front()});
     cases.push_back({uniaxial, State::breaking, Stage::contacts, threads.front()});
     add_steps(cases, uniaxial, State::breaking, threads);
     if (grains == GrainKind::flexible) cases.push_back({uniaxial, State::elastic, Stage::energies, 1});
@@ -59,7 +59,7 @@ const char* name(Size size) {
 const char* name(State state) {
     switch (state) {
         case State::elastic: return "elastic";
-        case State::local_damping: return "local-damping";
+        case State::relaxing: return "relaxing";
         case State::breaking: return "breaking";
     }
     return "?";

@@ -14,7 +14,7 @@ enum class Size { paper, grains_16k, grains_100k };   ///< paper: 80 mm x 160 mm
 
 enum class State {
     elastic,         ///< every bond intact
-    local_damping,   ///< the same, damped as the paper does it
+    relaxing,   ///< the same, damped viscously, as in the elastic start
     breaking         ///< 30 % of the points softened and 10 % broken, scattered over the whole specimen
 };
 

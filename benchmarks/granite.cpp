@@ -134,7 +134,7 @@ Granite::~Granite() = default;
 
 void Granite::set(State state) {
     Assembly& assembly = parts_->assembly;
-    parts_->settings.damping = state == State::local_damping ? Damping::local : Damping::deviation;
+    parts_->settings.damping = state == State::relaxing ? Damping::viscous : Damping::local;
     for (const Contact& contact : assembly.contacts) {
         if (contact.plate || contact.material == inside_grains) continue;   // plates only touch; inside a grain nothing breaks
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {

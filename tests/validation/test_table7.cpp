@@ -17,7 +17,7 @@ constexpr std::uint64_t kSeeds = 5;
 TestResult run(TestKind kind, std::uint64_t seed, double target_factor) {
     const bool disc = kind == TestKind::brazilian;
     TestSetup s = fixtures::setup(fixtures::make(disc ? fixtures::disc(0.08) : fixtures::rectangle(0.08, 0.16), seed), kind);
-    s.numerics.residual_target = target_factor * residual_target(s.numerics, kind, s.model.kind);
+    s.numerics.residual_target = target_factor * residual_target(s.numerics, kind);
     const TestResult r = run_test(s, fixtures::threads(2));
     fmt::print("{} seed {} target x {:.2f}: {:.3f} MPa, E {:.2f} GPa, steps to peak {}, grade {}, energy residual {:.1e}\n", name(kind), seed,
                target_factor, r.properties.peak_stress_Pa / 1e6, r.properties.E_secant_Pa / 1e9, r.steps_to_peak, r.evidence.grade,

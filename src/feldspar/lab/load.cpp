@@ -162,8 +162,9 @@ constexpr std::size_t kStates = 2;
 constexpr double kBeforePeak = 0.9;         // share of the peak from where it is passed again: there the estimated error begins to look
 // Of the wanted error: what each of its two parts may take in the next passage, and by how much two strengths that are the same may differ.
 constexpr double kAim = 0.4, kSame = 0.5;
-// How much stricter one passage is than the one before at most, and any than the first; and what counts as a repeat at a third.
-constexpr double kMostStricter = 0.1, kStrictest = 0.03, kThird = 1.0 / 3.0;
+// How much stricter one passage is than the one before at most, and any than the first; and by which both limits fall
+// in what counts as a repeat.
+constexpr double kMostStricter = 0.1, kStrictest = 0.03, kRepeat = 0.5;
 // Passages, and steps as a multiple of those of the first one, after which the strength is taken as it is; the grade then says how sure it is.
 constexpr int kMostPassages = 8;
 constexpr long long kMostSteps = 10;
@@ -254,11 +255,15 @@ private:
         const QuasiStaticEvidence seen = judge(result_);
         if (seen.error_estimate <= wanted_) return false;
         const auto by = [](const PassageLimits& l, const PassageLimits& r) { return std::max(l.residual / r.residual, l.growth / r.growth); };
-        if (passed_Pa_ > 0.0 && by(strict_, passed_with_) <= kThird) {   // a repeat: what did not change the strength is no error of it
+        if (passed_Pa_ > 0.0 && by(strict_, passed_with_) <= kRepeat) {   // a repeat: what did not change the strength is no error of it
             evidence.peak_change_at_third = stop_.peak() / passed_Pa_ - 1.0;
             evidence.confirmed = std::abs(evidence.peak_change_at_third) < kSame * wanted_;
         }
-        if (evidence.confirmed || result_.passages >= kMostPassages || result_.steps > kMostSteps * first_steps_) return false;
+        if (evidence.confirmed) return false;
+        if (result_.passages >= kMostPassages || result_.steps > kMostSteps * first_steps_) {
+            patient_ = true;   // at least from here on
+            return false;
+        }
         passed_Pa_ = stop_.peak();
         passed_with_ = strict_;
         ++result_.passages;

@@ -22,7 +22,7 @@ TEST_P(EveryGranite, RunsEveryStageInEveryState) {
     EXPECT_GT(counts.memory_bytes, 0.0);
     for (const int threads : {1, 2}) {
         Team team(threads);
-        for (const State state : {State::breaking, State::elastic, State::local_damping}) {
+        for (const State state : {State::breaking, State::elastic, State::relaxing}) {
             granite.set(state);
             const Granite::Damage before = granite.damage();
             EXPECT_EQ(before.broken > 0, state == State::breaking);
