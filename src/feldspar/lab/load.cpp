@@ -131,7 +131,7 @@ double typical_steps(const Experiment& e) {
         const double strain = kind == TestKind::direct_tension ? 5e-4 : 6e-3;
         return strain * e.height_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
     }
-    const double base = kind == TestKind::brazilian ? 21000.0 : kind == TestKind::direct_tension ? 6500.0 : kind == TestKind::biaxial ? 35000.0 : 15000.0;
+    const double base = kind == TestKind::brazilian ? 50000.0 : kind == TestKind::direct_tension ? 8000.0 : kind == TestKind::biaxial ? 35000.0 : 20000.0;
     NumericsSpec usual;
     return base * std::sqrt(residual_target(usual, kind) / residual_target(n, kind));
 }
@@ -172,6 +172,7 @@ constexpr long long kMostSteps = 10;
 // to rest by itself, so the platen then goes on slowly, by these shares of its travel in a travel time. If the specimen turns out to carry
 // more, it had not failed: the test goes back and waits longer.
 constexpr double kRunOut = 5.0, kFailingRunOut = 1.0, kPatience = 200.0;
+constexpr double kFailsByItself = 0.01;    // R* of the typical body: a branch that softens quietly stays under control
 constexpr double kFailing = 0.95, kFallen = 0.9;   // shares of the peak
 constexpr double kGrowthFailing = 0.01, kGrowthFallen = 0.03;
 constexpr double kGrowthAfterPeak = 0.1;   // most growth behind the peak
@@ -221,7 +222,7 @@ public:
             if (!rushed_) keep_state(load);
             mode_update_.observe(e_.assembly, e_.step, e_.platen_travel_m);
             double slowest = 0.0;
-            if (unrest > (patient_ ? kPatience : load < kFailing * peak ? kFailingRunOut : kRunOut)) {
+            if (control_.residual() > kFailsByItself && unrest > (patient_ ? kPatience : load < kFailing * peak ? kFailingRunOut : kRunOut)) {
                 slowest = load < kFallen * peak ? kGrowthFallen : kGrowthFailing;
                 rushed_ = true;
             }
@@ -319,7 +320,7 @@ private:
     long long first_steps_ = 0;     // of the first passage
     double passed_Pa_ = 0.0;        // strength of the passage before, and its limits
     PassageLimits passed_with_;
-    const PassageLimits first_ = first_passage(e_.setup.numerics, e_.setup.test.kind), after_peak_{first_.residual, kGrowthAfterPeak};
+    const PassageLimits first_ = first_passage(e_.setup.numerics, e_.setup.test.kind), after_peak_{first_.residual, std::min(kGrowthAfterPeak, first_.growth)};
     PassageLimits strict_ = first_;   // of the passage under way, until its peak
     long long balanced_step_ = e_.step;   // when the typical body was within the target last
     bool rushed_ = false;           // the platen has gone on although the body was not in balance

@@ -67,7 +67,7 @@ double RateControl::next(double speed, const Unbalanced& unbalanced, double plat
     const double total = unbalanced.total_N / load_N;
     const bool running_away = recent_[0] > 0.0 && total > kRunningAway * recent_[0] && total > kSeen * limits_.residual;
     recent_ = {recent_[1], recent_[2], total};
-    balanced_ = now <= limits_.residual;
+    residual_ = now;
     const double most = fastest(platen_travel_m), rest = kRest * most, least = std::min(most, slowest_growth * platen_travel_m / travel_time_);
     const double wanted = now > 0.0 ? std::clamp(std::sqrt(limits_.residual / now), kMostSlowing, kMostHastening) : kMostHastening;
     const double factor = running_away ? kMostSlowing : wanted;

@@ -57,7 +57,10 @@ public:
     double next(double speed, const Unbalanced& unbalanced, double platen_force_N, double platen_travel_m, double slowest_growth = 0.0);
 
     /// Whether the typical body was within the target when next() was asked last.
-    bool balanced() const { return balanced_; }
+    bool balanced() const { return residual_ <= limits_.residual; }
+
+    /// R* of the typical body then, relative to the load.
+    double residual() const { return residual_; }
 
     void set_limits(PassageLimits limits) { limits_ = limits; }
     const PassageLimits& limits() const { return limits_; }
@@ -68,7 +71,7 @@ private:
     PassageLimits limits_;
     double travel_time_;
     double largest_force_N_ = 0.0;
-    bool balanced_ = true;
+    double residual_ = 0.0;
     std::array<double, 3> recent_{};   ///< total R* of the last blocks, the oldest first
 };
 

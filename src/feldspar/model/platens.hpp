@@ -15,8 +15,8 @@ struct PlateContact {
     double Kn_Pa_m = 0.0;      ///< normal stiffness per area
     double eta = 0.0;          ///< ks / kn
     double mu = 0.0;           ///< friction; 0 = frictionless
-    double jaw_radius_m = 0.0; ///< of curved jaws of a Brazilian test, more than that of the disc; 0 = flat
     bool glued = false;        ///< unbreakable in the normal direction and free along the plate (direct tension)
+    double jaw_radius_m = 0.0; ///< of curved jaws of a Brazilian test, more than that of the disc; 0 = flat
 };
 
 /// Horizontal plates below and above a disc, touching grains on the outline through one-point contacts. Each point starts at the

@@ -128,14 +128,14 @@ TEST(Judge, SaysWhatFailedAndWhatToDo) {
     EXPECT_EQ(e.grade, 'C');
     EXPECT_TRUE(says(e, "Not shown to be quasi-static")) << e.verdict;
     EXPECT_TRUE(says(e, "two platens' loads is 4.2 % (2 % allowed)")) << e.verdict;
-    EXPECT_TRUE(says(e, "run with accuracy = \"0.1 %\"")) << e.verdict;   // a target 2.1 times smaller
+    EXPECT_TRUE(says(e, "run with accuracy = \"0.5 %\"")) << e.verdict;   // 2.1 times smaller than the default
 
     TestResult r = linear(TestKind::uniaxial_compression, 100e6);
     for (HistoryRow& h : r.history) set_error(h, 1e-2);
     r.numerics.accuracy = 0.02;
     EXPECT_EQ(judge(r).grade, 'B');
     EXPECT_TRUE(says(judge(r), "the estimated error of the strength is 1 % (0.5 % allowed)")) << judge(r).verdict;
-    EXPECT_TRUE(says(judge(r), "to reach 0.5 %, run with accuracy = \"0.5 %\"")) << judge(r).verdict;
+    EXPECT_TRUE(says(judge(r), "to reach 0.5 %, run with accuracy = \"1 %\"")) << judge(r).verdict;
     r.numerics.residual_target = 6e-3;
     EXPECT_TRUE(says(judge(r), "run with residual_target = 0.003")) << judge(r).verdict;
     r.numerics.kind = NumericsKind::paper;

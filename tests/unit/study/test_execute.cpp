@@ -73,7 +73,7 @@ TEST_F(ExecuteStudy, PointsThatAreTheSameShareTheirRuns) {
 }
 
 TEST_F(ExecuteStudy, AFailureIsRecordedAndDoesNotStopTheOthers) {
-    const Study study = read("seeds = [1]\n[[axis]]\nname = \"mass\"\nkey = \"numerics.mass_factor\"\nvalues = [0.001, 1]\n");
+    const Study study = read("seeds = [1]\n[[axis]]\nname = \"mass\"\nkey = \"numerics.mass_factor\"\nvalues = [0.001, 2]\n");
     Ledger ledger(place_, Ledger::Access::write);
     const Execution execution = run(study, ledger);
     EXPECT_EQ(execution.failed, 1);
