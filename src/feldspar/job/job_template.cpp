@@ -57,7 +57,7 @@ Gfs = "800 N/m"                     # fracture energy in shear (leave out for "b
 
 [numerics]
 kind = "adaptive"                   # finds its own loading rate; also "paper" (fixed speed, local damping), "dynamic" (real masses)
-accuracy = "0.5 %"                  # wanted of a strength: 0.05 % to 10 %; looser is faster
+accuracy = "1 %"                    # wanted of a strength: 0.05 % to 10 %; looser is faster
 # confirm = false                   # true: repeat each test at a third of the target and report the change of the peak
 # maximum_steps = 2000000           # stop there with what there is (no limit unless given)
 )";

@@ -167,7 +167,7 @@ constexpr double kAim = 0.4, kSame = 0.5;
 constexpr double kMostStricter = 0.1, kStrictest = 0.03, kRepeat = 0.5;
 // Passages, and steps as a multiple of those of the first one, after which the strength is taken as it is; the grade then says how sure it is.
 constexpr int kMostPassages = 8;
-constexpr long long kMostSteps = 10;
+constexpr long long kMostSteps = 4;
 // How long a body out of balance is waited for at a platen at rest, in travel times of a wave. A specimen that fails takes very long to come
 // to rest by itself, so the platen then goes on slowly, by these shares of its travel in a travel time. If the specimen turns out to carry
 // more, it had not failed: the test goes back and waits longer.
