@@ -95,15 +95,15 @@ public:
             if (ended_.empty()) {
                 listen(running.events(true));
             } else {
-                take(std::move(ended_.front()), running.count());
+                take(std::move(ended_.front()));
                 ended_.pop_front();
                 listen(running.events(false));
             }
         }
         progress_.clear();
-        interrupted_ = results_.size() < runs_.size() ||
+        interrupted_ = results_.size() + failed_.size() < runs_.size() ||
                        std::any_of(results_.begin(), results_.end(), [](const TestResult& result) { return result.interrupted; });
-        write_overview(!interrupted_, true);
+        write_overview(!interrupted_ && failed_.empty(), true);
         if (!failed_.empty()) rethrow(failed_.begin()->first, failed_.begin()->second);
     }
 
@@ -138,7 +138,7 @@ private:
 
     // Tests start in the job's order, so that an interrupted job leaves whole packings behind.
     bool may_start(const RunningTests& running, std::size_t next) {
-        return next < runs_.size() && failed_.empty() && !stop_requested() && running.has_room_for(bodies(next));
+        return next < runs_.size() && !stop_requested() && running.has_room_for(bodies(next));
     }
 
     void start(RunningTests& running, std::size_t i) {
@@ -173,7 +173,7 @@ private:
 
     static int number_of(std::size_t i) { return static_cast<int>(i) + 1; }
 
-    // Nothing new is started after a failure. @throws OutputError at once: what is still running could not be written either
+    // The other tests go on. @throws OutputError at once: what is still running could not be written either
     void note_failure(std::size_t i, const std::exception_ptr& error) {
         try {
             std::rethrow_exception(error);
@@ -187,10 +187,10 @@ private:
     }
 
     // Writes what only this thread may write: the HDF5 library is not made for several, and the overview holds all tests.
-    void take(RunningTests::Ended test, int still_running) {
+    void take(RunningTests::Ended test) {
         const std::string label = fmt::format("{}/{} {}", number_of(test.number), runs_.size(), label_of(runs_[test.number]));
         if (failed_.contains(test.number)) {
-            if (still_running > 0) progress_.note(fmt::format("{}: failed; the tests that run now are finished first", label));
+            progress_.note(fmt::format("{}: failed: {}", label, cause(failed_.at(test.number))));
             return;
         }
         if (!test.result) return;
@@ -203,11 +203,20 @@ private:
         if (results_.size() < runs_.size()) write_overview(false, false);
     }
 
+    static std::string cause(const std::exception_ptr& error) {
+        try {
+            std::rethrow_exception(error);
+        } catch (const std::exception& problem) {
+            return problem.what();
+        }
+    }
+
     [[noreturn]] void rethrow(std::size_t i, const std::exception_ptr& error) {
         try {
             std::rethrow_exception(error);
         } catch (const NumericalError& problem) {
-            throw NumericalError(fmt::format("{}: {}", label_of(runs_[i]), problem.what()));
+            throw NumericalError(fmt::format("{}: {} ({} of {} tests failed; the results of the others are kept)", label_of(runs_[i]), problem.what(),
+                                             failed_.size(), runs_.size()));
         }
     }
 

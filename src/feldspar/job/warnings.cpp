@@ -26,6 +26,24 @@ void look_at_softening(const ContactMaterial& contact, const std::string& of, st
              "contacts break in shear without softening, at tau + mu times the pressure");
 }
 
+// How far a contact gives, or a grain strains, before the contact breaks. The law measures gaps from the undeformed geometry, and the start of a
+// test relies on small strains, so neither may be of the size of a grain. In rocks both are below a thousandth.
+void look_at_softness(const Variant& variant, double grain_m, const std::string& of, std::vector<std::string>& sentences) {
+    constexpr double kMost = 0.01;
+    const ContactMaterial& contact = variant.contact;
+    const auto look = [&](const char* what, double give_m, const char* remedy) {
+        if (give_m > kMost * grain_m)
+            sentences.push_back(fmt::format("{}{} = {:.3g} mm is {:.3g} times the mean grain diameter of {:.3g} mm: more than {:g} of it is outside what the model is made for, and "
+                                            "the elastic start may not come to rest. {}",
+                                            of, what, 1e3 * give_m, give_m / grain_m, 1e3 * grain_m, kMost, remedy));
+    };
+    look("sigma_nt / Kn, by which a contact opens before it breaks,", contact.sigma_nt_Pa / contact.Kn_Pa_m, "Is Kn in the unit that you mean (Pa/m; rocks have about 1e14)?");
+    if (contact.eta > 0.0)
+        look("tau / (eta Kn), by which a contact slips before it breaks,", contact.tau_Pa / (contact.eta * contact.Kn_Pa_m), "Is Kn in the unit that you mean (Pa/m; rocks have about 1e14)?");
+    if (variant.model.kind == GrainKind::flexible)
+        look("sigma_nt d / E, by which a grain strains before a contact breaks,", contact.sigma_nt_Pa / variant.grain.E_Pa * grain_m, "Is E in the unit that you mean (rocks have 1 to 100 GPa)?");
+}
+
 double known(const Job& job, const char* key, double otherwise) {
     const auto found = job.laboratory.find(key);
     return found == job.laboratory.end() ? otherwise : found->second;
@@ -64,7 +82,11 @@ void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
 
 std::vector<std::string> warnings(const Job& job) {
     std::vector<std::string> sentences;
-    for (const Variant& variant : job.variants) look_at_softening(variant.contact, variant.name.empty() ? "" : variant.name + ": ", sentences);
+    for (const Variant& variant : job.variants) {
+        const std::string of = variant.name.empty() ? "" : variant.name + ": ";
+        look_at_softening(variant.contact, of, sentences);
+        look_at_softness(variant, typical_diameter_m(job.specimen.grain_sizes), of, sentences);
+    }
     look_at_slenderness(job, sentences);
     return sentences;
 }

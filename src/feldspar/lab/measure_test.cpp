@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
 #include "feldspar/lab/loading_curve.hpp"
@@ -88,11 +90,22 @@ TestProperties read_record(const TestResult& result) {
     return p;
 }
 
+// An isotropic elastic body does not lose volume when it is pulled: its ratio is at most one half. More than that at half the peak says that
+// cracks have opened and count as widening.
+void note_widening(TestProperties& p) {
+    constexpr double kMostElastic = 0.5;
+    if (!(p.nu > kMostElastic)) return;
+    std::string remark = fmt::format("Poisson's ratio of {:.3g} at half the peak is no elastic constant: cracks that open count as widening.", p.nu);
+    if (p.nu_initial <= kMostElastic) remark += fmt::format(" Before damage it is {:.3g}.", p.nu_initial);
+    p.remarks.push_back(remark);
+}
+
 }  // namespace
 
 TestProperties measure(const TestResult& result) {
     TestProperties p = read_record(result);
     note_section(result, p);
+    note_widening(p);
     return p;
 }
 

@@ -331,6 +331,13 @@ TEST(ReadJob, ASlenderColumnIsWarnedOf) {
 
 TEST(Warnings, NameADirectionThatDoesNotSoften) {
     EXPECT_TRUE(warnings(parse_job(sample_job, "job")).empty());
+    const auto said = [](const std::vector<std::string>& sentences, const char* what) {
+        return std::any_of(sentences.begin(), sentences.end(), [&](const std::string& s) { return s.find(what) != std::string::npos; });
+    };
+    const auto soft = warnings(parse_job(edited("Kn = \"18.00e4 GPa/m\"", "Kn = \"1 GPa/m\""), "job"));   // sigma_nt / Kn = 8.5 mm
+    EXPECT_TRUE(said(soft, "sigma_nt / Kn"));
+    EXPECT_TRUE(said(soft, "tau / (eta Kn)"));
+    EXPECT_FALSE(said(soft, "sigma_nt d / E"));
     // 8.5^2 / (2 x 18e4) MPa^2 m/GPa = 0.2007 N/m; 29.75^2 / (2 x 0.28 x 18e4) = 8.78 N/m
     EXPECT_TRUE(warnings(parse_job(edited("Gfn = \"20 N/m\"", "Gfn = \"0.202 N/m\"", edited("Gfs = \"800 N/m\"", "Gfs = \"8.8 N/m\"")), "job")).empty());
     const auto tension = warnings(parse_job(edited("Gfn = \"20 N/m\"", "Gfn = \"0.2 N/m\""), "job"));

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "feldspar/lab/loading_curve.hpp"
@@ -25,6 +26,18 @@ TEST(Measure, LinearCompressionGivesBackItsConstants) {
     EXPECT_TRUE(std::isnan(p.sigma_ci_crack_volume_Pa));
     EXPECT_TRUE(std::isnan(p.sigma_ci_lateral_strain_Pa));
     EXPECT_TRUE(std::isnan(p.sigma_ci_crack_count_Pa));
+}
+
+TEST(Measure, ARatioAboveOneHalfIsRemarkedOn) {
+    TestResult r = linear(TestKind::uniaxial_compression, 120e6);
+    EXPECT_TRUE(measure(r).remarks.empty());
+    for (HistoryRow& row : r.history)
+        if (row.axial_stress_Pa > 0.2 * 120e6) row.lateral_strain_gauge = -0.65 * row.axial_strain_gauge;   // cracks have opened
+    const TestProperties p = measure(r);
+    EXPECT_NEAR(p.nu, 0.65, 1e-12);
+    ASSERT_EQ(p.remarks.size(), 1u);
+    EXPECT_NE(p.remarks.front().find("0.65"), std::string::npos);
+    EXPECT_NE(p.remarks.front().find(fmt::format("Before damage it is {:.3g}", nu)), std::string::npos) << p.remarks.front();
 }
 
 TEST(Measure, TensionRunsNegativeAndItsStrengthIsPositive) {
