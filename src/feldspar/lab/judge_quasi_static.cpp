@@ -25,7 +25,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // takes a quarter of a travel time to show.
 constexpr double kTravelTimesToShow = 0.25;
 constexpr double kNearPeak = 0.9;     // share of the peak from which on the evidence decides
-constexpr double kOfTheRepeat = 1.5;  // an error in proportion to the rate loses two thirds of itself in a repeat at a third
+constexpr double kOfTheRepeat = 1.5;  // an error in proportion to the rate loses two thirds of itself in a repeat at a third; the slower of two passages has less
 
 /// The strength of the test is a tensile one.
 bool pulls_apart(TestKind kind) { return kind == TestKind::direct_tension || kind == TestKind::brazilian; }
@@ -46,7 +46,7 @@ std::string percent(double value) { return fmt::format("{:.2g} %", 100.0 * value
 std::vector<Criterion> criteria(const QuasiStaticEvidence& e, TestKind kind) {
     const bool brazilian = kind == TestKind::brazilian;
     return {{e.error_estimate, pulls_apart(kind) ? 1e-2 : 5e-3, 2e-2,
-             e.confirmed ? "one and a half times the change of the strength in the repeat at a third" : "the estimated error of the strength"},
+             e.confirmed ? "one and a half times the change of the strength in a slower repeat" : "the estimated error of the strength"},
             {e.imbalance_mean, brazilian ? 3e-2 : 1e-2, brazilian ? 5e-2 : 2e-2, "the mean difference between the two platens' loads"}};
 }
 
@@ -92,7 +92,7 @@ std::string advice(const TestResult& result, double slower) {
 std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& table, const TestResult& result, bool peak_reached) {
     const std::string until = peak_reached ? "up to the peak" : "up to the largest stress of the record (the peak was not reached)";
     const std::string after = peak_reached ? "; the branch after the peak is dynamic" : "";
-    const std::string repeat = e.confirmed ? fmt::format(", strength at a third of the target {:+.2g} %", 100.0 * e.peak_change_at_third) : "";
+    const std::string repeat = e.confirmed ? fmt::format(", strength changed by {:+.2g} % in a slower repeat", 100.0 * e.peak_change_at_third) : "";
     const double slower = std::max(1.5, excess(table, e.grade != 'C'));
     const std::string grade_a = percent(table.front().limit_a);
     if (e.grade == 'A') {

@@ -102,8 +102,8 @@ struct QuasiStaticEvidence {
     double damping_over_fracture = 0.0;   ///< damping work / fracture work at the peak
     char grade = 'C';                     ///< A: to about 0.5 %, B: to about 2 %, C: not shown
     std::string verdict;                  ///< one sentence for the user
-    double peak_change_at_third = 0.0;    ///< relative change of the peak at a third of the target, if confirmed
-    bool confirmed = false;               ///< the repeat at a third of the target was run
+    double peak_change_at_third = 0.0;    ///< relative change of the peak at a third of the target (passages: at half of both limits or less), if confirmed
+    bool confirmed = false;               ///< a slower repeat was run
 };
 
 /// How a disc failed in a Brazilian test (P26)-(P29). Places: distance from the centre over the radius; angle from the direction of the
