@@ -84,7 +84,7 @@ std::vector<Case> all_cases() {
 
 // Loading steps after which the state is taken; by the last one every case has cracks.
 std::array<long long, 3> moments(const Case& one) {
-    const bool slowly = one.test == TestKind::direct_tension || (one.numerics == NumericsKind::paper && one.grains == GrainKind::inner_particles);
+    const bool slowly = one.test == TestKind::direct_tension || one.numerics == NumericsKind::adaptive || (one.numerics == NumericsKind::paper && one.grains == GrainKind::inner_particles);
     return {0, 100, slowly ? 4000 : 1500};
 }
 

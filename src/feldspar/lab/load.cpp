@@ -54,7 +54,7 @@ private:
 // When a test is over.
 class StopRule {
 public:
-    StopRule(const Experiment& e, const TestResult& result) : e_(&e), result_(&result), first_step_(e.step) {
+    StopRule(const Experiment& e, const TestResult& result) : e_(&e), result_(&result) {
         if (const auto disc = loaded_disc(result)) splitting_.emplace(*disc);
     }
 
@@ -64,6 +64,9 @@ public:
 
     /// Whether the largest stress was the strength: the load has fallen below it, and a disc is split, for it dips and rises again before.
     bool past_peak(double load_Pa) const { return load_Pa < kPastPeak * peak_Pa_ && (!splitting_ || split()); }
+
+    /// Whether all steps that the user allows have been made, those of earlier passages too.
+    bool steps_are_spent() const { return e_->setup.numerics.maximum_steps && result_->steps >= *e_->setup.numerics.maximum_steps; }
 
     /// @return why the test ends now, in words; nothing if it goes on
     std::optional<std::string> ended(const HistoryRow& row) {
@@ -85,7 +88,7 @@ public:
             return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
         if (test.maximum_stress_Pa && load >= *test.maximum_stress_Pa)
             return fmt::format("the stress has reached its maximum of {:.4g} MPa", *test.maximum_stress_Pa / 1e6);
-        if (e_->setup.numerics.maximum_steps && e_->step - first_step_ >= *e_->setup.numerics.maximum_steps)
+        if (steps_are_spent())
             return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);
         return std::nullopt;
     }
@@ -103,7 +106,6 @@ private:
 
     const Experiment* e_;
     const TestResult* result_;
-    long long first_step_;
     std::optional<SplittingCrack> splitting_;   // of a Brazilian test: a first dip does not end it
     std::size_t cracks_seen_ = 0;
     double peak_strain_ = 0.0;
@@ -213,7 +215,7 @@ public:
             const double load = e_.direction * row.axial_stress_Pa;
             const double peak = stop_.peak(), unrest = static_cast<double>(e_.step - balanced_step_) / e_.travel_time;
             const bool past_peak = stop_.past_peak(load);
-            if (adaptive_ && (reason || past_peak || (unrest > kRunOut && !e_.brazilian())) && passed_too_fast()) continue;
+            if (adaptive_ && !stop_.steps_are_spent() && (reason || past_peak || (unrest > kRunOut && !e_.brazilian())) && passed_too_fast()) continue;
             if (reason) {
                 result_.stop_reason = *reason;
                 break;
