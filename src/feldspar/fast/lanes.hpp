@@ -43,9 +43,6 @@ FELDSPAR_INLINE void store(double* p, Real v, int count) {
 FELDSPAR_INLINE Real absolute(Real v) { return reinterpret_cast<Real>(reinterpret_cast<Mask>(v) & INT64_MAX); }
 FELDSPAR_INLINE Real smaller(Real a, Real b) { return a < b ? a : b; }
 FELDSPAR_INLINE Real larger(Real a, Real b) { return a > b ? a : b; }
-FELDSPAR_INLINE Real with_sign_of(Real magnitude, Real sign) {
-    return reinterpret_cast<Real>((reinterpret_cast<Mask>(magnitude) & INT64_MAX) | (reinterpret_cast<Mask>(sign) & INT64_MIN));
-}
 
 FELDSPAR_INLINE Real square_root(Real v) {
 #if defined(__AVX512F__) && FELDSPAR_LANES == 8

@@ -147,24 +147,18 @@ void keep_margin(Experiment& e, MassBound bound) {
 
 void choose_step(Experiment& e) {
     const NumericsSpec& n = e.setup.numerics;
-    if (n.kind == NumericsKind::adaptive) {
-        e.settings.damping = Damping::local;
-        e.settings.alpha = n.damping;
-        e.mass_factor = n.mass_factor.value_or(1.0 + n.damping);
-        set_scaled_masses(e.assembly, MassBound::tensor, e.mass_factor);
-    } else if (n.kind == NumericsKind::paper) {
-        e.settings.damping = Damping::local;
-        e.settings.alpha = n.damping;
-        e.mass_factor = n.mass_factor.value_or(1.0 + n.damping);
-        set_scaled_masses(e.assembly, MassBound::row_sum, e.mass_factor);
-    } else {
-        e.settings.damping = Damping::local;
-        e.settings.alpha = n.damping;
+    const MassBound bound = n.kind == NumericsKind::adaptive ? MassBound::tensor : MassBound::row_sum;
+    e.settings.damping = Damping::local;
+    e.settings.alpha = n.damping;
+    if (n.kind == NumericsKind::dynamic) {
         set_real_masses(e.assembly, e.setup.grain.density_kg_m3);
+    } else {
+        e.mass_factor = n.mass_factor.value_or(1.0 + n.damping);
+        set_scaled_masses(e.assembly, bound, e.mass_factor);
     }
     e.omega2 = largest_omega2(e.assembly, e.team);
     e.omega2_bound = omega2_limit(e.settings.damping, e.settings.alpha);
-    if (n.kind != NumericsKind::dynamic) keep_margin(e, n.kind == NumericsKind::adaptive ? MassBound::tensor : MassBound::row_sum);
+    if (n.kind != NumericsKind::dynamic) keep_margin(e, bound);
     if (n.kind == NumericsKind::dynamic) {
         const double stable = std::sqrt(e.omega2_bound / e.omega2);
         e.settings.dt = n.time_step_s.value_or(0.8 * stable);

@@ -22,11 +22,9 @@ double accuracy_of(double residual_target, TestKind kind);
 struct PassageLimits {
     double residual = 0.0;   ///< target of R*
     double growth = 0.0;     ///< of the platen travel in a travel time of a wave, relative to the travel so far
-
-    PassageLimits times(double factor) const { return {factor * residual, factor * growth}; }
 };
 
-/// Of the first passage. @param accuracy  wanted, relative
+/// Of the first passage: wide, so that it is quick.
 PassageLimits first_passage(const NumericsSpec& numerics, TestKind kind);
 
 /// What the free degrees of freedom leave unbalanced, sums of |F|.
@@ -52,8 +50,8 @@ public:
     /// @param speed              now, m a step
     /// @param platen_force_N     mean of both platens, magnitude
     /// @param platen_travel_m    so far
-    /// @return the speed for the next steps
     /// @param slowest_growth     at least so much of the travel in a travel time of a wave, whatever is out of balance
+    /// @return the speed for the next steps
     double next(double speed, const Unbalanced& unbalanced, double platen_force_N, double platen_travel_m, double slowest_growth = 0.0);
 
     /// Whether the typical body was within the target when next() was asked last.
@@ -63,7 +61,6 @@ public:
     double residual() const { return residual_; }
 
     void set_limits(PassageLimits limits) { limits_ = limits; }
-    const PassageLimits& limits() const { return limits_; }
 
 private:
     double fastest(double platen_travel_m) const;
