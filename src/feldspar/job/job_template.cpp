@@ -58,7 +58,7 @@ Gfs = "800 N/m"                     # fracture energy in shear (leave out for "b
 [numerics]
 kind = "adaptive"                   # finds its own loading rate; also "paper" (fixed speed, local damping), "dynamic" (real masses)
 accuracy = "1 %"                    # wanted of a strength: 0.05 % to 10 %; looser is faster
-# confirm = false                   # true: repeat each test at a third of the target and report the change of the peak
+# confirm = false                   # true: repeat each test at a third of the target, and at another damping, and report the changes
 # maximum_steps = 2000000           # stop there with what there is (no limit unless given)
 )";
 
@@ -68,6 +68,14 @@ constexpr const char* common_test =
 # maximum_stress = "300 MPa"        # ... or at this stress, if one is given: the strength is then known to be higher
 # snapshots = 8                     # fields kept between the first crack and the end
 # seeds = [1, 2, 3]                 # the packings of this test, if not all of [run]
+)";
+
+constexpr const char* compression_control =
+    R"(# control = "dissipation"           # behind the peak: the platens follow a rock that fails by itself; also "displacement", "lateral-strain"
+)";
+
+constexpr const char* other_control =
+    R"(# control = "displacement"          # behind the peak; "dissipation": the platens follow a rock that fails by itself
 )";
 
 constexpr const char* common_end = R"(
@@ -91,14 +99,14 @@ std::string uniaxial_test() {
     return std::string(R"(
 [[test]]
 kind = "uniaxial-compression"       # gives E, nu, UCS, crack initiation and crack damage stress
-)") + common_test;
+)") + compression_control + common_test;
 }
 
 std::string tension_test() {
     return std::string(R"(
 [[test]]
 kind = "direct-tension"             # gives the direct tensile strength DTS
-)") + common_test;
+)") + other_control + common_test;
 }
 
 std::string biaxial_test() {
@@ -106,7 +114,7 @@ std::string biaxial_test() {
 [[test]]
 kind = "biaxial"                    # isotropic consolidation, then axial loading at constant sigma3
 sigma3 = ["4 MPa", "10 MPa"]        # one test for each; with a uniaxial test they give cohesion, friction angle and mi
-)") + common_test;
+)") + compression_control + common_test;
 }
 
 std::string brazilian_test() {
@@ -117,7 +125,7 @@ kind = "brazilian"                  # a disc pressed between two plates: gives t
 # plate_stiffness_factor = 1.0      # stiffness of the plates, as a multiple of the contacts' Kn; bearing strips: docs/job.md, plate_Kn
 # plates = "flat"                   # or "curved": jaws of 1.5 times the disc's radius (jaw_radius), as ISRM suggests
 # plate_mu = 0.4                    # friction between plates and disc
-)") + common_test;
+)") + other_control + common_test;
 }
 
 }  // namespace

@@ -69,6 +69,22 @@ bool has_particles(TestKind kind, const std::vector<Variant>& variants) {
                        [&](const Variant& variant) { return variant.runs(kind) && variant.model.kind != GrainKind::flexible; });
 }
 
+// Which motion of the platens follows the branch behind the strength. Fixed speeds know none.
+LoadControl read_control(const TableReader& table, TestKind kind, const std::vector<Variant>& variants) {
+    const bool adaptive = std::any_of(variants.begin(), variants.end(), [&](const Variant& variant) {
+        return variant.runs(kind) && variant.numerics.kind == NumericsKind::adaptive;
+    });
+    if (!table.has("control")) return adaptive ? usual_control(kind) : LoadControl::displacement;
+    const LoadControl control = table.choice("control", load_controls);
+    if (control == LoadControl::lateral_strain && (kind == TestKind::direct_tension || kind == TestKind::brazilian))
+        table.fail("control", fmt::format("'lateral-strain' is meant for specimens that widen as they fail, which kind = \"{}\" does not measure", name(kind)),
+                   "control = \"displacement\" or \"dissipation\"");
+    if (control != LoadControl::displacement && !adaptive)
+        table.fail("control", fmt::format("'{}' changes the platen speed, which only adaptive numerics do", name(control)),
+                   "[numerics] kind = \"adaptive\", or control = \"displacement\"");
+    return control;
+}
+
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
 void read_plates(const TableReader& table, bool particles, TestSpec& test) {
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
@@ -112,6 +128,7 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
 
     test.stop_fraction =
         table.fraction("stop_fraction", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.stop_fraction);
+    test.control = read_control(table, test.kind, variants);
     test.maximum_strain =
         table.fraction("maximum_strain", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.maximum_strain);
     if (table.has("maximum_stress")) test.maximum_stress_Pa = table.quantity("maximum_stress", Dimension::stress, positive);
@@ -154,7 +171,8 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     TestList result;
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",
-                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "maximum_stress", "diameter", "plates", "jaw_radius", "plate_stiffness_factor", "plate_Kn",
+                                                {"kind", "sigma3", "stop_fraction", "control", "maximum_strain", "maximum_stress", "diameter", "plates", "jaw_radius",
+                                                 "plate_stiffness_factor", "plate_Kn",
                                                  "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
         ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {

@@ -174,6 +174,7 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.word("kind", name(test.kind));
     if (test.kind == TestKind::biaxial) out.quantity("sigma3", test.sigma3_Pa, Dimension::stress);
     out.number("stop_fraction", test.stop_fraction);
+    out.word("control", name(test.control));
     out.number("maximum_strain", test.maximum_strain);
     if (test.maximum_stress_Pa) out.quantity("maximum_stress", *test.maximum_stress_Pa, Dimension::stress);
     if (test.kind == TestKind::brazilian) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);

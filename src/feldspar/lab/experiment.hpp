@@ -76,8 +76,7 @@ class Recorder;
 /// Loads until a stop rule, the user or a force that is not a number ends it (@throws NumericalError for the last).
 void load(Experiment& experiment, Recorder& recorder, TestResult& result);
 
-/// Loading steps that a test of this kind typically takes, for estimates of time only: measured on the Augig granite at an
-/// accuracy of 0.5 % (docs/validation).
+/// Loading steps that a test of this kind typically takes, for estimates of time only.
 double typical_steps(const Experiment& experiment);
 
 }  // namespace feldspar

@@ -24,6 +24,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // inertia and damping instead of the rock (residual_share()), and the load rises on while an unstable crack
 // takes a quarter of a travel time to show.
 constexpr double kTravelTimesToShow = 0.25;
+constexpr double kInBalance = 0.02;   // part of the unbalanced force in the error, with which a body counts as balanced: grade B
 constexpr double kNearPeak = 0.9;     // share of the peak from which on the evidence decides
 constexpr double kOfTheRepeat = 1.5;  // an error in proportion to the rate loses two thirds of itself in a repeat at a third; the slower of two passages has less
 
@@ -91,7 +92,8 @@ std::string advice(const TestResult& result, double slower) {
 
 std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& table, const TestResult& result, bool peak_reached) {
     const std::string until = peak_reached ? "up to the peak" : "up to the largest stress of the record (the peak was not reached)";
-    const std::string after = peak_reached ? "; the branch after the peak is dynamic" : "";
+    const bool followed = result.test.control != LoadControl::displacement && result.numerics.kind == NumericsKind::adaptive;
+    const std::string after = peak_reached && !followed ? "; the branch after the peak is dynamic" : "";
     const std::string repeat = e.confirmed ? fmt::format(", strength changed by {:+.2g} % in a slower repeat", 100.0 * e.peak_change_at_third) : "";
     const double slower = std::max(1.5, excess(table, e.grade != 'C'));
     const std::string grade_a = percent(table.front().limit_a);
@@ -102,8 +104,17 @@ std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& 
     if (e.grade == 'B') {
         return fmt::format("Quasi-static to about 2 % {}: {}; to reach {}, {}{}.", until, failures(table, true), grade_a, advice(result, slower), after);
     }
-    return fmt::format("Not shown to be quasi-static {}: {}; the strength may depend on the loading rate: {}{}.", until,
-                       failures(table, false), advice(result, slower), after);
+    const std::string balanced = std::isfinite(e.balanced_stress_Pa) ? fmt::format(" (in balance up to {:.4g} MPa)", 1e-6 * e.balanced_stress_Pa) : "";
+    return fmt::format("Not shown to be quasi-static {}: {}; the strength may depend on the loading rate{}: {}{}.", until,
+                       failures(table, false), balanced, advice(result, slower), after);
+}
+
+/// What a repeat at another damping has shown; empty without one.
+std::string damping_remark(const QuasiStaticEvidence& e) {
+    if (!(e.other_damping > 0.0)) return {};
+    const bool matters = std::abs(e.peak_change_at_other_damping) > std::max(0.01, e.error_estimate);
+    return fmt::format(" At a damping of {:g} the strength changes by {:+.2g} %{}.", e.other_damping, 100.0 * e.peak_change_at_other_damping,
+                       matters ? ": it depends on the numerical damping, which no slower loading takes away" : "");
 }
 
 /// R* at the peak: the median over the loading rows of the last percent of stress before it. The unstable crack that makes the
@@ -126,9 +137,11 @@ QuasiStaticEvidence judge(const TestResult& result) {
     QuasiStaticEvidence e;
     e.peak_change_at_third = result.evidence.peak_change_at_third;   // found by a second run, not by this record
     e.confirmed = result.evidence.confirmed;
+    e.other_damping = result.evidence.other_damping;
+    e.peak_change_at_other_damping = result.evidence.peak_change_at_other_damping;
     for (double QuasiStaticEvidence::*value : {&QuasiStaticEvidence::error_estimate, &QuasiStaticEvidence::residual_median, &QuasiStaticEvidence::load_per_travel_time,
                                                &QuasiStaticEvidence::imbalance_mean, &QuasiStaticEvidence::residual_mean, &QuasiStaticEvidence::residual_at_peak,
-                                               &QuasiStaticEvidence::imbalance_max, &QuasiStaticEvidence::kinetic_over_strain, &QuasiStaticEvidence::damping_over_fracture})
+                                               &QuasiStaticEvidence::imbalance_max, &QuasiStaticEvidence::kinetic_over_strain, &QuasiStaticEvidence::damping_over_fracture, &QuasiStaticEvidence::balanced_stress_Pa})
         e.*value = nan;
 
     const auto peak = find_peak(result);
@@ -149,6 +162,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
         if (!above_half || !(stress > 0.0)) continue;
         ++rows;
         residuals += row.residual;
+        if (residual_share(result.test.kind) * row.residual_median <= kInBalance && !(stress <= e.balanced_stress_Pa)) e.balanced_stress_Pa = stress;
         const double difference = std::abs(row.stress_top_Pa - row.stress_bottom_Pa) / stress;
         const double strain_energy = row.energy.elastic_grains + row.energy.elastic_contacts;
         const double motion = strain_energy > 0.0 ? row.kinetic_deviation / strain_energy : nan;
@@ -183,7 +197,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
     const bool a = std::all_of(table.begin(), table.end(), [](const Criterion& c) { return c.holds_a(); });
     const bool b = std::all_of(table.begin(), table.end(), [](const Criterion& c) { return c.holds_b(); });
     e.grade = a ? 'A' : b ? 'B' : 'C';
-    e.verdict = verdict(e, table, result, peak->reached) + start_remark(result, *peak);
+    e.verdict = verdict(e, table, result, peak->reached) + start_remark(result, *peak) + damping_remark(e);
     look_at_buckling(result, e);
     return e;
 }

@@ -8,6 +8,7 @@
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
 #include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/regression.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
@@ -79,6 +80,7 @@ TestProperties read_record(const TestResult& result) {
     p.E_initial_Pa = slope_between(curve, 0.0, 0.1, &CurvePoint::strain_gauge, &CurvePoint::stress_Pa);
     p.nu_initial = -slope_between(curve, 0.0, 0.1, &CurvePoint::strain_gauge, &CurvePoint::lateral_gauge);
     p.nu_tangent = -slope_between(curve, 0.4, 0.6, &CurvePoint::strain_gauge, &CurvePoint::lateral_gauge);
+    p.post_peak = post_peak(result, *peak, curve, p.E_tangent_Pa);
     if (!peak->reached) return p;   // the thresholds mean nothing before the peak is known
 
     p.sigma_ci_crack_count_Pa = crack_count_threshold(result, *peak);

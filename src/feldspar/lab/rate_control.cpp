@@ -25,19 +25,22 @@ constexpr double kTeaches = 1e-4;   // growth of the travel in a window that sho
 constexpr double kBlend = 0.5;   // of the newly observed loading mode
 constexpr double kMostMode = 1.5;   // platen travels that a node may move per platen travel, as the loading mode counts it
 
-// Of the wanted accuracy: the error that R* makes, and the load's growth in a travel time, with which the strength is first looked for. What
-// that misses is found by the passages after the first (load.cpp), which cost a tenth of the load; so the first one is quick.
-constexpr double kResidual = 1.0, kGrowth = 30.0, kMostGrowth = 0.3;
+// As multiples of the wanted accuracy: R* (compression, tension) and the load's growth in a travel time with which the strength is first
+// looked for. What that misses is found by the passages after the first (load.cpp), which cost a tenth of the load; so the first one is quick.
+constexpr double kCompressed = 1.0, kPulled = 3.0;
+constexpr double kGrowth = 60.0, kMostGrowth = 0.6;
+
+bool pulls_apart(TestKind kind) { return kind == TestKind::direct_tension || kind == TestKind::brazilian; }
 
 }  // namespace
 
-double residual_share(TestKind kind) { return kind == TestKind::direct_tension || kind == TestKind::brazilian ? 1.0 / 3.0 : 1.0; }
+double residual_share(TestKind kind) { return pulls_apart(kind) ? 1.0 / 3.0 : 2.0; }
 
 double residual_target(const NumericsSpec& numerics, TestKind kind) {
-    return numerics.residual_target.value_or(kResidual * numerics.accuracy / residual_share(kind));
+    return numerics.residual_target.value_or((pulls_apart(kind) ? kPulled : kCompressed) * numerics.accuracy);
 }
 
-double accuracy_of(double residual_target, TestKind kind) { return residual_target * residual_share(kind) / kResidual; }
+double accuracy_of(double residual_target, TestKind kind) { return residual_target / (pulls_apart(kind) ? kPulled : kCompressed); }
 
 PassageLimits first_passage(const NumericsSpec& numerics, TestKind kind) {
     const double target = residual_target(numerics, kind);

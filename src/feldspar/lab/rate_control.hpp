@@ -9,7 +9,7 @@
 
 namespace feldspar {
 
-/// Share of R* that is an error of the strength: 1 in compression, a third in tension (direct or Brazilian), as measured (docs/decisions).
+/// Error of the strength over the R* of the typical body: 2 in compression, a third in tension (direct or Brazilian), as measured (docs/validation).
 double residual_share(TestKind kind);
 
 /// Target of R* with which a strength is first looked for, from the wanted relative accuracy; or what the user gives in its place.

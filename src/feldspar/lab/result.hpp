@@ -104,6 +104,9 @@ struct QuasiStaticEvidence {
     std::string verdict;                  ///< one sentence for the user
     double peak_change_at_third = 0.0;    ///< relative change of the peak at a third of the target (passages: at half of both limits or less), if confirmed
     bool confirmed = false;               ///< a slower repeat was run
+    double balanced_stress_Pa = 0.0;      ///< the largest stress up to the peak that the typical body carried in balance (its part of the error at most 2 %); not-a-number without one
+    double other_damping = 0.0;           ///< local damping of a second repeat; 0: there was none
+    double peak_change_at_other_damping = 0.0;   ///< relative change of the peak in it
 };
 
 /// How a disc failed in a Brazilian test (P26)-(P29). Places: distance from the centre over the radius; angle from the direction of the
@@ -123,6 +126,16 @@ struct BrazilianFailure {
     double splitting_share = none;         ///< stress at it over the strength
     double contact_arc_top_deg = none;     ///< at the strength
     double contact_arc_bottom_deg = none;
+};
+
+/// The branch behind the peak (P31)-(P33). Not-a-number where the record shows none.
+struct PostPeak {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double modulus_Pa = none;       ///< slope from 0.9 to 0.5 of the peak: < 0 class I, > 0 class II; only where the platens followed the branch (LoadControl)
+    double brittleness = none;      ///< k1 of Tarasov and Potvin: energy of rupture over the elastic energy set free; > 1 class I, 0 ... 1 class II
+    double fracture_share = none;   ///< of the energy dissipated between the peak and the end of the record: by fracture,
+    double friction_share = none;   ///< by friction,
+    double damping_share = none;    ///< and by damping, into which goes all that breaks in jumps
 };
 
 /// Properties read from one test. Not-a-number where the test does not define one.
@@ -145,6 +158,7 @@ struct TestProperties {
     double section_width_m;               ///< of the section that the stresses are taken over: the narrowest one across the load
     std::vector<std::string> remarks;     ///< sentences that a reader of the numbers must know
     BrazilianFailure brazilian{};         ///< Brazilian test only
+    PostPeak post_peak{};                 ///< not of a Brazilian test
 };
 
 struct TestResult {

@@ -137,6 +137,8 @@ PropertySummary summarise(std::span<const TestResult> results) {
     add_uniaxial("sigma_ci_crack_volume_Pa", &TestProperties::sigma_ci_crack_volume_Pa);
     add_uniaxial("sigma_ci_lateral_strain_Pa", &TestProperties::sigma_ci_lateral_strain_Pa);
     add_uniaxial("sigma_cd_Pa", &TestProperties::sigma_cd_Pa);
+    // Not the post-peak modulus: it jumps from minus to plus infinity where the branch is upright, and has no median there.
+    add(summary, "brittleness_k1", collect(results, TestKind::uniaxial_compression, [](const TestProperties& p) { return p.post_peak.brittleness; }));
 
     const BySeed ucs = collect(results, TestKind::uniaxial_compression, strength);
     const BySeed dts = collect(results, TestKind::direct_tension, strength);

@@ -55,17 +55,21 @@ struct NumericsSpec {
     std::optional<double> mass_factor;              ///< adaptive and paper: m = factor x 0.25 K; default 1 + alpha
     std::optional<double> time_step_s;              ///< dynamic; default: 0.8 of the stability limit
     std::optional<long long> maximum_steps;         ///< stop with what there is
-    bool confirm = false;                           ///< repeat each test at a third of the target (or speed) and report the change
+    bool confirm = false;                           ///< repeat each test at a third of the target (or speed), and at another damping, and report the changes
 };
 
 enum class PlateShape { flat, curved };   ///< of the plates of a Brazilian test; curved: the jaws of ISRM
 
 enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian };
 
+/// What the platens keep constant behind the strength: their own speed, the growth of the lateral strain, or that of the dissipated energy.
+enum class LoadControl { displacement, lateral_strain, dissipation };
+
 struct TestSpec {
     TestKind kind = TestKind::uniaxial_compression;
     double sigma3_Pa = 0.0;              ///< biaxial only
     double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
+    LoadControl control = LoadControl::displacement;   ///< behind the strength; jobs: usual_control() unless said; lateral strain: compression only
     double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
     std::optional<double> maximum_stress_Pa; ///< ... or when the stress has reached this, a positive magnitude (biaxial: sigma1)
     PlateShape plates = PlateShape::flat;    ///< Brazilian only
@@ -78,6 +82,11 @@ struct TestSpec {
     std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
 };
 
+/// The control of a job that says none: compressed rock fails by itself and is followed; a body that is pulled apart or split has no branch to follow.
+inline LoadControl usual_control(TestKind kind) {
+    return kind == TestKind::uniaxial_compression || kind == TestKind::biaxial ? LoadControl::dissipation : LoadControl::displacement;
+}
+
 // All values of each, in the order in which users are told; name() is how files call them.
 inline constexpr std::array grain_kinds{GrainKind::flexible, GrainKind::rigid, GrainKind::inner_particles};
 inline constexpr std::array contact_kinds{ContactKind::lobatto3, ContactKind::point};
@@ -86,6 +95,7 @@ inline constexpr std::array plane_states{PlaneState::stress, PlaneState::strain}
 inline constexpr std::array contact_laws{ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle};
 inline constexpr std::array numerics_kinds{NumericsKind::adaptive, NumericsKind::paper, NumericsKind::dynamic};
 inline constexpr std::array plate_shapes{PlateShape::flat, PlateShape::curved};
+inline constexpr std::array load_controls{LoadControl::displacement, LoadControl::lateral_strain, LoadControl::dissipation};
 inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian};
 
 inline const char* name(TestKind kind) {
@@ -121,6 +131,14 @@ inline const char* name(GrainKind kind) {
         case GrainKind::flexible: return "flexible";
         case GrainKind::rigid: return "rigid";
         case GrainKind::inner_particles: return "inner-particles";
+    }
+    return "?";
+}
+inline const char* name(LoadControl control) {
+    switch (control) {
+        case LoadControl::displacement: return "displacement";
+        case LoadControl::lateral_strain: return "lateral-strain";
+        case LoadControl::dissipation: return "dissipation";
     }
     return "?";
 }

@@ -84,6 +84,15 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
                              {"contact_arc_top_deg", number(b.contact_arc_top_deg)},
                              {"contact_arc_bottom_deg", number(b.contact_arc_bottom_deg)}};
     }
+    if (result.test.kind != TestKind::brazilian) {
+        const PostPeak& b = p.post_peak;
+        test["post_peak"] = {{"control", name(result.test.control)},
+                             {"modulus_GPa", in_GPa(b.modulus_Pa)},
+                             {"brittleness_k1", number(b.brittleness)},
+                             {"fracture_share", number(b.fracture_share)},
+                             {"friction_share", number(b.friction_share)},
+                             {"damping_share", number(b.damping_share)}};
+    }
     test["E_GPa"] = in_GPa(p.E_secant_Pa);
     test["E_tangent_GPa"] = in_GPa(p.E_tangent_Pa);
     test["E_average_GPa"] = in_GPa(p.E_average_Pa);
@@ -98,7 +107,6 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["sigma_cd_MPa"] = in_MPa(p.sigma_cd_Pa);
     test["steps"] = result.steps;
     test["steps_to_peak"] = result.steps_to_peak;
-    test["passages"] = result.passages;
     test["passages"] = result.passages;
     test["preparation_steps"] = result.preparation_steps;
     test["wall_s"] = number(result.wall_s);
@@ -120,6 +128,9 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["quasi_static"] = std::string(1, e.grade);
     test["verdict"] = e.verdict;
     test["peak_change_at_third"] = e.confirmed ? number(e.peak_change_at_third) : Json(nullptr);
+    test["balanced_stress_MPa"] = in_MPa(e.balanced_stress_Pa);
+    test["other_damping"] = e.other_damping > 0.0 ? number(e.other_damping) : Json(nullptr);
+    test["peak_change_at_other_damping"] = e.other_damping > 0.0 ? number(e.peak_change_at_other_damping) : Json(nullptr);
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
     test["energy_at_end"] = energy_json(result.energy_at_end);

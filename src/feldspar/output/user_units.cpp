@@ -47,6 +47,7 @@ constexpr auto known = std::to_array<Words>({
     {"sigma_ci_crack_volume_Pa", "Crack initiation stress, crack volumetric strain", "\u03c3ci"},
     {"sigma_ci_lateral_strain_Pa", "Crack initiation stress, lateral strain response", "\u03c3ci"},
     {"sigma_cd_Pa", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd"},
+    {"brittleness_k1", "Brittleness k1: above 1 class I, below 1 class II", "k1"},
     {"E_tangent_Pa", "Young's modulus, tangent at 50 % of the peak", "Et50"},
     {"nu_tangent", "Poisson's ratio, tangent at 50 % of the peak", "\u03bd tangent"},
     {"E_average_Pa", "Young's modulus, average 30 to 70 % of the peak", "Eavg"},
@@ -56,7 +57,7 @@ constexpr auto known = std::to_array<Words>({
 });
 
 bool ends_with_pascal(const std::string& property) { return property.ends_with("_Pa"); }
-bool is_modulus(const std::string& property) { return property.starts_with("E_"); }
+bool is_modulus(const std::string& property) { return property.starts_with("E_") || property.ends_with("_modulus_Pa"); }
 
 }  // namespace
 

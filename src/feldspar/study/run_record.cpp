@@ -52,6 +52,12 @@ Number brazilian_is(const char* name) {
             [](TestResult& r, double value) { r.properties.brazilian.*member = value == 1.0; }};
 }
 
+template <double PostPeak::* member>
+Number post_peak(const char* name) {
+    return {name, [](const TestResult& r) { return r.properties.post_peak.*member; },
+            [](TestResult& r, double value) { r.properties.post_peak.*member = value; }};
+}
+
 const std::vector<Number>& numbers() {
     static const std::vector<Number> all{
         property<&TestProperties::peak_stress_Pa>("strength_Pa"),
@@ -70,6 +76,11 @@ const std::vector<Number>& numbers() {
         property<&TestProperties::sigma_ci_crack_volume_Pa>("sigma_ci_crack_volume_Pa"),
         property<&TestProperties::sigma_ci_lateral_strain_Pa>("sigma_ci_lateral_strain_Pa"),
         property<&TestProperties::sigma_cd_Pa>("sigma_cd_Pa"),
+        post_peak<&PostPeak::modulus_Pa>("post_peak_modulus_Pa"),
+        post_peak<&PostPeak::brittleness>("brittleness_k1"),
+        post_peak<&PostPeak::fracture_share>("post_peak_fracture_share"),
+        post_peak<&PostPeak::friction_share>("post_peak_friction_share"),
+        post_peak<&PostPeak::damping_share>("post_peak_damping_share"),
         brazilian_is<&BrazilianFailure::split>("BTS_split"),
         brazilian_is<&BrazilianFailure::valid>("BTS_valid"),
         brazilian<&BrazilianFailure::first_dip_Pa>("BTS_first_dip_Pa"),

@@ -74,6 +74,15 @@ TEST(Job, DefaultsAreThoseOfTheSpecs) {
     EXPECT_EQ(job.brazilian_specimen.outline.diameter_m, 0.08);
 }
 
+TEST(Job, CompressionIsFollowedBehindThePeakUnlessTold) {
+    const auto control = [](const std::string& text) { return parse_job(text, "job.toml").tests.front().control; };
+    EXPECT_EQ(control(sample_job), LoadControl::dissipation);
+    EXPECT_EQ(control(edited("kind = \"uniaxial-compression\"", "kind = \"direct-tension\"")), LoadControl::displacement);
+    for (const LoadControl each : load_controls)
+        EXPECT_EQ(control(edited("kind = \"uniaxial-compression\"", std::string("kind = \"uniaxial-compression\"\ncontrol = \"") + name(each) + "\"")), each);
+    EXPECT_EQ(control(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"")), LoadControl::displacement) << "a fixed speed follows nothing";
+}
+
 TEST(Job, BrazilianDiscHasTheSpecimensWidthUnlessTold) {
     const Job usual = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\""), "job");
     EXPECT_EQ(usual.brazilian_specimen.outline.diameter_m, 0.08);

@@ -35,7 +35,7 @@ TEST(RateControl, AccuracyAndTargetAreInverse) {
         numerics.residual_target = 2e-3;
         EXPECT_DOUBLE_EQ(residual_target(numerics, kind), 2e-3);
     }
-    EXPECT_DOUBLE_EQ(residual_share(TestKind::biaxial), 1.0);
+    EXPECT_DOUBLE_EQ(residual_share(TestKind::biaxial), 2.0);
     EXPECT_NEAR(residual_target(NumericsSpec{}, TestKind::direct_tension), 3.0 * residual_target(NumericsSpec{}, TestKind::biaxial), 1e-15);
 }
 

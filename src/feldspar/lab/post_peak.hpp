@@ -1,0 +1,13 @@
+// The branch behind the peak: post-peak modulus, brittleness, where the energy went (P31)-(P33), docs/theory/properties.md.
+#pragma once
+
+#include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/lab/result.hpp"
+
+namespace feldspar {
+
+/// @param curve  up to the peak, from loading_curve() of the same result
+/// @param E_Pa   modulus with which the specimen unloads: the tangent one
+PostPeak post_peak(const TestResult& result, const Peak& peak, const LoadingCurve& curve, double E_Pa);
+
+}  // namespace feldspar

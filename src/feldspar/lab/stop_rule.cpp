@@ -1,0 +1,55 @@
+#include "feldspar/lab/stop_rule.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace feldspar {
+namespace {
+
+constexpr double kPastPeak = 0.98;        // share of the peak below which it is one
+constexpr double kPressedOn = 2.0;        // a disc that was not split by then, or does not let go, is pressed no farther
+constexpr long long kStepsAfterPeak = 100;
+
+}  // namespace
+
+StopRule::StopRule(const Experiment& experiment, const TestResult& result) : e_(&experiment), result_(&result) {
+    if (const auto disc = loaded_disc(result)) splitting_.emplace(*disc);
+}
+
+bool StopRule::past_peak(double load_Pa) const { return load_Pa < kPastPeak * peak_Pa_ && (!splitting_ || split()); }
+
+bool StopRule::steps_are_spent() const {
+    const auto& most = e_->setup.numerics.maximum_steps;
+    return most && result_->steps >= *most;
+}
+
+std::optional<std::string> StopRule::ended(const HistoryRow& row, bool unloading) {
+    const double load = e_->direction * row.axial_stress_Pa;
+    if (load > peak_Pa_ && !split()) {
+        peak_Pa_ = load;
+        peak_step_ = e_->step;
+        peak_strain_ = row.axial_strain;
+    }
+    look_for_split();
+    const TestSpec& test = e_->setup.test;
+    const long long after = e_->step - peak_step_;
+    if (splitting_ && after >= kStepsAfterPeak && row.axial_strain >= kPressedOn * peak_strain_)
+        return fmt::format("the plates have approached {:g} times as far as at the {}", kPressedOn,
+                           split() ? "strength of the disc" : "largest stress, and the disc is not split");
+    if (after >= kStepsAfterPeak && load <= test.stop_fraction * peak_Pa_ && !unloading && (!splitting_ || split()))
+        return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * test.stop_fraction);
+    if (std::abs(row.axial_strain) >= test.maximum_strain)
+        return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
+    if (test.maximum_stress_Pa && load >= *test.maximum_stress_Pa)
+        return fmt::format("the stress has reached its maximum of {:.4g} MPa", *test.maximum_stress_Pa / 1e6);
+    if (steps_are_spent()) return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);
+    return std::nullopt;
+}
+
+void StopRule::look_for_split() {
+    if (!splitting_) return;
+    for (; cracks_seen_ < result_->cracks.size(); ++cracks_seen_) splitting_->add(result_->cracks[cracks_seen_]);
+}
+
+}  // namespace feldspar
