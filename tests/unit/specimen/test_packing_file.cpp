@@ -44,7 +44,7 @@ protected:
 };
 
 TEST_F(PackingFile, ComesBackWithTheSameBits) {
-    for (const SpecimenSpec& spec : {rectangle(0.03, 0.03), disc(0.03), ell()}) {
+    for (const SpecimenSpec& spec : {rectangle(0.03, 0.03), disc(0.03), flattened_disc(0.03), ell()}) {
         const Specimen made = make_specimen(spec, 1);
         save_packing(made, file_);
         SpecimenSpec from_file = spec;

@@ -57,11 +57,13 @@ function padded([low, high]) {
   return [low < 0 ? low - margin : low, high > 0 ? high + margin : high];
 }
 
-/** Draws `mark` ("dot", "ring", "diamond", "square") at canvas position (x, y). */
+/** Draws `mark` ("dot", "ring", "diamond", "square", "triangle") at canvas position (x, y). */
 function drawMark(ctx, mark, x, y, size, color) {
   ctx.beginPath();
   if (mark === "diamond") {
     ctx.moveTo(x, y - size * 1.25); ctx.lineTo(x + size * 1.25, y); ctx.lineTo(x, y + size * 1.25); ctx.lineTo(x - size * 1.25, y); ctx.closePath();
+  } else if (mark === "triangle") {
+    ctx.moveTo(x, y - size * 1.2); ctx.lineTo(x + size * 1.1, y + size * 0.8); ctx.lineTo(x - size * 1.1, y + size * 0.8); ctx.closePath();
   } else if (mark === "square") {
     ctx.rect(x - size, y - size, 2 * size, 2 * size);
   } else {
