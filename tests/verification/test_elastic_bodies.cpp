@@ -1,8 +1,6 @@
 // Whole elastic specimens against closed forms: E, nu, equilibrium, the Brazilian stress field, isotropic compression.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -84,15 +82,16 @@ TestSpec brazilian(PlateShape plates, std::optional<double> plate_Kn_Pa_m) {
 }
 
 // Where an arc ends on the edges of grains is even chance, an edge (4.3 degrees) inside or outside of it, so single arcs say little and the mean
-// over packings and both plates says much: of eight packings it is uncertain by 4.3 degrees / sqrt(12) * sqrt(2) / sqrt(16) = 0.44 degrees.
+// over packings and both plates says much: of six packings it is uncertain by 4.3 degrees / sqrt(12) * sqrt(2) / sqrt(12) = 0.51 degrees.
 struct MeanArcs {
     double seen_deg = 0.0, closed_form_deg = 0.0;
 };
+constexpr double three_deviations_deg = 1.5;
 
 template <class HalfWidth>
 MeanArcs mean_arcs(const TestSpec& test, double softer, const HalfWidth& half_width_m) {
     MeanArcs mean;
-    constexpr int kPackings = 8;
+    constexpr int kPackings = 6;
     for (std::uint64_t seed = 1; seed <= kPackings; ++seed) {
         const HistoryRow row = start_of_disc(test, softer, seed);
         const double P_per_t = 0.5 * std::numbers::pi * 0.08 * row.axial_stress_Pa;   // N/m
@@ -102,23 +101,26 @@ MeanArcs mean_arcs(const TestSpec& test, double softer, const HalfWidth& half_wi
     return mean;
 }
 
-// Strips: an elastic foundation k between a stiff disc and a plate or jaw has P/t = 4/3 k delta a with a^2 = D delta / (1 - R/R_jaw).
+// Strips (docs/validation/brazilian-plates.md): an elastic foundation k between a disc that is stiff beside it and a plate or jaw has
+// P/t = 4/3 k delta a with a^2 = D delta / (1 - R/R_jaw). Here the disc gives a twentieth of what the strips give.
 TEST(ElasticBodies, ArcsOnStripsAreThoseOfAnElasticFoundation) {
-    constexpr double k = 1.6e12;
+    constexpr double k = 1.6e11;
     for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
-        const MeanArcs arcs = mean_arcs(brazilian(plates, k), 0.05, [&, s = slenderness](double P_per_t) { return std::cbrt(0.75 * P_per_t / k * s * 0.08); });
-        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, 1.3) << name(plates);   // three standard deviations
+        const MeanArcs arcs = mean_arcs(brazilian(plates, k), 1.0, [&, s = slenderness](double P_per_t) { return std::cbrt(0.75 * P_per_t / k * s * 0.08); });
+        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, three_deviations_deg) << name(plates);
+        EXPECT_GT(arcs.closed_form_deg, 8.0) << "else the arcs are too small for the grains";
     }
 }
 
-// Hard plates and a softer disc: Hertz, a^2 = 4 P R' / (pi E t) with R' = R for a plate and R / (1 - R/R_jaw) for a jaw (plane stress).
+// Hard plates and a soft disc: Hertz, a^2 = 4 P R' / (pi E t) with R' = R for a plate and R / (1 - R/R_jaw) for a jaw (plane stress).
 TEST(ElasticBodies, ArcsUnderHardPlatesAreThoseOfHertz) {
-    constexpr double softer = 16.0;
+    constexpr double softer = 50.0;
     for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
         const MeanArcs arcs = mean_arcs(brazilian(plates, {}), softer, [&, s = slenderness](double P_per_t) {
             return std::sqrt(4.0 * P_per_t * s * 0.04 / (std::numbers::pi * 24.3e9 / softer));   // E of the specimen, not of its grains
         });
-        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, 1.3) << name(plates);
+        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, three_deviations_deg) << name(plates);
+        EXPECT_GT(arcs.closed_form_deg, 8.0) << "else the arcs are too small for the grains";
     }
 }
 
@@ -141,20 +143,18 @@ double tension_in_the_centre(const TestSetup& s) {
     return sxx / volume / (2.0 * P / (std::numbers::pi * 0.08 * e.assembly.thickness_m));
 }
 
-// Finite elements of a flattened disc have 0.958 times k (0.957 to 0.961 over angles and plates) as the mean within 0.2 R. Grains and their mesh
-// scatter by 0.012 from packing to packing; the mean of four is held to 0.012.
+// Finite elements of a flattened disc (test_flattened_disc.cpp) have 0.956 to 0.961 times k as the mean within 0.2 R. With grains of 1.5 mm the flats
+// have 9 and 14 edges; what is left of the difference is theirs (grains of 3 mm: 1 % at 20 degrees, 2 % at 30).
 TEST(ElasticBodies, AFlattenedDiscHasTheTensionOfItsCoefficientInItsCentre) {
-    for (const auto& [degrees, plate_Kn] : {std::pair{20.0, std::optional<double>{}}, std::pair{20.0, std::optional(1.6e12)}, std::pair{30.0, std::optional<double>{}}}) {
+    for (const auto& [degrees, plate_Kn] : {std::pair{20.0, std::optional<double>{}}, std::pair{30.0, std::optional(1.6e12)}}) {
         SpecimenSpec spec = fixtures::disc(0.08);
+        spec.grain_sizes.minimum_m = 0.001;
+        spec.grain_sizes.maximum_m = 0.002;
         spec.outline.flat_angle_rad = degrees * std::numbers::pi / 180.0;
-        double seen = 0.0, expected = 0.0;
-        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-            TestSetup s = setup(make(spec, seed), TestKind::brazilian);
-            s.test = brazilian(PlateShape::flat, plate_Kn);
-            seen += tension_in_the_centre(s) / 4.0;
-            expected += 0.958 * flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test) / 4.0;
-        }
-        EXPECT_NEAR(seen, expected, 0.012) << degrees << " degrees";
+        TestSetup s = setup(make(spec), TestKind::brazilian);
+        s.test = brazilian(PlateShape::flat, plate_Kn);
+        const double k = flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test);
+        EXPECT_NEAR(tension_in_the_centre(s) / (0.958 * k), 1.0, 0.01) << degrees << " degrees";
     }
 }
 
@@ -182,44 +182,6 @@ TEST(ElasticBodies, BrazilianStressUnderCurvedJawsIsThatOfTheArcFound) {
     const double a = 0.25 * (row.contact_arc_top_deg + row.contact_arc_bottom_deg) * std::numbers::pi / 180.0;
     const double under_arc = (std::sin(2.0 * a) - a) / std::sin(a);
     EXPECT_NEAR(tension_in_the_centre(s), closed_form_mean(0.04, 0.008).x * under_arc, 0.03) << "2a = " << 2.0 * a * 180.0 / std::numbers::pi;
-}
-
-TEST(ElasticBodies, DISABLED_Scan) {
-    for (const double degrees : {20.0, 30.0})
-        for (const auto plate_Kn : {std::optional<double>{}, std::optional(1.6e12)})
-            for (const double mu : {0.4}) try {
-                SpecimenSpec spec = fixtures::disc(0.08);
-                spec.outline.flat_angle_rad = degrees * std::numbers::pi / 180.0;
-                spec.grain_sizes.minimum_m = 0.001; spec.grain_sizes.maximum_m = 0.002;
-                double seen = 0.0, expected = 0.0, squares = 0.0;
-                constexpr int n = 1;
-                for (std::uint64_t seed = 1; seed <= n; ++seed) {
-                    TestSetup s = setup(make(spec, seed), TestKind::brazilian);
-                    s.test = brazilian(PlateShape::flat, plate_Kn);
-                    s.test.plate_mu = mu;
-                    const double one = tension_in_the_centre(s);
-                    seen += one / n;
-                    squares += one * one / n;
-                    expected += flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test) / n;
-                }
-                std::printf("%g deg Kn %g mu %g: mean %.4f sd %.4f k %.4f ratio %.4f\n", degrees, plate_Kn.value_or(0), mu, seen, std::sqrt(squares - seen * seen), expected, seen / expected); } catch (const std::exception& e) { std::printf("%s\n", e.what());
-            }
-}
-
-TEST(ElasticBodies, DISABLED_Arcs) {
-    for (const double softer : {0.25, 0.5, 1.0})
-        for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
-            const auto t = std::chrono::steady_clock::now();
-            const MeanArcs arcs = mean_arcs(brazilian(plates, 1.6e12), softer, [&, s = slenderness](double P_per_t) { return std::cbrt(0.75 * P_per_t / 1.6e12 * s * 0.08); });
-            std::printf("strips softer %g %s: seen %.2f closed %.2f in %.1f s\n", softer, name(plates), arcs.seen_deg, arcs.closed_form_deg, std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count());
-        }
-    for (const double softer : {16.0, 50.0, 100.0})
-        for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
-            const auto t = std::chrono::steady_clock::now();
-            const MeanArcs arcs = mean_arcs(brazilian(plates, {}), softer, [&, s = slenderness](double P_per_t) {
-                return std::sqrt(4.0 * P_per_t * s * 0.04 / (std::numbers::pi * 24.3e9 / softer)); });
-            std::printf("hertz softer %g %s: seen %.2f closed %.2f in %.1f s\n", softer, name(plates), arcs.seen_deg, arcs.closed_form_deg, std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count());
-        }
 }
 
 struct Elastic {

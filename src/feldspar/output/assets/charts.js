@@ -122,8 +122,9 @@ class XYChart {
     if (o.equal) this.host.style.height = this.height() + "px";
     const r = padded(extent(right.map((s) => s.y)));
     const ink = theme.get("soft"), line = theme.get("line");
+    // uPlot scales whole pixels only: "12.5px" would stay small on a dense screen
     const axis = (scale, label, side, grid) => ({
-      scale, side, label, stroke: ink, font: "12px system-ui, sans-serif", labelFont: "12.5px system-ui, sans-serif", labelGap: side === 2 ? 2 : 4,
+      scale, side, label, stroke: ink, font: "12px system-ui, sans-serif", labelFont: "13px system-ui, sans-serif", labelGap: side === 2 ? 2 : 4,
       labelSize: 22, size: side === 2 ? 34 : 52, gap: 4, grid: {show: grid, stroke: line, width: 1}, ticks: {stroke: line, width: 1, size: 5},
       values: (u, ticks) => ticks.map((t) => (t === null ? "" : String(Number(t.toPrecision(6))).replace("-", "\u2212"))),
     });

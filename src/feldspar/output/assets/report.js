@@ -96,14 +96,28 @@ function writeProperties() {
 }
 
 /** The moments of a Brazilian test, as marks on its curve; each of the same shape and colour everywhere. */
-const markLooks = {"first crack": ["#e69f00", "triangle", 5], "first dip": ["#0072b2", "square", 4], "start of the splitting crack": ["#d55e00", "diamond", 4.5],
-  "start of the longest crack": ["#d55e00", "diamond", 4.5], strength: ["ink", "ring", 5], "largest stress": ["#cc79a7", "dot", 4]};
+const markLooks = {"first crack": ["#e69f00", "triangle", 5], "first dip": ["#0072b2", "square", 4], "start of the splitting crack": ["#d55e00", "diamond", 4],
+  "start of the longest crack": ["#d55e00", "diamond", 4], strength: ["ink", "ring", 7], "largest stress": ["#cc79a7", "dot", 4]};
+
+/** The marks of a test; those that fall together become one with both names. The strength comes first: its ring is drawn around others. */
+function marksOf(test) {
+  const marks = [];
+  for (const m of (test.brazilian && test.brazilian.marks) || []) {
+    const same = marks.find((other) => (m.crack >= 0 ? other.crack === m.crack : other.crack < 0 && other.strain === m.strain && other.stress === m.stress));
+    if (same) Object.assign(same, {name: same.name + " = " + m.name, look: markLooks[m.name]});
+    else marks.push({...m, look: markLooks[m.name]});
+  }
+  return marks.sort((a, b) => (b.look[1] === "ring") - (a.look[1] === "ring"));
+}
 
 function markSeries(test) {
-  return ((test.brazilian && test.brazilian.marks) || []).map((m) => {
-    const [color, mark, size] = markLooks[m.name];
-    return {label: m.name, x: [m.strain], y: [m.stress], color, mark, size};
-  });
+  return marksOf(test).map(({name, strain, stress, look: [color, mark, size]}) => ({label: name, x: [strain], y: [stress], color, mark, size}));
+}
+
+function strainLabelOf(test, short) {
+  if (test.kind !== "brazilian") return short ? "Axial strain (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
+  const over = test.brazilian && test.brazilian.flat_coefficient !== null ? "distance of the flats" : "diameter";
+  return (short ? "Approach / " : "Approach of the plates / ") + over + " (10\u207b\u00b3)";
 }
 
 function stressLabelOf(test) {
@@ -172,7 +186,7 @@ function writeTest(host, tests) {
   const summary = peaks.length ? "Strength " + show(median(peaks)) + " MPa" + (peaks.length > 1 ? ", median of " + peaks.length + " packings (" + show(Math.min(...peaks)) + " to " + show(Math.max(...peaks)) + ")" : "") + "." : "";
   const open = tests.filter((t) => !t.peak_reached).length;
   host.append(h("h3", {}, titleOf(tests[0])), h("p", {class: "soft"}, summary + (open ? " The peak was not reached in " + plural(open, "test") + "." : "")));
-  const strainLabel = tests[0].kind === "brazilian" ? "Approach of the plates / diameter (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
+  const strainLabel = strainLabelOf(tests[0]);
   const stressLabel = stressLabelOf(tests[0]);
   const updates = [];
   host.append(picker("Packing (seed)", tests.map((t) => String(t.seed)), 0, (i) => updates.forEach((update) => update(i))) || "");
@@ -283,7 +297,7 @@ function writePattern() {
   let curve = null, playing = null, current = 0, specimen = null;
   const cache = [];
 
-  const viewer = new Viewer(canvas, readout, () => showMoment(), (test) => ((data.tests[test].brazilian || {}).marks || []).filter((m) => m.crack >= 0).map((m) => ({name: m.name, crack: m.crack, look: markLooks[m.name]})));
+  const viewer = new Viewer(canvas, readout, () => showMoment(), (test) => marksOf(data.tests[test]).filter((m) => m.crack >= 0));
   const go = (n) => { viewer.snapshot = n; slider.value = n; showMoment(); viewer.draw(); };
   slider.addEventListener("input", () => go(Number(slider.value)));
   const play = h("button", {type: "button", onclick: () => {
@@ -317,12 +331,12 @@ function writePattern() {
     }
     const key = (color, text) => h("span", {}, h("b", {style: "border-color:" + color}), text);
     crackKey.replaceChildren();
-    if (specimen) for (const m of viewer.marksOf(specimen.meta.test)) crackKey.append(h("span", {}, h("b", {class: m.look[1], style: "background:" + m.look[0]}), m.name));
     if (viewer.cracks === "mode") crackKey.append(key("var(--tensile)", "tensile crack"), key("var(--shear)", "shear crack"));
     if (viewer.cracks === "time") {
       const [first, last] = viewer.crackTimes(), colors = palette("viridis");
       crackKey.append(key(css(colors[0]), "first crack, strain " + show(first) + "\u00b710\u207b\u00b3"), key(css(colors[128]), "midway"), key(css(colors[255]), "last crack, " + show(last) + "\u00b710\u207b\u00b3"));
     }
+    if (specimen) for (const m of viewer.marksOf(specimen.meta.test)) crackKey.append(h("span", {}, h("b", {class: m.look[1], style: "background:" + m.look[0]}), m.name));
   }
   function showMoment() {
     const n = viewer.snapshot, s = specimen.meta.snapshots[n], test = data.tests[specimen.meta.test];
@@ -336,7 +350,7 @@ function writePattern() {
       {label: "moments kept", x: all.map((k) => k.strain), y: all.map((k) => k.stress), color: "soft", mark: "dot", size: 3},
       {label: "shown", x: [s.strain], y: [s.stress], color: "shear", mark: "ring", size: 5},
       ...markSeries(test).map((m) => ({...m, size: m.size - 1}))];
-    const x = test.kind === "brazilian" ? "Approach / diameter (10\u207b\u00b3)" : "Axial strain (10\u207b\u00b3)";
+    const x = strainLabelOf(test, true);
     if (curve) { curve.options.x = x; curve.set(series); }
     else curve = new XYChart(curveCard, {x, y: "Stress (MPa)", height: 190, series});
   }
