@@ -81,34 +81,34 @@ TestSpec brazilian(PlateShape plates, std::optional<double> plate_Kn_Pa_m) {
     return test;
 }
 
-// Where an arc ends on the edges of grains is even chance, an edge (4.3 degrees) inside or outside of it, so single arcs say little and the mean
-// over packings and both plates says much: of six packings it is uncertain by 4.3 degrees / sqrt(12) * sqrt(2) / sqrt(12) = 0.51 degrees.
+// Where an arc ends on the edges of grains is even chance, an edge (4.3 degrees) inside or outside of it, so single arcs say little. The mean
+// over n packings and both plates is uncertain by 4.3 degrees / sqrt(12) * sqrt(2) / sqrt(2 n), and three times that is allowed. (Of five
+// packings 0.2 to 0.7 degrees were off in the four cases.)
 struct MeanArcs {
-    double seen_deg = 0.0, closed_form_deg = 0.0;
+    double seen_deg = 0.0, closed_form_deg = 0.0, allowed_deg = 0.0;
 };
-constexpr double three_deviations_deg = 1.5;
 
 template <class HalfWidth>
-MeanArcs mean_arcs(const TestSpec& test, double softer, const HalfWidth& half_width_m) {
+MeanArcs mean_arcs(const TestSpec& test, double softer, int packings, const HalfWidth& half_width_m) {
     MeanArcs mean;
-    constexpr int kPackings = 6;
-    for (std::uint64_t seed = 1; seed <= kPackings; ++seed) {
-        const HistoryRow row = start_of_disc(test, softer, seed);
+    for (int seed = 1; seed <= packings; ++seed) {
+        const HistoryRow row = start_of_disc(test, softer, static_cast<std::uint64_t>(seed));
         const double P_per_t = 0.5 * std::numbers::pi * 0.08 * row.axial_stress_Pa;   // N/m
-        mean.seen_deg += 0.5 * (row.contact_arc_top_deg + row.contact_arc_bottom_deg) / kPackings;
-        mean.closed_form_deg += 2.0 * std::asin(half_width_m(P_per_t) / 0.04) * 180.0 / std::numbers::pi / kPackings;
+        mean.seen_deg += 0.5 * (row.contact_arc_top_deg + row.contact_arc_bottom_deg) / packings;
+        mean.closed_form_deg += 2.0 * std::asin(half_width_m(P_per_t) / 0.04) * 180.0 / std::numbers::pi / packings;
     }
+    mean.allowed_deg = 3.0 * 4.3 / std::sqrt(12.0) * std::sqrt(2.0) / std::sqrt(2.0 * packings);
     return mean;
 }
 
 // Strips (docs/validation/brazilian-plates.md): an elastic foundation k between a disc that is stiff beside it and a plate or jaw has
 // P/t = 4/3 k delta a with a^2 = D delta / (1 - R/R_jaw). Here the disc gives a twentieth of what the strips give.
 TEST(ElasticBodies, ArcsOnStripsAreThoseOfAnElasticFoundation) {
-    constexpr double k = 1.6e11;
+    constexpr double k = 4e11;
     for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
-        const MeanArcs arcs = mean_arcs(brazilian(plates, k), 1.0, [&, s = slenderness](double P_per_t) { return std::cbrt(0.75 * P_per_t / k * s * 0.08); });
-        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, three_deviations_deg) << name(plates);
-        EXPECT_GT(arcs.closed_form_deg, 8.0) << "else the arcs are too small for the grains";
+        const MeanArcs arcs = mean_arcs(brazilian(plates, k), 1.0, 2, [&, s = slenderness](double P_per_t) { return std::cbrt(0.75 * P_per_t / k * s * 0.08); });
+        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, arcs.allowed_deg) << name(plates);
+        EXPECT_GT(arcs.closed_form_deg, 6.0) << "else the arcs are too small for the grains";
     }
 }
 
@@ -116,10 +116,10 @@ TEST(ElasticBodies, ArcsOnStripsAreThoseOfAnElasticFoundation) {
 TEST(ElasticBodies, ArcsUnderHardPlatesAreThoseOfHertz) {
     constexpr double softer = 50.0;
     for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
-        const MeanArcs arcs = mean_arcs(brazilian(plates, {}), softer, [&, s = slenderness](double P_per_t) {
+        const MeanArcs arcs = mean_arcs(brazilian(plates, {}), softer, 3, [&, s = slenderness](double P_per_t) {
             return std::sqrt(4.0 * P_per_t * s * 0.04 / (std::numbers::pi * 24.3e9 / softer));   // E of the specimen, not of its grains
         });
-        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, three_deviations_deg) << name(plates);
+        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, arcs.allowed_deg) << name(plates);
         EXPECT_GT(arcs.closed_form_deg, 8.0) << "else the arcs are too small for the grains";
     }
 }
