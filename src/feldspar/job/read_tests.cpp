@@ -181,7 +181,8 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     TestList result;
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",
-                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "maximum_stress", "diameter", "disc", "flat_angle", "plates", "jaw_radius", "plate_stiffness_factor", "plate_Kn",
+                                                {"kind", "sigma3", "stop_fraction", "maximum_strain", "maximum_stress", "diameter", "disc", "flat_angle",
+                                                 "plates", "jaw_radius", "plate_stiffness_factor", "plate_Kn",
                                                  "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
         ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {

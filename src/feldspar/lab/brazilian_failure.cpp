@@ -73,7 +73,8 @@ std::vector<BrazilianMark> brazilian_marks(const TestResult& result) {
     }
     at_row("strength", peak->row);
     const double largest = largest_stress(result);
-    const auto row = std::find_if(result.history.begin(), result.history.end(), [&](const HistoryRow& r) { return r.phase != Phase::consolidation && r.axial_stress_Pa == largest; });
+    const auto is_largest = [&](const HistoryRow& r) { return r.phase != Phase::consolidation && r.axial_stress_Pa == largest; };
+    const auto row = std::find_if(result.history.begin(), result.history.end(), is_largest);
     if (largest > peak->stress_Pa && row != result.history.end()) at_row("largest stress", static_cast<std::size_t>(row - result.history.begin()));
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<BrazilianMark> marks;

@@ -107,7 +107,10 @@ Json test_json(const TestResult& result, std::size_t tests) {
                              {"flat_coefficient", rounded(b.flat_coefficient)},
                              {"marks", Json::array()}};
         for (const BrazilianMark& mark : brazilian_marks(result))
-            test["brazilian"]["marks"].push_back({{"name", mark.name}, {"strain", rounded(mark.axial_strain * 1e3)}, {"stress", rounded(mark.stress_Pa * MPa)}, {"crack", mark.crack}});
+            test["brazilian"]["marks"].push_back({{"name", mark.name},
+                                                  {"strain", rounded(mark.axial_strain * 1e3)},
+                                                  {"stress", rounded(mark.stress_Pa * MPa)},
+                                                  {"crack", mark.crack}});
     }
     test["E"] = rounded(p.E_secant_Pa * GPa);
     test["nu"] = rounded(p.nu);

@@ -89,9 +89,10 @@ void require_same_outline(PackingReader& reader, const Outline& outline) {
     const auto same = [&](Vec2 a, Vec2 b) { return norm(a - b) <= tolerance; };
     if (outline.flattened()) {
         const auto disc = reader.numbers("flattened-disc", 4);
-        if (!same({disc[0], disc[1]}, outline.centre) || std::abs(disc[2] - outline.radius_m) > tolerance || std::abs(disc[3] - outline.flat_height_m) > tolerance) {
-            reader.fail(fmt::format("the packing was made for a disc of radius {:.9g} m with flats {:.9g} m from its centre", disc[2], disc[3]),
-                        fmt::format("the outline of this specimen: a disc of radius {:.9g} m with flats {:.9g} m from its centre", outline.radius_m, outline.flat_height_m));
+        const bool same_lengths = std::abs(disc[2] - outline.radius_m) <= tolerance && std::abs(disc[3] - outline.flat_height_m) <= tolerance;
+        if (!same({disc[0], disc[1]}, outline.centre) || !same_lengths) {
+            const auto in_words = [](double radius_m, double flat_m) { return fmt::format("a disc of radius {:.9g} m with flats {:.9g} m from its centre", radius_m, flat_m); };
+            reader.fail("the packing was made for " + in_words(disc[2], disc[3]), "the outline of this specimen: " + in_words(outline.radius_m, outline.flat_height_m));
         }
         return;
     }
