@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/base/thread_shares.hpp"
+#include "feldspar/lab/flattened_disc.hpp"
 #include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
@@ -40,6 +42,15 @@ void print_specimen(const char* what, const Specimen& specimen) {
     fmt::print("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
     fmt::print("  area error            {:.1e}\n", q.area_error);
     for (const std::string& warning : q.warnings) fmt::print("  warning: {}\n", warning);
+}
+
+// What presses on the flats decides how much of 2P / (pi D t) counts.
+std::string flats_text(const PlannedRun& run, const Specimen& specimen) {
+    if (run.test->kind != TestKind::brazilian || !specimen.outline.flattened()) return {};
+    const double angle = specimen.spec.outline.flat_angle_rad, R = specimen.outline.radius_m;
+    const Variant& v = *run.variant;
+    return fmt::format("  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n", angle * 180.0 / std::numbers::pi,
+                       2e3 * R * std::sin(0.5 * angle), 2e3 * specimen.outline.flat_height_m, flat_coefficient(specimen, v.model, v.grain, v.contact, *run.test));
 }
 
 std::string memory_text(double bytes) {
@@ -114,10 +125,12 @@ private:
         if (first && job_.has_variants()) text_ += (text_.empty() ? "" : "\n") + variant_text(*run.variant);
         if (job_.has_variants()) {
             if (first) text_ += preview_text(preview);
+            text_ += flats_text(run, *specimen);
             text_ += fmt::format("  {} x {}: about {:.0f} steps, {} each\n", group.runs, title(*run.test), preview.expected_steps,
                                  duration_text(preview.expected_seconds));
         } else {
             text_ += fmt::format("{} x {}\n{}", group.runs, title(*run.test), preview_text(preview));
+            text_ += flats_text(run, *specimen);
             text_ += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps,
                                  duration_text(preview.expected_seconds));
         }

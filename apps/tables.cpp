@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "campaign.hpp"
+#include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/base/text_table.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -112,6 +113,27 @@ std::string cost_table(const std::vector<VariantSummary>& summaries) {
     return "\n" + aligned(rows, 1) + fmt::format("in brackets: as a multiple of {}\n", summaries.front().variant->name);
 }
 
+// How each disc of a Brazilian test failed: its strength is worth as much as that.
+std::string disc_table(std::span<const TestResult> results) {
+    std::vector<Row> rows{{"Brazilian test", "seed", "BTS MPa", "first dip", "largest", "valid (ISRM)", "arc top", "bottom", "first crack r/R", "at share"}};
+    bool flattened = false;
+    for (const TestResult& r : results) flattened = flattened || (r.specimen && r.specimen->outline.flattened() && r.test.kind == TestKind::brazilian);
+    if (flattened) rows.front().emplace_back("k");
+    const auto degrees = [](double value) { return std::isfinite(value) ? fmt::format("{:.1f} deg", value) : "-"; };
+    for (const TestResult& r : results) {
+        if (r.test.kind != TestKind::brazilian) continue;
+        const BrazilianFailure& b = r.properties.brazilian;
+        rows.push_back({title(r.variant, r.test), std::to_string(r.seed), peak_text(r), table_number(b.first_dip_Pa / 1e6), table_number(b.largest_Pa / 1e6),
+                        validity_in_words(b), degrees(b.contact_arc_top_deg), degrees(b.contact_arc_bottom_deg), table_number(b.first_crack_radius),
+                        table_number(b.first_crack_share)});
+        if (flattened) rows.back().push_back(table_number(b.flat_coefficient));
+    }
+    if (rows.size() == 1) return {};
+    return "\n" + aligned(rows, 1) + "BTS: largest stress until the disc is split ('>': it was not); first dip: before the first fall of 5 %; largest: of the whole record\n" +
+           wrapped_text("valid (ISRM): split by a crack from the central part, r/R up to 0.6; arcs: of contact at the BTS; share: of the BTS, at the first crack" +
+                        std::string(flattened ? "; k: stresses are k 2P / (pi D t)" : ""));
+}
+
 }  // namespace
 
 std::string variant_table(const Job& job, std::span<const TestResult> results) {
@@ -166,6 +188,7 @@ std::string test_table(std::span<const TestResult> results) {
     std::string text = aligned(rows, 1);
     text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n";
     text += "quasi-static: A to about 0.5 %, B to about 2 %, C not shown\n";
+    text += disc_table(results);
     for (const TestResult& r : results) {   // a section other than the whole width is said beside the number
         for (const std::string& remark : r.properties.remarks) text += wrapped_text(fmt::format("{}, seed {}: {}", title(r.variant, r.test), r.seed, remark));
     }

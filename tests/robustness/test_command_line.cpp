@@ -147,6 +147,27 @@ TEST(CommandLine, CheckPrintsAndWritesNothing) {
     EXPECT_EQ(place.entries(), (std::set<std::string>{"job.toml"}));
 }
 
+TEST(CommandLine, AFlattenedDiscIsCheckedRunAndReported) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"brazilian\"\ndiameter = \"60 mm\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\"\n", "[1]"));
+    const Outcome checked = run_program(place.path(), {"check", "job.toml"});
+    EXPECT_EQ(checked.code, 0) << checked.err;
+    EXPECT_NE(checked.out.find("flats of the disc     25 degrees, 13 mm wide, 58.6 mm apart; stress = k 2P / (pi D t), k = 0."), std::string::npos) << checked.out;
+    const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "out"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* part : {"valid (ISRM)", "first dip", "arc top", "first crack r/R", "25.0 deg", "k: stresses are k 2P / (pi D t)"})
+        EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
+    const auto brazilian = nlohmann::json::parse(read_text(place / "out/summary.json")).at("tests").at(0).at("brazilian");
+    EXPECT_NEAR(brazilian.at("flat_angle_deg").get<double>(), 25.0, 1e-9);
+    EXPECT_GT(brazilian.at("flat_coefficient").get<double>(), 0.87);
+    EXPECT_LT(brazilian.at("flat_coefficient").get<double>(), 0.95);
+    // what it leaves runs again, on the same packing
+    EXPECT_NE(read_text(place / "out/packing-disc-s1.txt").find("flattened-disc 0 0 0.0"), std::string::npos);
+    const Outcome again = run_program(place.path(), {"check", "out/job-resolved.toml"});
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_NE(again.out.find("25 degrees"), std::string::npos) << again.out;
+}
+
 TEST(CommandLine, ARunLeavesItsResults) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = "

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include <gtest/gtest.h>
 
 #include "feldspar/lab/body_energy.hpp"
+#include "feldspar/lab/flattened_disc.hpp"
 #include "fixtures.hpp"
 
 namespace feldspar {
@@ -60,42 +62,76 @@ TEST(ElasticBodies, BrazilianStressAroundTheCentreIsTheClosedForm) {
     EXPECT_NEAR(-reactions.loading / reactions.rest, 1.0, 2e-3);
 }
 
-// Row of the elastic start of a disc between yielding plates: 1600 GPa/m, as bearing strips.
-HistoryRow start_of_disc(PlateShape plates, double plate_Kn_Pa_m) {
-    TestSetup s = setup(make(fixtures::disc(0.08)), TestKind::brazilian);
-    s.test.plates = plates;
-    s.test.plate_Kn_Pa_m = plate_Kn_Pa_m;
+// Row of the elastic start of a disc of 80 mm between plates.
+HistoryRow start_of_disc(const TestSpec& test, double softer = 1.0, std::uint64_t seed = 1) {
+    TestSetup s = setup(make(fixtures::disc(0.08), seed), TestKind::brazilian);
+    s.test = test;
+    s.grain.E_Pa /= softer;
+    s.contact.Kn_Pa_m /= softer;
     s.numerics.maximum_steps = 10;
     const TestResult r = run_test(s, threads(2));
     return *std::find_if(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::loading; });
 }
 
-// On an elastic foundation k between a disc and a jaw, P/t = 4/3 k delta a with a^2 = D delta / (1 - R/R_jaw): at equal load the arc of a jaw of
-// 1.5 R is 3^(1/3) = 1.44 times that of a flat plate, and arcs grow with the cube root of the load. A grain is 4.3 degrees wide.
-TEST(ElasticBodies, ArcsOfContactGrowWithTheLoadAndAreWiderUnderCurvedJaws) {
-    constexpr double k = 1.6e12, grain_deg = 4.3;
-    const HistoryRow flat = start_of_disc(PlateShape::flat, k), curved = start_of_disc(PlateShape::curved, k);
-    for (const auto& [row, slenderness] : {std::pair{flat, 1.0}, std::pair{curved, 3.0}}) {
-        const double D = 0.08, P_per_t = 0.5 * std::numbers::pi * D * row.axial_stress_Pa;   // N/m
-        const double half_width = std::cbrt(0.75 * P_per_t / k * slenderness * D);
-        const double arc = 2.0 * std::asin(half_width / (0.5 * D)) * 180.0 / std::numbers::pi;
-        const double seen = 0.5 * (row.contact_arc_top_deg + row.contact_arc_bottom_deg);
-        EXPECT_NEAR(seen, arc, grain_deg) << slenderness << ": " << row.contact_arc_top_deg << " and " << row.contact_arc_bottom_deg;   // whole grain edges
+TestSpec brazilian(PlateShape plates, std::optional<double> plate_Kn_Pa_m) {
+    TestSpec test;
+    test.kind = TestKind::brazilian;
+    test.plates = plates;
+    test.plate_Kn_Pa_m = plate_Kn_Pa_m;
+    return test;
+}
+
+// Where an arc ends on the edges of grains is even chance, an edge (4.3 degrees) inside or outside of it, so single arcs say little. The mean
+// over n packings and both plates is uncertain by 4.3 degrees / sqrt(12) * sqrt(2) / sqrt(2 n), and three times that is allowed. (Of five
+// packings 0.2 to 0.7 degrees were off in the four cases.)
+struct MeanArcs {
+    double seen_deg = 0.0, closed_form_deg = 0.0, allowed_deg = 0.0;
+};
+
+template <class HalfWidth>
+MeanArcs mean_arcs(const TestSpec& test, double softer, int packings, const HalfWidth& half_width_m) {
+    MeanArcs mean;
+    for (int seed = 1; seed <= packings; ++seed) {
+        const HistoryRow row = start_of_disc(test, softer, static_cast<std::uint64_t>(seed));
+        const double P_per_t = 0.5 * std::numbers::pi * 0.08 * row.axial_stress_Pa;   // N/m
+        mean.seen_deg += 0.5 * (row.contact_arc_top_deg + row.contact_arc_bottom_deg) / packings;
+        mean.closed_form_deg += 2.0 * std::asin(half_width_m(P_per_t) / 0.04) * 180.0 / std::numbers::pi / packings;
+    }
+    mean.allowed_deg = 3.0 * 4.3 / std::sqrt(12.0) * std::sqrt(2.0) / std::sqrt(2.0 * packings);
+    return mean;
+}
+
+// Strips (docs/validation/brazilian-plates.md): an elastic foundation k between a disc that is stiff beside it and a plate or jaw has
+// P/t = 4/3 k delta a with a^2 = D delta / (1 - R/R_jaw). Here the disc gives a twentieth of what the strips give.
+TEST(ElasticBodies, ArcsOnStripsAreThoseOfAnElasticFoundation) {
+    constexpr double k = 4e11;
+    for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
+        const MeanArcs arcs = mean_arcs(brazilian(plates, k), 1.0, 2, [&, s = slenderness](double P_per_t) { return std::cbrt(0.75 * P_per_t / k * s * 0.08); });
+        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, arcs.allowed_deg) << name(plates);
+        EXPECT_GT(arcs.closed_form_deg, 6.0) << "else the arcs are too small for the grains";
     }
 }
 
-// The stress in the centre under a uniform arc (Hondros 1959): 2P/(pi D t) (sin 2a - a)/sin a. Whole grain edges make the arc that is found
-// uncertain by a grain, 3 % of the stress at these arcs.
-TEST(ElasticBodies, BrazilianStressUnderCurvedJawsIsThatOfTheArcFound) {
-    TestSetup s = setup(make(fixtures::disc(0.08)), TestKind::brazilian);
-    s.test.plates = PlateShape::curved;
-    s.test.plate_Kn_Pa_m = 1.6e12;
+// Hard plates and a soft disc: Hertz, a^2 = 4 P R' / (pi E t) with R' = R for a plate and R / (1 - R/R_jaw) for a jaw (plane stress).
+TEST(ElasticBodies, ArcsUnderHardPlatesAreThoseOfHertz) {
+    constexpr double softer = 50.0;
+    for (const auto& [plates, slenderness] : {std::pair{PlateShape::flat, 1.0}, std::pair{PlateShape::curved, 3.0}}) {
+        const MeanArcs arcs = mean_arcs(brazilian(plates, {}), softer, 3, [&, s = slenderness](double P_per_t) {
+            return std::sqrt(4.0 * P_per_t * s * 0.04 / (std::numbers::pi * 24.3e9 / softer));   // E of the specimen, not of its grains
+        });
+        EXPECT_NEAR(arcs.seen_deg, arcs.closed_form_deg, arcs.allowed_deg) << name(plates);
+        EXPECT_GT(arcs.closed_form_deg, 8.0) << "else the arcs are too small for the grains";
+    }
+}
+
+// Mean tension around the centre over the load's 2P / (pi D t).
+double tension_in_the_centre(const TestSetup& s) {
     const RunControl control = threads(2);
     Experiment e(s, control);
     choose_step(e);
     prepare(e);
     const Reactions reactions = platen_reactions(e.assembly);
-    const double P = 0.5 * (reactions.loading - reactions.rest), D = 0.08, t = e.assembly.thickness_m;
+    const double P = 0.5 * (reactions.loading - reactions.rest);
     double sxx = 0.0, volume = 0.0;
     for (const Triangle& triangle : e.assembly.triangles) {
         const Vec2 centre = (1.0 / 3.0) * (e.assembly.nodes.reference[triangle.node[0]] + e.assembly.nodes.reference[triangle.node[1]] +
@@ -104,10 +140,48 @@ TEST(ElasticBodies, BrazilianStressUnderCurvedJawsIsThatOfTheArcFound) {
         sxx += cauchy_stress(e.assembly.elasticity, displacement_gradient(e.assembly.nodes.displacement, triangle)).xx * triangle.volume_m3;
         volume += triangle.volume_m3;
     }
-    const HistoryRow row = start_of_disc(PlateShape::curved, 1.6e12);
+    return sxx / volume / (2.0 * P / (std::numbers::pi * 0.08 * e.assembly.thickness_m));
+}
+
+// Finite elements of a flattened disc (test_flattened_disc.cpp) have 0.956 to 0.961 times k as the mean within 0.2 R. With grains of 1.5 mm the flats
+// have 9 and 14 edges; what is left of the difference is theirs (grains of 3 mm: 1 % at 20 degrees, 2 % at 30).
+TEST(ElasticBodies, AFlattenedDiscHasTheTensionOfItsCoefficientInItsCentre) {
+    for (const auto& [degrees, plate_Kn] : {std::pair{20.0, std::optional<double>{}}, std::pair{30.0, std::optional(1.6e12)}}) {
+        SpecimenSpec spec = fixtures::disc(0.08);
+        spec.grain_sizes.minimum_m = 0.001;
+        spec.grain_sizes.maximum_m = 0.002;
+        spec.outline.flat_angle_rad = degrees * std::numbers::pi / 180.0;
+        TestSetup s = setup(make(spec), TestKind::brazilian);
+        s.test = brazilian(PlateShape::flat, plate_Kn);
+        const double k = flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test);
+        EXPECT_NEAR(tension_in_the_centre(s) / (0.958 * k), 1.0, 0.01) << degrees << " degrees";
+    }
+}
+
+TEST(ElasticBodies, AFlattenedDiscIsPressedOverItsFlatsAndItsStressIsTheLoadsTimesK) {
+    SpecimenSpec spec = fixtures::disc(0.08);
+    spec.outline.flat_angle_rad = 20.0 * std::numbers::pi / 180.0;
+    TestSetup s = setup(make(spec), TestKind::brazilian);
+    s.numerics.maximum_steps = 10;
+    const TestResult r = run_test(s, threads(2));
+    const HistoryRow& row = r.history.back();
+    EXPECT_NEAR(row.contact_arc_top_deg, 20.0, 0.5) << "seen from the centre of the undeformed disc";
+    EXPECT_NEAR(row.contact_arc_bottom_deg, 20.0, 0.5);
+    const Experiment e(s, threads(1));
+    EXPECT_NEAR(e.section_m2 * flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test), 0.5 * std::numbers::pi * 0.08 * 0.08, 1e-12);
+    EXPECT_DOUBLE_EQ(e.height_m, 0.08 * std::cos(10.0 * std::numbers::pi / 180.0));
+    EXPECT_NEAR(row.stress_top_Pa / row.stress_bottom_Pa, 1.0, 5e-3);
+}
+
+// The stress in the centre under a uniform arc (Hondros 1959): 2P/(pi D t) (sin 2a - a)/sin a. Whole grain edges make the arc that is found
+// uncertain by a grain, 3 % of the stress at these arcs.
+TEST(ElasticBodies, BrazilianStressUnderCurvedJawsIsThatOfTheArcFound) {
+    TestSetup s = setup(make(fixtures::disc(0.08)), TestKind::brazilian);
+    s.test = brazilian(PlateShape::curved, 1.6e12);
+    const HistoryRow row = start_of_disc(s.test);
     const double a = 0.25 * (row.contact_arc_top_deg + row.contact_arc_bottom_deg) * std::numbers::pi / 180.0;
     const double under_arc = (std::sin(2.0 * a) - a) / std::sin(a);
-    EXPECT_NEAR(sxx / volume / (2.0 * P / (std::numbers::pi * D * t)), closed_form_mean(0.04, 0.008).x * under_arc, 0.03) << "2a = " << 2.0 * a * 180.0 / std::numbers::pi;
+    EXPECT_NEAR(tension_in_the_centre(s), closed_form_mean(0.04, 0.008).x * under_arc, 0.03) << "2a = " << 2.0 * a * 180.0 / std::numbers::pi;
 }
 
 struct Elastic {

@@ -20,6 +20,9 @@ const std::map<std::string, std::set<TestKind>, std::less<>>& summary_properties
         std::map<std::string, std::set<TestKind>, std::less<>> map{
             {"DTS_Pa", {direct_tension}},
             {"BTS_Pa", {brazilian}},
+            {"BTS_first_dip_Pa", {brazilian}},
+            {"BTS_largest_Pa", {brazilian}},
+            {"BTS_valid_share", {brazilian}},
             {"UCS_over_DTS", {uniaxial_compression, direct_tension}},
             {"UCS_over_BTS", {uniaxial_compression, brazilian}},
             {"BTS_over_DTS", {brazilian, direct_tension}}};
@@ -47,6 +50,7 @@ public:
 
     void run() const {
         check_quantity("property", statement_.first.quantity);
+        for (const Quantity& quantity : statement_.also_property) check_quantity("also_property", quantity);
         check_quantity("than_property", statement_.second.quantity);
         check_selection("first", statement_.first.selection);
         if (statement_.has_second) check_selection("second", statement_.second.selection);
@@ -168,7 +172,8 @@ double laboratory_value(const Job& job, const Quantity& quantity) {
     static const std::map<std::string, std::string, std::less<>> keys{
         {"E_Pa", "E"},         {"E_initial_Pa", "E"}, {"E_tangent_Pa", "E"}, {"E_average_Pa", "E"},       {"E_gauge_Pa", "E"},
         {"nu", "nu"},          {"nu_initial", "nu"},  {"nu_tangent", "nu"},  {"UCS_Pa", "UCS"},           {"DTS_Pa", "DTS"},
-        {"BTS_Pa", "BTS"},     {"cohesion_Pa", "cohesion"},                  {"hoek_brown_mi", "hoek_brown_mi"},
+        {"BTS_Pa", "BTS"},     {"BTS_first_dip_Pa", "BTS"},                  {"BTS_largest_Pa", "BTS"},
+        {"cohesion_Pa", "cohesion"},                  {"hoek_brown_mi", "hoek_brown_mi"},
         {"friction_angle_deg", "friction_angle"}};
     const auto key = keys.find(quantity.property);
     if (key == keys.end() || !quantity.divisor.empty()) return std::nan("");

@@ -65,6 +65,7 @@ struct Statement {
     std::vector<std::string> also;     ///< studies with the same axes, shown beside it, without a vote
     Rule rule = Rule::greater;
     Side first, second;
+    std::vector<Quantity> also_property;   ///< other definitions of the property, shown beside it, without a vote
     Selection third;                   ///< between, closer
     Selection where;                   ///< only these labels of the axes
     Bound bound;                       ///< negligible, matters, linear_with, within

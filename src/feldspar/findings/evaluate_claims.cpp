@@ -455,6 +455,25 @@ void add_results(StudiesByName& studies) {
     }
 }
 
+namespace {
+
+std::vector<std::string> studies_of(const Statement& statement) {
+    std::vector<std::string> studies{statement.study};
+    studies.insert(studies.end(), statement.also.begin(), statement.also.end());
+    return studies;
+}
+
+/// The same statement by another definition of its property. A second side that compares another property keeps that.
+Statement by_another(const Statement& statement, const Quantity& quantity) {
+    Statement other = statement;
+    other.says += ", by " + quantity.text;
+    if (other.second.quantity.text == statement.first.quantity.text) other.second.quantity = quantity;
+    other.first.quantity = quantity;
+    return other;
+}
+
+}  // namespace
+
 ClaimResult evaluate(const Claim& claim, const StudiesByName& studies) {
     ClaimResult result;
     result.claim = claim;
@@ -469,6 +488,13 @@ ClaimResult evaluate(const Claim& claim, const StudiesByName& studies) {
         for (const std::string& study : statement.also) {
             result.statements.push_back(Evaluation(statement, study, studies.at(study)).run());
             result.statements.back().votes = false;
+        }
+        for (const Quantity& quantity : statement.also_property) {
+            const Statement other = by_another(statement, quantity);
+            for (const std::string& study : studies_of(statement)) {
+                result.statements.push_back(Evaluation(other, study, studies.at(study)).run());
+                result.statements.back().votes = false;
+            }
         }
     }
     result.verdict = together(verdicts);

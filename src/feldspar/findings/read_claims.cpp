@@ -10,7 +10,7 @@ namespace feldspar {
 namespace {
 
 constexpr std::string_view statement_keys[] = {
-    "says", "study", "also", "rule", "property", "first", "second", "third", "where", "axis", "from", "to", "than_property", "than_axis",
+    "says", "study", "also", "rule", "property", "also_property", "first", "second", "third", "where", "axis", "from", "to", "than_property", "than_axis",
     "than_from", "than_to", "bound", "number", "packings", "not_evaluated"};
 
 /// Which keys a rule needs, beside study and property.
@@ -93,7 +93,7 @@ public:
         statement_.says = table_.text("says");
         if (table_.has("not_evaluated")) {
             statement_.not_evaluated = table_.text("not_evaluated");
-            table_.refuse({"study", "also", "rule", "property", "first", "second", "third", "where", "axis", "bound", "number"}, "not_evaluated");
+            table_.refuse({"study", "also", "rule", "property", "also_property", "first", "second", "third", "where", "axis", "bound", "number"}, "not_evaluated");
             return statement_;
         }
         table_.require({"study", "rule", "property"});
@@ -135,6 +135,9 @@ private:
 
     void read_sides() {
         statement_.first.quantity = quantity_of(table_, "property", table_.text("property"));
+        if (table_.has("also_property"))
+            for (const toml::node& node : table_.array("also_property"))
+                statement_.also_property.push_back(quantity_of(table_, "also_property", table_.text_of(node, "also_property")));
         statement_.first.selection = read_selection(table_, "first");
         statement_.first.axis = table_.text("axis", "");
         statement_.first.from = read_label(table_, "from");

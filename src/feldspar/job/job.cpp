@@ -29,12 +29,13 @@ std::string read_name(const TableReader& root, const std::filesystem::path& file
 }
 
 // The disc of the Brazilian test: the same grains in its own outline.
-SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m) {
+SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double flat_angle_rad) {
     SpecimenSpec disc = specimen;
     if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m) disc.packing_file.clear();
     disc.outline = OutlineSpec{};
     disc.outline.shape = Shape::disc;
     disc.outline.diameter_m = diameter_m;
+    disc.outline.flat_angle_rad = flat_angle_rad;
     return disc;
 }
 
@@ -74,7 +75,7 @@ Job read_tree(const toml::table& tree, const std::string& text, const std::strin
     job.specimen = read_specimen(root, job.file.parent_path(), filled);
     TestList tests = read_tests(root, job.specimen, job.variants, job.seeds);
     job.tests = std::move(tests.tests);
-    if (tests.brazilian_diameter_m) job.brazilian_specimen = disc_of(job.specimen, *tests.brazilian_diameter_m);
+    if (tests.brazilian_diameter_m) job.brazilian_specimen = disc_of(job.specimen, *tests.brazilian_diameter_m, tests.flat_angle_rad);
     check_variants(root, job);
     job.laboratory = read_laboratory(root);
     job.laboratory_confined = read_laboratory_confined(root);

@@ -42,6 +42,7 @@ inline constexpr int job_level = 2;
 struct TestList {
     std::vector<TestSpec> tests;
     std::optional<double> brazilian_diameter_m;  ///< present if there is a Brazilian test
+    double flat_angle_rad = 0.0;                 ///< of the flats of its disc; 0 = a whole disc
 };
 TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                     const std::vector<std::uint64_t>& run_seeds);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
@@ -50,6 +51,28 @@ double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen
                        format_exact(1000.0 * diameter) + " mm",
                    "a disc of at least twice the largest grain");
     return diameter;
+}
+
+// Angles that (P31) was computed for, and that laboratories use.
+const Range flat_angle_range{10.0 * std::numbers::pi / 180.0, 40.0 * std::numbers::pi / 180.0, true, true, "from 10 to 40 degrees (20 to 30 are usual)"};
+constexpr double usual_flat_angle_rad = 20.0 * std::numbers::pi / 180.0;
+
+// The disc may have two flats, on which flat plates press. 0 = a whole disc.
+double read_flats(const TableReader& table, const SpecimenSpec& specimen, double diameter_m, const TestSpec& test) {
+    enum class Disc { whole, flattened };
+    const Disc disc = table.has("disc") ? table.choice<Disc>("disc", {{"whole", Disc::whole}, {"flattened", Disc::flattened}}) : Disc::whole;
+    if (disc == Disc::whole) {
+        table.refuse({"flat_angle"}, "a whole disc", "disc = \"flattened\"");
+        return 0.0;
+    }
+    if (test.plates == PlateShape::curved) table.fail("plates", "curved jaws do not fit the flats of a flattened disc", "plates = \"flat\", or disc = \"whole\"");
+    const double angle_rad = table.quantity("flat_angle", Dimension::angle, flat_angle_range, usual_flat_angle_rad);
+    const double width_m = diameter_m * std::sin(0.5 * angle_rad), largest_m = largest_diameter_m(specimen.grain_sizes);
+    if (width_m < largest_m)
+        table.fail(table.has("flat_angle") ? "flat_angle" : "disc",
+                   fmt::format("the flats would be {:.3g} mm wide, less than the largest grain of {:.3g} mm", 1e3 * width_m, 1e3 * largest_m),
+                   "flats wider than the largest grain: a larger angle, a larger disc, or smaller grains");
+    return angle_rad;
 }
 
 std::vector<double> confining_stresses(const TableReader& table) {
@@ -115,6 +138,7 @@ void read_plates(const TableReader& table, bool particles, TestSpec& test) {
 struct ReadTest {
     std::vector<TestSpec> tests;  // one for each sigma3
     std::optional<double> diameter_m;
+    double flat_angle_rad = 0.0;
 };
 
 ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants) {
@@ -122,7 +146,7 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
     test.kind = table.choice("kind", test_kinds);
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
     const bool brazilian = test.kind == TestKind::brazilian;
-    if (!brazilian) table.refuse({"diameter"}, setting, "only with kind = \"brazilian\"");
+    if (!brazilian) table.refuse({"diameter", "disc", "flat_angle"}, setting, "only with kind = \"brazilian\"");
     if (test.kind != TestKind::biaxial) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
     check_outline(table, test.kind, specimen.outline);
 
@@ -138,7 +162,10 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
     read_plates(table, has_particles(test.kind, variants), test);
 
     ReadTest result;
-    if (brazilian) result.diameter_m = brazilian_diameter(table, specimen);
+    if (brazilian) {
+        result.diameter_m = brazilian_diameter(table, specimen);
+        result.flat_angle_rad = read_flats(table, specimen, *result.diameter_m, test);
+    }
     if (test.kind != TestKind::biaxial) {
         result.tests.push_back(test);
         return result;
@@ -171,14 +198,18 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     TestList result;
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",
-                                                {"kind", "sigma3", "stop_fraction", "control", "maximum_strain", "maximum_stress", "diameter", "plates", "jaw_radius",
-                                                 "plate_stiffness_factor", "plate_Kn",
+                                                {"kind", "sigma3", "stop_fraction", "control", "maximum_strain", "maximum_stress", "diameter", "disc", "flat_angle",
+                                                 "plates", "jaw_radius", "plate_stiffness_factor", "plate_Kn",
                                                  "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
         ReadTest read = read_one(table, specimen, variants);
         if (read.diameter_m) {
             if (result.brazilian_diameter_m && *result.brazilian_diameter_m != *read.diameter_m)
                 table.fail("diameter", "differs from that of an earlier Brazilian test", "one diameter in a job");
+            if (result.brazilian_diameter_m && result.flat_angle_rad != read.flat_angle_rad)
+                table.fail(table.has("flat_angle") ? "flat_angle" : table.has("disc") ? "disc" : "kind", "the flats of the disc differ from those of an earlier Brazilian test",
+                           "one disc in a job");
             result.brazilian_diameter_m = read.diameter_m;
+            result.flat_angle_rad = read.flat_angle_rad;
         }
         for (TestSpec& test : read.tests) {
             std::vector<std::uint64_t> seeds(test.seeds.begin(), test.seeds.end());

@@ -178,6 +178,11 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.number("maximum_strain", test.maximum_strain);
     if (test.maximum_stress_Pa) out.quantity("maximum_stress", *test.maximum_stress_Pa, Dimension::stress);
     if (test.kind == TestKind::brazilian) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
+    // whole discs are left unwritten: identities of their runs stay as they were
+    if (test.kind == TestKind::brazilian && job.brazilian_specimen.outline.flat_angle_rad > 0.0) {
+        out.word("disc", "flattened");
+        out.quantity("flat_angle", job.brazilian_specimen.outline.flat_angle_rad, Dimension::angle);
+    }
     write_plates(out, test, job);
     out.raw("snapshots", std::to_string(test.snapshots));
     if (!test.seeds.empty()) out.raw("seeds", list(test.seeds));

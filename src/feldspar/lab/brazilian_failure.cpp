@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "feldspar/lab/disc_splitting.hpp"
+#include "feldspar/lab/flattened_disc.hpp"
 
 namespace feldspar {
 namespace {
@@ -28,6 +30,7 @@ BrazilianFailure brazilian_failure(const TestResult& result, const Peak& peak) {
     failure.contact_arc_bottom_deg = result.history[peak.row].contact_arc_bottom_deg;
     const auto disc = loaded_disc(result);
     if (!disc) return failure;
+    if (disc->flat_height_m > 0.0) failure.flat_coefficient = flat_coefficient(*result.specimen, result.model, result.grain, result.contact, result.test);
     const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), [](const Crack& a, const Crack& b) { return a.step < b.step; });
     if (first != result.cracks.end()) {
         failure.first_crack_radius = radius_of(first->place, *disc);
@@ -44,6 +47,45 @@ BrazilianFailure brazilian_failure(const TestResult& result, const Peak& peak) {
         failure.valid = failure.split && failure.splitting_radius <= central_part;
     }
     return failure;
+}
+
+std::vector<BrazilianMark> brazilian_marks(const TestResult& result) {
+    std::vector<std::pair<long long, BrazilianMark>> found;   // with the step
+    const auto at_row = [&](const char* name, std::size_t row) {
+        const HistoryRow& r = result.history[row];
+        found.push_back({r.step, {name, r.axial_strain, r.axial_stress_Pa, -1}});
+    };
+    const auto at_crack = [&](const char* name, std::size_t c) {
+        const Crack& crack = result.cracks[c];
+        found.push_back({crack.step, {name, crack.axial_strain, crack.axial_stress_Pa, static_cast<int>(c)}});
+    };
+    const auto peak = find_peak(result);
+    if (!peak || result.test.kind != TestKind::brazilian) return {};
+    const auto before = [](const Crack& a, const Crack& b) { return a.step < b.step; };
+    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), before);
+    if (first != result.cracks.end()) at_crack("first crack", static_cast<std::size_t>(first - result.cracks.begin()));
+    if (const auto dip = first_dip(result)) at_row("first dip", dip->row);
+    const auto splitting = splitting_crack(result);
+    if (const auto begin = splitting ? splitting->begin() : std::nullopt) {
+        const auto same = [&](const Crack& c) { return c.step == begin->step && c.contact == begin->contact && c.point == begin->point; };
+        at_crack(splitting->split() ? "start of the splitting crack" : "start of the longest crack",
+                 static_cast<std::size_t>(std::find_if(result.cracks.begin(), result.cracks.end(), same) - result.cracks.begin()));
+    }
+    at_row("strength", peak->row);
+    const double largest = largest_stress(result);
+    const auto is_largest = [&](const HistoryRow& r) { return r.phase != Phase::consolidation && r.axial_stress_Pa == largest; };
+    const auto row = std::find_if(result.history.begin(), result.history.end(), is_largest);
+    if (largest > peak->stress_Pa && row != result.history.end()) at_row("largest stress", static_cast<std::size_t>(row - result.history.begin()));
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<BrazilianMark> marks;
+    for (auto& [step, mark] : found) marks.push_back(std::move(mark));
+    return marks;
+}
+
+std::string validity_in_words(const BrazilianFailure& failure) {
+    if (failure.valid) return "yes";
+    if (!failure.split) return "no: not split";
+    return fmt::format("no: split from r/R {:.2f}", failure.splitting_radius);
 }
 
 std::string start_remark(const TestResult& result, const Peak& peak) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "feldspar/lab/loading_curve.hpp"
 
@@ -13,6 +14,20 @@ inline constexpr double central_part = 0.6;
 
 /// @param peak  from find_peak() of the same result
 BrazilianFailure brazilian_failure(const TestResult& result, const Peak& peak);
+
+/// A moment of a Brazilian test that a reader looks for on its curve, and on its picture if it is a crack.
+struct BrazilianMark {
+    std::string name;              ///< "first crack", "first dip", "start of the splitting crack", "strength", "largest stress"
+    double axial_strain = 0.0;
+    double stress_Pa = 0.0;
+    int crack = -1;                ///< into TestResult::cracks, if it is one
+};
+
+/// In the order of the test's time. The largest stress only where it is not the strength; without cracks or a loaded row, fewer.
+std::vector<BrazilianMark> brazilian_marks(const TestResult& result);
+
+/// "yes", or "no" and why.
+std::string validity_in_words(const BrazilianFailure& failure);
 
 /// A sentence for the verdict, beginning with a space, where the strength is not that of a valid test; else empty.
 std::string start_remark(const TestResult& result, const Peak& peak);

@@ -38,7 +38,7 @@ double LoadedDisc::reach_m() const { return reach_of_grain * mean_grain_m; }
 std::optional<LoadedDisc> loaded_disc(const TestResult& result) {
     if (result.test.kind != TestKind::brazilian || !result.specimen || !result.specimen->outline.is_disc) return std::nullopt;
     const Outline& outline = result.specimen->outline;
-    const LoadedDisc disc{outline.centre, outline.radius_m, result.specimen->quality.mean_diameter_m};
+    const LoadedDisc disc{outline.centre, outline.radius_m, result.specimen->quality.mean_diameter_m, outline.flat_height_m};
     if (!(disc.radius_m > 0.0) || !(disc.mean_grain_m > 0.0)) return std::nullopt;
     return disc;
 }

@@ -15,9 +15,11 @@ struct LoadedDisc {
     Vec2 centre;                  ///< m
     double radius_m = 0.0;        ///< > 0
     double mean_grain_m = 0.0;    ///< mean diameter of the grains, > 0
+    double flat_height_m = 0.0;   ///< of a flattened disc: of its flats from the centre; else 0
 
     double band_half_width_m() const;   ///< cracks whose middle is farther from the loaded diameter do not count
     double reach_m() const;             ///< cracks that are nearer to each other than this are connected
+    double loaded_length_m() const { return 2.0 * (flat_height_m > 0.0 ? flat_height_m : radius_m); }   ///< between the plates
 };
 
 /// The disc of a Brazilian test; empty if the record has no specimen, or one that is no disc.
@@ -27,7 +29,7 @@ std::optional<LoadedDisc> loaded_disc(const TestResult& result);
 /// the number of cracks, so that it can be asked while a test runs. What it finds does not depend on the order of cracks of one step.
 class SplittingCrack {
 public:
-    static constexpr double split_span = 0.6;   ///< of the loaded diameter
+    static constexpr double split_span = 0.6;   ///< of the loaded diameter (flattened: of what is left of it)
 
     explicit SplittingCrack(const LoadedDisc& disc);
 
@@ -41,7 +43,7 @@ public:
     /// crack in the band.
     std::optional<Crack> begin() const;
 
-    /// Extent along the loaded diameter of the longest path so far, as a share of the diameter.
+    /// Extent along the loaded diameter of the longest path so far, as a share of the distance between the plates.
     double span() const { return longest_ < 0 ? 0.0 : span_of(longest_); }
 
 private:
@@ -52,7 +54,7 @@ private:
         int earliest;            // of a root: piece of its path with the earliest step
     };
     int root(int piece);
-    double span_of(int root) const { return (pieces_[root].high - pieces_[root].low) / (2.0 * disc_.radius_m); }
+    double span_of(int root) const { return (pieces_[root].high - pieces_[root].low) / disc_.loaded_length_m(); }
     void join(int a, int b);
     std::int64_t square(double x, double y) const;
 

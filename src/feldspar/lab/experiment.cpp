@@ -7,6 +7,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/lab/flattened_disc.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/model/assemble.hpp"
@@ -93,8 +94,10 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     if (brazilian() && !s.specimen->outline.is_disc) throw InputError({}, "a Brazilian test needs a disc");
     attach_platens(assembly, s);
     if (brazilian()) {
-        height_m = 2.0 * s.specimen->outline.radius_m;
-        section_m2 = 0.5 * std::numbers::pi * height_m * assembly.thickness_m;
+        const Outline& disc = s.specimen->outline;
+        height_m = 2.0 * (disc.flattened() ? disc.flat_height_m : disc.radius_m);
+        section_m2 = 0.5 * std::numbers::pi * 2.0 * disc.radius_m * assembly.thickness_m;
+        if (disc.flattened()) section_m2 /= flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test);
     } else {
         height_m = box.upper.y - box.lower.y;
         section_m2 = section_width_m(s.specimen->outline, loaded_width_m(assembly, *s.specimen)) * assembly.thickness_m;

@@ -32,8 +32,8 @@ struct Experiment {
     StrainGauge gauge;
     StepSettings settings;
 
-    double height_m = 0.0;        ///< between the platens (Brazilian: the diameter)
-    double section_m2 = 0.0;      ///< initial, loaded (Brazilian: pi D t / 2, so that stress = 2P / (pi D t))
+    double height_m = 0.0;        ///< between the platens (Brazilian: the diameter, or between the flats)
+    double section_m2 = 0.0;      ///< initial, loaded (Brazilian: pi D t / (2 k), so that stress = k 2P / (pi D t); k = 1 but for flattened discs)
     double direction = 1.0;       ///< +1 compression, -1 tension
     ElasticGuess elastic_guess;
     double mass_factor = 0.0;     ///< of the scaled masses; 0 with real masses

@@ -8,7 +8,7 @@
 namespace feldspar {
 namespace {
 
-// (P31): shares of the peak between which the branch is taken for straight, and how many of its points are read.
+// (P32): shares of the peak between which the branch is taken for straight, and how many of its points are read.
 constexpr double kFrom = 0.9, kTo = 0.5;
 constexpr int kPoints = 9;
 

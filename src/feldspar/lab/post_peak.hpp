@@ -1,4 +1,4 @@
-// The branch behind the peak: post-peak modulus, brittleness, where the energy went (P31)-(P33), docs/theory/properties.md.
+// The branch behind the peak: post-peak modulus, brittleness, where the energy went (P32)-(P34), docs/theory/properties.md.
 #pragma once
 
 #include "feldspar/lab/loading_curve.hpp"

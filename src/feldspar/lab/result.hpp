@@ -41,7 +41,7 @@ struct HistoryRow {
     double axial_strain = 0.0;            ///< from the platens
     double axial_strain_gauge = 0.0;      ///< from the gauge: least squares over the central half of the specimen
     double lateral_strain_gauge = 0.0;    ///< the same, < 0 when the specimen widens
-    double axial_stress_Pa = 0.0;         ///< mean of both platens over the narrowest initial section; Brazilian: 2P / (pi D t)
+    double axial_stress_Pa = 0.0;         ///< mean of both platens over the narrowest initial section; Brazilian: 2P / (pi D t), of a flattened disc times k
     double stress_top_Pa = 0.0;
     double stress_bottom_Pa = 0.0;
     double sigma3_Pa = 0.0;
@@ -126,9 +126,10 @@ struct BrazilianFailure {
     double splitting_share = none;         ///< stress at it over the strength
     double contact_arc_top_deg = none;     ///< at the strength
     double contact_arc_bottom_deg = none;
+    double flat_coefficient = none;        ///< of a flattened disc: k, by which all its stresses are 2P / (pi D t) (P31)
 };
 
-/// The branch behind the peak (P31)-(P33). Not-a-number where the record shows none.
+/// The branch behind the peak (P32)-(P34). Not-a-number where the record shows none.
 struct PostPeak {
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double modulus_Pa = none;       ///< slope from 0.9 to 0.5 of the peak: < 0 class I, > 0 class II; only where the platens followed the branch (LoadControl)

@@ -10,6 +10,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 namespace {
@@ -204,6 +205,7 @@ void attach_platen_rows(Assembly& assembly, const Specimen& specimen) {
 void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const PlateContact& contact) {
     assembly.laws[at_plates] = law_at_plates(contact);
     const std::vector<OutlineSite> sites = outline_sites(assembly, specimen);
+    const auto is_flat = [&](const OutlineSite& site, int side) { return site.label == (side == 0 ? top_flat : bottom_flat); };   // labels of a whole disc are 0
     for (int side = 0; side < 2; ++side) {
         const double sign = side == 0 ? 1.0 : -1.0;
         std::vector<Touch> touches;
@@ -211,18 +213,26 @@ void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const
             const int body = sites[i].body;
             const double x = assembly.centre(body).x;
             const OutlineSite* best = nullptr;
+            bool on_flat = false;
             for (; i < sites.size() && sites[i].body == body; ++i) {
+                if (is_flat(sites[i], side)) {
+                    touches.push_back({sites[i], 0.5 * (sites[i].from + sites[i].to)});
+                    on_flat = true;
+                }
                 if (sign * sites[i].outward().y < 0.5) continue;   // steeper than 60 degrees: no plate ever reaches it
                 if (best == nullptr || distance_in_x(sites[i], x) < distance_in_x(*best, x)) best = &sites[i];
             }
-            if (best != nullptr) touches.push_back({*best, at_x(*best, x)});
+            if (best != nullptr && !on_flat) touches.push_back({*best, at_x(*best, x)});
         }
         if (touches.empty()) throw InputError({}, "no grain of the disc faces the plates");
         const auto sagitta = [&](double x) {   // how far a jaw's arc has come down at x
             const double from_axis = x - specimen.outline.centre.x, radius = contact.jaw_radius_m;
             return radius > 0.0 ? radius - std::sqrt(radius * radius - from_axis * from_axis) : 0.0;
         };
-        attach_plate(assembly, side, touches, [&](const OutlineSite& site) { return 2.0 * assembly.bodies[site.body].radius_m * assembly.thickness_m; }, sagitta);
+        const auto area_m2 = [&](const OutlineSite& site) {
+            return (is_flat(site, side) ? site.length() : 2.0 * assembly.bodies[site.body].radius_m) * assembly.thickness_m;
+        };
+        attach_plate(assembly, side, touches, area_m2, sagitta);
     }
     index_bodies(assembly);
     index_contacts(assembly);

@@ -21,7 +21,8 @@ struct PlateContact {
 
 /// Horizontal plates below and above a disc, touching grains on the outline through one-point contacts. Each point starts at the
 /// outermost point of the body's circle, moved vertically onto the grain's own edge; the plates start at first touch. kn = Kn 2R t.
-/// Curved jaws differ in the gaps that are left at first touch; they press along the loading axis as plates do.
+/// Curved jaws differ in the gaps that are left at first touch; they press along the loading axis as plates do. On the flats of a
+/// flattened disc each edge is pressed in its middle, with kn = Kn x edge length x t.
 void attach_brazilian_plates(Assembly& assembly, const Specimen& specimen, const PlateContact& contact);
 
 /// Horizontal plates on the outline's edges "bottom" and "top": a one-point contact for each grain edge there (for the share of

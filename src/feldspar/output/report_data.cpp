@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 
+#include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -20,7 +22,7 @@ constexpr std::size_t largest_row_count = 600;   ///< of a history in the report
 constexpr std::size_t smallest_row_count = 150;  ///< ... however many tests there are
 constexpr std::size_t most_rows_of_all = 24000;
 
-/// Row numbers that stay: evenly spread, with the first, the last, the strength and the largest stress.
+/// Row numbers that stay: evenly spread, with the first, the last, the strength, the first dip and the largest stress.
 std::vector<std::size_t> kept_rows(const TestResult& result, std::size_t tests) {
     const std::vector<HistoryRow>& history = result.history;
     std::vector<std::size_t> kept;
@@ -32,8 +34,9 @@ std::vector<std::size_t> kept_rows(const TestResult& result, std::size_t tests) 
     };
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
     const std::size_t strength = strength_row(result);
+    const auto dip = result.test.kind == TestKind::brazilian ? first_dip(result) : std::nullopt;
     for (std::size_t r = 0; r < history.size(); ++r) {
-        if (r % stride == 0 || r == peak || r == strength || r + 1 == history.size()) kept.push_back(r);
+        if (r % stride == 0 || r == peak || r == strength || (dip && r == dip->row) || r + 1 == history.size()) kept.push_back(r);
     }
     return kept;
 }
@@ -99,7 +102,15 @@ Json test_json(const TestResult& result, std::size_t tests) {
                              {"splitting_angle", rounded(b.splitting_angle_deg)},
                              {"splitting_share", rounded(b.splitting_share)},
                              {"arc_top", rounded(b.contact_arc_top_deg)},
-                             {"arc_bottom", rounded(b.contact_arc_bottom_deg)}};
+                             {"arc_bottom", rounded(b.contact_arc_bottom_deg)},
+                             {"why", validity_in_words(b)},
+                             {"flat_coefficient", rounded(b.flat_coefficient)},
+                             {"marks", Json::array()}};
+        for (const BrazilianMark& mark : brazilian_marks(result))
+            test["brazilian"]["marks"].push_back({{"name", mark.name},
+                                                  {"strain", rounded(mark.axial_strain * 1e3)},
+                                                  {"stress", rounded(mark.stress_Pa * MPa)},
+                                                  {"crack", mark.crack}});
     }
     test["E"] = rounded(p.E_secant_Pa * GPa);
     test["nu"] = rounded(p.nu);
@@ -203,6 +214,7 @@ Json specimens_json(std::span<const TestResult> results) {
         if (outline.shape == Shape::rectangle)
             shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
         if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
+        if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", outline.flat_angle_rad * 180.0 / std::numbers::pi);
         list.push_back({{"for", brazilian ? "Brazilian test" : "compression and tension"},
                         {"shape", shape},
                         {"thickness", rounded(specimen.spec.thickness_m * 1e3)},

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <system_error>
 
 #include "feldspar/output/history_columns.hpp"
@@ -83,6 +84,10 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
                              {"splitting_share", number(b.splitting_share)},
                              {"contact_arc_top_deg", number(b.contact_arc_top_deg)},
                              {"contact_arc_bottom_deg", number(b.contact_arc_bottom_deg)}};
+        if (result.specimen && result.specimen->outline.flattened()) {
+            test["brazilian"]["flat_angle_deg"] = number(result.specimen->spec.outline.flat_angle_rad * 180.0 / std::numbers::pi);
+            test["brazilian"]["flat_coefficient"] = number(b.flat_coefficient);
+        }
     }
     if (result.test.kind != TestKind::brazilian) {
         const PostPeak& b = p.post_peak;

@@ -54,6 +54,7 @@ constexpr auto known = std::to_array<Words>({
     {"E_gauge_Pa", "Young's modulus, tangent, from the gauge", "E gauge"},
     {"E_initial_Pa", "Young's modulus before damage, to 10 % of the peak, from the gauge", "E initial"},
     {"nu_initial", "Poisson's ratio before damage, to 10 % of the peak", "\u03bd initial"},
+    {"BTS_valid_share", "Brazilian test valid by ISRM: 1 yes, 0 no", "valid"},
 });
 
 bool ends_with_pascal(const std::string& property) { return property.ends_with("_Pa"); }

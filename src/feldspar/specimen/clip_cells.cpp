@@ -200,15 +200,30 @@ std::array<std::optional<Vec2>, 2> crossings_with_circle(Vec2 p, Vec2 q, bool p_
     return result;
 }
 
+// Segments in the keys of a disc's vertices: a cell's edge crosses the circle once or twice, and a flat once.
+constexpr int first_crossing = 0, flat_crossing = 2;
+int disc_edge_of(const VertexKey& crossing) { return -1 - crossing[2] < flat_crossing ? circle_edge : -1 - crossing[2] - flat_crossing + top_flat; }
+
+/// Keeps what lies between the flats; edges along them are labelled as the outline's.
+std::vector<Corner> clip_by_flats(const std::vector<Corner>& cell, const Outline& outline) {
+    const auto corners = flat_corners(outline);   // inside lies to the left of the top from right to left, and of the bottom from left to right
+    return clip_by_side(clip_by_side(cell, top_flat, corners[1], corners[0]), bottom_flat, corners[2], corners[3]);
+}
+
 /// Clips a cell by the circle: inner vertices, and a chord from each point where the cell leaves to the next where it returns.
+/// The cell of a flattened disc has been clipped by the flats before.
 std::vector<KeyedVertex> clip_by_circle(const std::vector<Corner>& cell, int i, const Outline& outline) {
     std::vector<KeyedVertex> result;
+    const auto own_key = [&](const Corner& c) {
+        const int label = std::min(c.before, c.after);
+        return label >= 0 ? cell_key(i, c.before, c.after) : crossing_key(i, std::max(c.before, c.after), flat_crossing + (-1 - label) - top_flat);
+    };
     const auto inside = [&](Vec2 p) { return dot(p - outline.centre, p - outline.centre) <= outline.radius_m * outline.radius_m; };
     for (std::size_t k = 0; k < cell.size(); ++k) {
         const Corner& c = cell[k];
         const Vec2 next = cell[(k + 1) % cell.size()].at;
         const bool here = inside(c.at), there = inside(next);
-        if (here) result.push_back({cell_key(i, c.before, c.after), c.at, c.after});
+        if (here) result.push_back({own_key(c), c.at, c.after});
         const auto crossings = crossings_with_circle(c.at, next, here, there, outline.centre, outline.radius_m);
         const bool reversed = before_in_plane(next, c.at);
         for (int step = 0; step < 2; ++step) {
@@ -216,7 +231,13 @@ std::vector<KeyedVertex> clip_by_circle(const std::vector<Corner>& cell, int i, 
             if (!crossings[which]) continue;
             // The first crossing met from outside is an entry, the one met from inside an exit to the chord.
             const bool exit = step == 1;
-            result.push_back({crossing_key(i, c.after, which), *crossings[which], exit ? outline_label(0) : c.after});
+            const int label = exit ? outline_label(circle_edge) : c.after;
+            if (c.after >= 0) {
+                result.push_back({crossing_key(i, c.after, first_crossing + which), *crossings[which], label});
+            } else {   // where a flat meets the circle
+                const int corner = 2 * (-1 - c.after - top_flat) + which;
+                result.push_back({corner_key(corner), flat_corners(outline)[static_cast<std::size_t>(corner)], label});
+            }
         }
     }
     return result;
@@ -234,11 +255,11 @@ CellGraph number_vertices(const std::vector<std::vector<KeyedVertex>>& faces, co
 
     CellGraph graph;
     graph.vertices.resize(keys.size());
-    const int outline_edges = outline.is_disc ? 1 : static_cast<int>(outline.vertices.size());
+    const int outline_edges = static_cast<int>(outline.vertices.size());
     for (const VertexKey& key : keys) {
         int place = place_inside;
         if (key[0] < 0 && key[1] < 0) place = place_corner;
-        else if (key[2] < 0 && outline.is_disc) place = 0;
+        else if (key[2] < 0 && outline.is_disc) place = disc_edge_of(key);
         else if (key[2] < 0) place = -1 - key[2] < outline_edges ? -1 - key[2] : place_cut;
         if (key[2] >= sites && place != place_corner) {
             throw NumericalError("a Laguerre vertex inside the outline belongs to an auxiliary site");
@@ -321,7 +342,7 @@ CellGraph clip_cells(std::span<const Vec2> centres, std::span<const double> weig
     std::vector<int> owner;
     for (int i = 0; i < std::ssize(cells); ++i) {
         const std::size_t before = faces.size();
-        if (outline.is_disc) faces.push_back(clip_by_circle(cells[i], i, outline));
+        if (outline.is_disc) faces.push_back(clip_by_circle(outline.flattened() ? clip_by_flats(cells[i], outline) : cells[i], i, outline));
         for (const ConvexRegion& region : regions) {
             std::vector<Corner> cell = cells[i];
             for (int s = 0; s < std::ssize(region) && !cell.empty(); ++s) {

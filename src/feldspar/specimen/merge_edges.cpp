@@ -7,6 +7,7 @@
 #include <queue>
 
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 namespace {
@@ -80,7 +81,7 @@ private:
         if (pa == place_corner) return Meeting{xa, pa};
         if (pb == place_corner) return Meeting{xb, pb};
         if (pa != pb) return std::nullopt;
-        if (!outline_.is_disc) return Meeting{middle, pa};
+        if (!outline_.is_disc || pa != circle_edge) return Meeting{middle, pa};
         const Vec2 out = middle - outline_.centre;
         return Meeting{outline_.centre + (outline_.radius_m / norm(out)) * out, pa};
     }

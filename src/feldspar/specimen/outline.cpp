@@ -83,7 +83,22 @@ Outline make_polygon(const OutlineSpec& spec) {
     return outline;
 }
 
+/// Cuts the two flats: a segment of the circle is gone at the top and one at the bottom.
+void flatten(Outline& outline, double angle_rad) {
+    if (!(angle_rad > 0.0) || !(angle_rad < std::numbers::pi))
+        throw InputError({"", 0, 0, "test.flat_angle"}, fmt::format("{:g} degrees is no angle of two flats", angle_rad * 180.0 / std::numbers::pi),
+                         "greater than 0 and less than 180 degrees");
+    outline.flat_height_m = outline.radius_m * std::cos(0.5 * angle_rad);
+    outline.edge_labels = {"circle", top_label, bottom_label};
+    outline.area_m2 -= outline.radius_m * outline.radius_m * (angle_rad - std::sin(angle_rad));
+}
+
 }  // namespace
+
+std::array<Vec2, 4> flat_corners(const Outline& outline) {
+    const double height = outline.flat_height_m, half = std::sqrt(std::max(0.0, outline.radius_m * outline.radius_m - height * height));
+    return {outline.centre + Vec2{-half, height}, outline.centre + Vec2{half, height}, outline.centre + Vec2{-half, -height}, outline.centre + Vec2{half, -height}};
+}
 
 std::optional<EndFault> end_fault(const OutlineSpec& spec) {
     const std::vector<Vec2>& corners = spec.vertices_m;
@@ -167,6 +182,7 @@ Outline make_outline(const OutlineSpec& spec) {
             outline.radius_m = 0.5 * spec.diameter_m;
             outline.edge_labels = {"circle"};
             outline.area_m2 = std::numbers::pi * outline.radius_m * outline.radius_m;
+            if (spec.flat_angle_rad != 0.0) flatten(outline, spec.flat_angle_rad);
             break;
         case Shape::polygon:
             outline = make_polygon(spec);
@@ -178,16 +194,24 @@ Outline make_outline(const OutlineSpec& spec) {
 
 Box bounding_box(const Outline& outline) {
     if (!outline.is_disc) return bounding_box(std::span<const Vec2>(outline.vertices));
-    const Vec2 half = {outline.radius_m, outline.radius_m};
+    const Vec2 half = {outline.radius_m, outline.flattened() ? outline.flat_height_m : outline.radius_m};
     return {outline.centre - half, outline.centre + half};
 }
 
 bool contains(const Outline& outline, Vec2 point) {
+    if (outline.flattened() && std::abs(point.y - outline.centre.y) > outline.flat_height_m) return false;
     if (outline.is_disc) return norm(point - outline.centre) <= outline.radius_m;
     return contains(std::span<const Vec2>(outline.vertices), point);
 }
 
 double distance_to_boundary(const Outline& outline, Vec2 point) {
+    if (outline.flattened()) {
+        const auto corners = flat_corners(outline);
+        const double to_flats = std::min(distance_to_segment(point, corners[0], corners[1]), distance_to_segment(point, corners[2], corners[3]));
+        const Vec2 out = point - outline.centre;   // the arcs are nearest along the radius, where they have not been cut off
+        const bool faces_arc = std::abs(out.y) * outline.radius_m <= outline.flat_height_m * norm(out);
+        return faces_arc ? std::min(to_flats, std::abs(outline.radius_m - norm(out))) : to_flats;
+    }
     if (outline.is_disc) return std::abs(outline.radius_m - norm(point - outline.centre));
     return distance_to_boundary(std::span<const Vec2>(outline.vertices), point);
 }

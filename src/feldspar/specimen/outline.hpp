@@ -1,6 +1,7 @@
 // From the user's outline to one that is ready for use: counter-clockwise, labelled, checked.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,8 +12,8 @@
 namespace feldspar {
 
 /// Checks the spec and makes the outline. Rectangle: [0, width] x [0, height], edges bottom, right, top, left. Disc: centre
-/// (0, 0). Polygon: turned counter-clockwise where needed, each label staying with its edge.
-/// @throws InputError for lengths that are not positive, a polygon that crosses or touches itself, a wrong number of labels
+/// (0, 0), flats at y = R cos(angle / 2) and below. Polygon: turned counter-clockwise where needed, each label staying with its edge.
+/// @throws InputError for lengths that are not positive, flats of no angle below 180 degrees, a polygon that crosses or touches itself, a wrong number of labels
 Outline make_outline(const OutlineSpec& spec);
 
 /// The labels of the edges that platens press on and hold.
@@ -39,6 +40,12 @@ struct SectionWidths {
 
 /// Sections of an outline with ends between the highest point of its bottom and the lowest of its top. A disc has zeros.
 SectionWidths section_widths(const Outline& outline);
+
+/// The edges of a flattened disc, into Outline::edge_labels.
+inline constexpr int circle_edge = 0, top_flat = 1, bottom_flat = 2;
+
+/// Corners of a flattened disc (m): left and right of the top, left and right of the bottom.
+std::array<Vec2, 4> flat_corners(const Outline& outline);
 
 /// Smallest box around the outline.
 Box bounding_box(const Outline& outline);

@@ -75,6 +75,8 @@ private:
 };
 
 std::string outline_text(const Outline& outline) {
+    if (outline.flattened())
+        return fmt::format("flattened-disc {:.17g} {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m, outline.flat_height_m);
     if (outline.is_disc) return fmt::format("disc {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m);
     std::string text = fmt::format("polygon {}\n", outline.vertices.size());
     for (const Vec2 v : outline.vertices) text += fmt::format("{:.17g} {:.17g}\n", v.x, v.y);
@@ -85,6 +87,15 @@ void require_same_outline(PackingReader& reader, const Outline& outline) {
     const Box box = bounding_box(outline);
     const double tolerance = 1e-9 * norm(box.upper - box.lower);
     const auto same = [&](Vec2 a, Vec2 b) { return norm(a - b) <= tolerance; };
+    if (outline.flattened()) {
+        const auto disc = reader.numbers("flattened-disc", 4);
+        const bool same_lengths = std::abs(disc[2] - outline.radius_m) <= tolerance && std::abs(disc[3] - outline.flat_height_m) <= tolerance;
+        if (!same({disc[0], disc[1]}, outline.centre) || !same_lengths) {
+            const auto in_words = [](double radius_m, double flat_m) { return fmt::format("a disc of radius {:.9g} m with flats {:.9g} m from its centre", radius_m, flat_m); };
+            reader.fail("the packing was made for " + in_words(disc[2], disc[3]), "the outline of this specimen: " + in_words(outline.radius_m, outline.flat_height_m));
+        }
+        return;
+    }
     if (outline.is_disc) {
         const auto disc = reader.numbers("disc", 3);
         if (!same({disc[0], disc[1]}, outline.centre) || std::abs(disc[2] - outline.radius_m) > tolerance) {

@@ -43,7 +43,7 @@ struct Share {
 /// Pairs of a disc and a piece of the outline that may touch before the lists are made again.
 struct NearWall {
     int disc = 0;
-    int wall = 0;   ///< edge k as k, re-entrant corner k as -1 - k; 0 on a circle; whole_polygon for a disc that has got outside
+    int wall = 0;   ///< edge k as k (circle_edge and flats of a disc), re-entrant corner k as -1 - k; whole_polygon for a disc that has got outside
 
     static constexpr int whole_polygon = std::numeric_limits<int>::min();
 };
@@ -190,7 +190,9 @@ void Relaxation::find_walls() {
     walls_.clear();
     if (outline_.is_disc) {
         for (int i = 0; i < count_; ++i) {
-            if (norm(centres_[i] - outline_.centre) + radii_[i] + skin_ > outline_.radius_m) walls_.push_back({i, 0});
+            if (norm(centres_[i] - outline_.centre) + radii_[i] + skin_ > outline_.radius_m) walls_.push_back({i, circle_edge});
+            if (!outline_.flattened() || std::abs(centres_[i].y - outline_.centre.y) + radii_[i] + skin_ <= outline_.flat_height_m) continue;
+            walls_.push_back({i, centres_[i].y > outline_.centre.y ? top_flat : bottom_flat});
         }
         return;
     }
@@ -254,6 +256,11 @@ bool Relaxation::moved_beyond(double distance, const std::vector<Vec2>& since) c
 double Relaxation::wall_overlap(NearWall pair, Vec2& inward) const {
     const Vec2 centre = centres_[pair.disc];
     const double radius = radii_[pair.disc];
+    if (outline_.is_disc && pair.wall != circle_edge) {
+        const double outward = pair.wall == top_flat ? 1.0 : -1.0;
+        inward = {0.0, -outward};
+        return std::max(0.0, outward * (centre.y - outline_.centre.y) + radius - outline_.flat_height_m);
+    }
     if (outline_.is_disc) {
         const Vec2 out = centre - outline_.centre;
         const double distance = norm(out);

@@ -24,6 +24,7 @@ struct OutlineSpec {
     double diameter_m = 0.0;               ///< disc
     std::vector<Vec2> vertices_m;          ///< polygon: simple, either orientation
     std::vector<std::string> edge_labels;  ///< polygon: label of the edge from vertex i to i + 1; empty = "edge-0", "edge-1", ...
+    double flat_angle_rad = 0.0;           ///< disc: angle of each of two flats across y, seen from the centre; 0 = a whole disc
 };
 
 enum class GrainSizeKind { uniform, log_normal, sieve };
@@ -57,14 +58,17 @@ struct SpecimenSpec {
 };
 
 /// The outline made ready: a counter-clockwise polygon with a label on each edge. A disc keeps its circle: cells on it get
-/// one chord each, all of them labelled "circle".
+/// one chord each, all of them labelled "circle". A flattened disc has two straight edges besides, "top" and "bottom".
 struct Outline {
     bool is_disc = false;
     Vec2 centre;             ///< disc only
     double radius_m = 0.0;   ///< disc only
+    double flat_height_m = 0.0;            ///< flattened disc: of its flats from the centre, less than the radius; else 0
     std::vector<Vec2> vertices;            ///< polygon only, counter-clockwise
-    std::vector<std::string> edge_labels;  ///< polygon: one an edge; rectangle: "bottom", "right", "top", "left"; disc: {"circle"}
+    std::vector<std::string> edge_labels;  ///< polygon: one an edge; rectangle: "bottom", "right", "top", "left"; disc: {"circle"}, and "top", "bottom" if flattened
     double area_m2 = 0.0;
+
+    bool flattened() const { return flat_height_m > 0.0; }
 };
 
 /// The relaxed discs.

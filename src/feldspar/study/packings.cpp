@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/units.hpp"
 
 namespace feldspar {
 namespace {
@@ -21,7 +22,7 @@ std::string key_of(const Run& run) {
     job.laboratory.clear();
     job.laboratory_confined.clear();
     job.threads = job.at_once = 0;
-    return resolved_toml(job);
+    return resolved_toml(job) + format_exact(job.specimen.outline.flat_angle_rad);   // flats stand with the test in a job
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ const std::vector<Number>& numbers() {
         brazilian<&BrazilianFailure::splitting_share>("BTS_splitting_share"),
         brazilian<&BrazilianFailure::contact_arc_top_deg>("BTS_contact_arc_top_deg"),
         brazilian<&BrazilianFailure::contact_arc_bottom_deg>("BTS_contact_arc_bottom_deg"),
+        brazilian<&BrazilianFailure::flat_coefficient>("BTS_flat_coefficient"),
         {"cracks_tensile", [](const TestResult& r) { return count(r, CrackMode::tensile); }},
         {"cracks_shear", [](const TestResult& r) { return count(r, CrackMode::shear); }},
         pattern<&FailurePattern::tensile_share>("tensile_share"),

@@ -17,7 +17,7 @@ namespace feldspar {
 namespace {
 
 // Of the many, those that answer first what the rock is like.
-const std::vector<std::string> main_properties{"E_Pa",  "nu",     "UCS_Pa",      "DTS_Pa",      "BTS_Pa",
+const std::vector<std::string> main_properties{"E_Pa",  "nu",     "UCS_Pa",      "DTS_Pa",      "BTS_Pa", "BTS_first_dip_Pa",
                                                "cohesion_Pa", "friction_angle_deg", "hoek_brown_mi"};
 
 MeanInterval interval_of(const PointResults& point, const std::string& property) {

@@ -82,6 +82,25 @@ TEST(Claims, GreaterIsDecidedOnPairedDifferences) {
     EXPECT_EQ(judged(flexible_greater, two_models(0.05e6)).verdict, Verdict::undecided);
 }
 
+TEST(Claims, AnotherDefinitionOfThePropertyIsShownBesideWithoutAVote) {
+    StudiesByName studies = two_models(0.5e6);
+    for (PointResults& point : studies.at("study").points) {   // the other definition says the opposite
+        PropertyStatistics other = point.properties.values.at("UCS_Pa");
+        for (double& value : other.values) value = -value;
+        point.properties.values["UCS_fitted_Pa"] = other;
+    }
+    const ClaimList list = parse_claims(with_statement(flexible_greater + "also_property = [\"UCS_fitted_Pa\"]\n"), "claims.toml");
+    const ClaimResult result = evaluate(list.claims.front(), studies);
+    ASSERT_EQ(result.statements.size(), 2u);
+    EXPECT_TRUE(result.statements[0].votes);
+    EXPECT_FALSE(result.statements[1].votes);
+    EXPECT_EQ(result.statements[0].verdict, Verdict::reproduced);
+    EXPECT_EQ(result.statements[1].verdict, Verdict::contradicted);
+    EXPECT_EQ(result.statements[1].statement.says, "s, by UCS_fitted_Pa");
+    EXPECT_NEAR(result.statements[1].comparisons[0].interval.mean, -0.48, 1e-9);
+    EXPECT_EQ(result.verdict, Verdict::reproduced) << "it has no vote";
+}
+
 TEST(Claims, TooFewPackingsDecideNothing) {
     const StatementResult few = judged(flexible_greater, two_models(50e6, 4));
     EXPECT_EQ(few.verdict, Verdict::undecided);

@@ -179,6 +179,7 @@ void expect_same(const OutlineSpec& a, const OutlineSpec& b) {
     EXPECT_EQ(a.width_m, b.width_m);
     EXPECT_EQ(a.height_m, b.height_m);
     EXPECT_EQ(a.diameter_m, b.diameter_m);
+    EXPECT_EQ(a.flat_angle_rad, b.flat_angle_rad);
     EXPECT_EQ(a.vertices_m, b.vertices_m);
     EXPECT_EQ(a.edge_labels, b.edge_labels);
 }
@@ -294,6 +295,7 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
                "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\"\nmaximum_stress = \"300 MPa\""));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplate_Kn = \"3.6e3 GPa/m\""));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplates = \"curved\"\njaw_radius = 1.25"));
+    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\""));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));
@@ -415,6 +417,22 @@ TEST(Job, RelativePackingsCountFromTheJobsFolder) {
     std::ofstream(folder / "several.toml") << edited("thickness = \"80 mm\"", "packing = \"p.txt\"");
     EXPECT_THROW(read_job(folder / "several.toml"), InputError);
     std::filesystem::remove_all(folder);
+}
+
+TEST(FlattenedDiscs, AreCutFromTheBrazilianSpecimenAlone) {
+    const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\""), "job");
+    EXPECT_NEAR(job.brazilian_specimen.outline.flat_angle_rad * 180.0 / 3.14159265358979323846, 20.0, 1e-12) << "unless given";
+    EXPECT_EQ(job.specimen.outline.flat_angle_rad, 0.0);
+    EXPECT_TRUE(warnings(job).empty());
+    const Job whole = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"whole\""), "job");
+    EXPECT_EQ(whole.brazilian_specimen.outline.flat_angle_rad, 0.0);
+    EXPECT_EQ(resolved_toml(whole).find("disc ="), std::string::npos) << "identities of runs stay as they were";
+}
+
+TEST(FlattenedDiscs, WithNarrowFlatsAreWarnedOf) {
+    const auto said = warnings(parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"15 deg\""), "job"));
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].find("15 degrees: from 20 degrees on"), std::string::npos) << said[0];
 }
 
 }  // namespace

@@ -142,6 +142,41 @@ TEST(BrazilianStrength, SaysWhereTheFirstCrackAndTheSplittingOneBegan) {
     EXPECT_NE(judge(r).verdict.find("Not a centre start"), std::string::npos);
 }
 
+TEST(BrazilianStrength, ItsMomentsAreMarkedInTheirOrder) {
+    TestResult r = disc_record({1e6, 4e6, 6.2e6, 5e6, 7e6, 9e6, 8.9e6, 4e6, 11e6});
+    r.cracks = path({{0.0, 0.036}, {0.0, 0.0365}}, 15);
+    for (Crack& c : path({{0.0, -0.026}, {0.0, 0.026}}, 45)) {
+        c.step = 45 + (c.step - 45) / 3;
+        c.axial_stress_Pa = 7e6;
+        c.axial_strain = 5e-5;
+        r.cracks.push_back(c);
+    }
+    const std::vector<BrazilianMark> marks = brazilian_marks(r);
+    std::vector<std::string> names;
+    for (const BrazilianMark& mark : marks) names.push_back(mark.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"first crack", "first dip", "start of the splitting crack", "strength", "largest stress"}));
+    EXPECT_EQ(marks[0].crack, 0);
+    EXPECT_EQ(marks[1].crack, -1);
+    EXPECT_DOUBLE_EQ(marks[1].stress_Pa, 6.2e6);
+    EXPECT_DOUBLE_EQ(marks[1].axial_strain, 30e-6) << "its row is at step 30";
+    EXPECT_EQ(marks[2].crack, 1) << "the first of the path";
+    EXPECT_DOUBLE_EQ(marks[2].stress_Pa, 7e6);
+    EXPECT_DOUBLE_EQ(marks[3].stress_Pa, 9e6);
+    EXPECT_DOUBLE_EQ(marks[4].stress_Pa, 11e6);
+    EXPECT_TRUE(brazilian_marks(linear(TestKind::uniaxial_compression, 100e6)).empty());
+    EXPECT_EQ(brazilian_marks(disc_record({1e6, 2e6})).size(), 2u) << "without cracks: the strength, and the dip that is where it is";
+}
+
+TEST(BrazilianStrength, SaysWhyATestIsNotValid) {
+    BrazilianFailure b;
+    EXPECT_EQ(validity_in_words(b), "no: not split");
+    b.split = true;
+    b.splitting_radius = 0.912;
+    EXPECT_EQ(validity_in_words(b), "no: split from r/R 0.91");
+    b.valid = true;
+    EXPECT_EQ(validity_in_words(b), "yes");
+}
+
 TEST(BrazilianStrength, KeepsTheArcsOfContactOfTheRowOfTheStrength) {
     TestResult r = disc_record({2e6, 4e6, 6e6, 8e6, 3e6});
     for (std::size_t i = 0; i < r.history.size(); ++i) {

@@ -65,6 +65,27 @@ TEST_F(Report, HoldsDataThatReadsBack) {
     EXPECT_EQ(data["fields"][1]["test"], 2);
 }
 
+TEST_F(Report, MarksTheMomentsOfABrazilianTest) {
+    const json data = json::parse(between(page(), "id=\"data\">", "</script>"));
+    EXPECT_FALSE(data["tests"][0].contains("brazilian"));
+    const json& brazilian = data["tests"][2]["brazilian"];
+    EXPECT_TRUE(brazilian["flat_coefficient"].is_null()) << "of a whole disc";
+    std::vector<std::string> names;
+    for (const json& mark : brazilian["marks"]) names.push_back(mark["name"]);
+    EXPECT_NE(std::find(names.begin(), names.end(), "first crack"), names.end());
+    EXPECT_NE(std::find(names.begin(), names.end(), "strength"), names.end());
+    for (const json& mark : brazilian["marks"]) {
+        const std::size_t c = mark["crack"] < 0 ? results[2].cracks.size() : mark["crack"].get<std::size_t>();
+        if (mark["name"] == "first crack") {
+            ASSERT_LT(c, results[2].cracks.size());
+            EXPECT_NEAR(mark["strain"].get<double>(), results[2].cracks[c].axial_strain * 1e3, 1e-6);
+        } else if (mark["name"] == "strength") {   // on the curve that is drawn
+            const auto stress = data["tests"][2]["history"]["stress"].get<std::vector<double>>();
+            EXPECT_NE(std::find(stress.begin(), stress.end(), mark["stress"].get<double>()), stress.end());
+        }
+    }
+}
+
 TEST_F(Report, EscapesEverythingThatAUserCanWrite) {
     job.name = "</title><script>alert(1)</script> & \"quoted\" {{data}}";
     job.text = "name = '</script><!--<script>'\n";

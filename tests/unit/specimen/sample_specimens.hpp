@@ -27,6 +27,13 @@ inline SpecimenSpec disc(double diameter_m = 0.08) {
     return spec;
 }
 
+/// A disc between two flats of so many degrees each, as the centre sees them.
+inline SpecimenSpec flattened_disc(double diameter_m = 0.08, double flat_deg = 20.0) {
+    SpecimenSpec spec = disc(diameter_m);
+    spec.outline.flat_angle_rad = flat_deg * 3.14159265358979323846 / 180.0;
+    return spec;
+}
+
 inline SpecimenSpec polygon(std::vector<Vec2> vertices_m) {
     SpecimenSpec spec = two_to_four_millimetres();
     spec.outline.shape = Shape::polygon;

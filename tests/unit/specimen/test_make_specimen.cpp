@@ -39,7 +39,7 @@ TEST_P(PublishedSpecimen, DiscHasThePublishedCounts) {
 INSTANTIATE_TEST_SUITE_P(Seeds, PublishedSpecimen, testing::Values(1, 2, 3, 4, 5));
 
 TEST(MakeSpecimen, SameSeedSameBits) {
-    for (const SpecimenSpec& spec : {rectangle(0.04, 0.04), disc(0.04), ell()}) {
+    for (const SpecimenSpec& spec : {rectangle(0.04, 0.04), disc(0.04), flattened_disc(0.04), ell()}) {
         const Specimen a = make_specimen(spec, 7), b = make_specimen(spec, 7), c = make_specimen(spec, 8);
         EXPECT_TRUE(same_bits(a.packing.centres, b.packing.centres));
         EXPECT_TRUE(same_bits(a.cells.vertices, b.cells.vertices));

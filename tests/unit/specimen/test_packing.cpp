@@ -34,6 +34,10 @@ double residual_of(const Packing& packing, const Outline& outline) {
             sum += overlap;
             ++touching;
         }
+        if (outline.flattened()) {
+            wall(i, {0.0, -1.0}, outline.flat_height_m - c.y - packing.radii_m[i]);
+            wall(i, {0.0, 1.0}, outline.flat_height_m + c.y - packing.radii_m[i]);
+        }
         if (outline.is_disc) wall(i, (-1.0 / norm(c)) * c, outline.radius_m - norm(c) - packing.radii_m[i]);
         for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
             const Vec2 a = outline.vertices[k], b = outline.vertices[(k + 1) % outline.vertices.size()];
@@ -58,7 +62,7 @@ TEST_P(RelaxedPacking, MeetsTheCriterionInside) {
     for (const Vec2 c : s.packing.centres) EXPECT_TRUE(contains(s.outline, c));
 }
 
-INSTANTIATE_TEST_SUITE_P(Outlines, RelaxedPacking, testing::Values(rectangle(), disc(), triangle()));
+INSTANTIATE_TEST_SUITE_P(Outlines, RelaxedPacking, testing::Values(rectangle(), disc(), flattened_disc(), triangle()));
 
 TEST(Packing, OverlapIsSpreadEvenly) {
     // Before relaxation the upper half holds as many discs as the lower half only by chance; afterwards the pressure is even.

@@ -43,8 +43,15 @@ protected:
     std::filesystem::path file_;
 };
 
+TEST_F(PackingFile, OfAFlattenedDiscFitsNoOtherDisc) {
+    save_packing(make_specimen(flattened_disc(0.03), 1), file_);
+    EXPECT_EQ(line_of_error(make_outline(flattened_disc(0.03).outline)), 0);
+    EXPECT_EQ(line_of_error(make_outline(flattened_disc(0.03, 25.0).outline)), 3);
+    EXPECT_EQ(line_of_error(make_outline(disc(0.03).outline)), 3);
+}
+
 TEST_F(PackingFile, ComesBackWithTheSameBits) {
-    for (const SpecimenSpec& spec : {rectangle(0.03, 0.03), disc(0.03), ell()}) {
+    for (const SpecimenSpec& spec : {rectangle(0.03, 0.03), disc(0.03), flattened_disc(0.03), ell()}) {
         const Specimen made = make_specimen(spec, 1);
         save_packing(made, file_);
         SpecimenSpec from_file = spec;

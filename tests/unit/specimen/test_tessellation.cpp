@@ -70,7 +70,7 @@ TEST_P(Cells, FillTheOutline) {
     if (s.outline.is_disc) {
         std::vector<Vec2> rim;  // the vertices on the circle, by angle: the polygon of the chords
         for (const Vec2 v : s.cells.vertices) {
-            if (std::abs(norm(v) - s.outline.radius_m) < 1e-12) rim.push_back(v);
+            if (std::abs(norm(v) - s.outline.radius_m) < 1e-12 || (s.outline.flattened() && std::abs(v.y) == s.outline.flat_height_m)) rim.push_back(v);
         }
         std::sort(rim.begin(), rim.end(), [](Vec2 a, Vec2 b) { return std::atan2(a.y, a.x) < std::atan2(b.y, b.x); });
         EXPECT_NEAR(total_area(s.cells) / signed_area(rim), 1.0, 1e-12);
@@ -101,7 +101,8 @@ TEST_P(Cells, OutlineEdgesLieOnTheOutlineTheyName) {
             const Vec2 a = s.cells.vertices[cell.vertices[k]], b = s.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]];
             length[edge] += norm(b - a);
             for (const Vec2 p : {a, b}) {
-                const double off = s.outline.is_disc ? norm(p) - s.outline.radius_m
+                const double off = s.outline.is_disc && edge != circle_edge ? std::abs(p.y) - s.outline.flat_height_m
+                                   : s.outline.is_disc ? norm(p) - s.outline.radius_m
                                                      : distance_to_segment(p, s.outline.vertices[edge],
                                                                            s.outline.vertices[(edge + 1) % s.outline.vertices.size()]);
                 EXPECT_NEAR(off, 0.0, 1e-15);
@@ -113,6 +114,11 @@ TEST_P(Cells, OutlineEdgesLieOnTheOutlineTheyName) {
         }
     }
     EXPECT_EQ(length.size(), s.outline.edge_labels.size());
+    if (s.outline.flattened()) {
+        const auto corners = flat_corners(s.outline);
+        EXPECT_NEAR(length.at(top_flat), norm(corners[1] - corners[0]), 1e-12);
+        EXPECT_NEAR(length.at(bottom_flat), norm(corners[3] - corners[2]), 1e-12);
+    }
     for (const auto& [edge, sum] : length) {
         if (s.outline.is_disc) continue;
         EXPECT_NEAR(sum, norm(s.outline.vertices[(edge + 1) % s.outline.vertices.size()] - s.outline.vertices[edge]), 1e-12);
@@ -120,7 +126,12 @@ TEST_P(Cells, OutlineEdgesLieOnTheOutlineTheyName) {
 }
 
 TEST_P(Cells, OutlineCornersNeverMove) {
-    for (const Vec2 corner : s.outline.vertices) {
+    std::vector<Vec2> corners = s.outline.vertices;
+    if (s.outline.flattened()) {
+        const auto flats = flat_corners(s.outline);
+        corners.assign(flats.begin(), flats.end());
+    }
+    for (const Vec2 corner : corners) {
         EXPECT_EQ(std::count(s.cells.vertices.begin(), s.cells.vertices.end(), corner), 1) << corner.x << ", " << corner.y;
     }
 }
@@ -134,7 +145,8 @@ TEST_P(Cells, ShortestEdgeIsTheLast) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Outlines, Cells,
-                         testing::Values(Case{"rectangle", rectangle(0.04, 0.06)}, Case{"disc", disc(0.05)}, Case{"triangle", triangle()},
+                         testing::Values(Case{"rectangle", rectangle(0.04, 0.06)}, Case{"disc", disc(0.05)}, Case{"flattened_disc", flattened_disc(0.05)},
+                                         Case{"wide_flats", flattened_disc(0.05, 40.0)}, Case{"triangle", triangle()},
                                          Case{"ell", ell()}, Case{"slit", slit()}, Case{"split_sides", split_sides()}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 

@@ -57,11 +57,13 @@ function padded([low, high]) {
   return [low < 0 ? low - margin : low, high > 0 ? high + margin : high];
 }
 
-/** Draws `mark` ("dot", "ring", "diamond", "square") at canvas position (x, y). */
+/** Draws `mark` ("dot", "ring", "diamond", "square", "triangle") at canvas position (x, y). */
 function drawMark(ctx, mark, x, y, size, color) {
   ctx.beginPath();
   if (mark === "diamond") {
     ctx.moveTo(x, y - size * 1.25); ctx.lineTo(x + size * 1.25, y); ctx.lineTo(x, y + size * 1.25); ctx.lineTo(x - size * 1.25, y); ctx.closePath();
+  } else if (mark === "triangle") {
+    ctx.moveTo(x, y - size * 1.2); ctx.lineTo(x + size * 1.1, y + size * 0.8); ctx.lineTo(x - size * 1.1, y + size * 0.8); ctx.closePath();
   } else if (mark === "square") {
     ctx.rect(x - size, y - size, 2 * size, 2 * size);
   } else {
@@ -120,8 +122,9 @@ class XYChart {
     if (o.equal) this.host.style.height = this.height() + "px";
     const r = padded(extent(right.map((s) => s.y)));
     const ink = theme.get("soft"), line = theme.get("line");
+    // uPlot scales whole pixels only: "12.5px" would stay small on a dense screen
     const axis = (scale, label, side, grid) => ({
-      scale, side, label, stroke: ink, font: "12px system-ui, sans-serif", labelFont: "12.5px system-ui, sans-serif", labelGap: side === 2 ? 2 : 4,
+      scale, side, label, stroke: ink, font: "12px system-ui, sans-serif", labelFont: "13px system-ui, sans-serif", labelGap: side === 2 ? 2 : 4,
       labelSize: 22, size: side === 2 ? 34 : 52, gap: 4, grid: {show: grid, stroke: line, width: 1}, ticks: {stroke: line, width: 1, size: 5},
       values: (u, ticks) => ticks.map((t) => (t === null ? "" : String(Number(t.toPrecision(6))).replace("-", "\u2212"))),
     });

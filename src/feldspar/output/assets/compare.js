@@ -95,8 +95,8 @@ function writeComparedCurves() {
     const own = kinds.get(state.kind);
     if (!own.some((t) => t.seed === state.seed)) state.seed = own[0].seed;
     const brazilian = own[0].kind === "brazilian";
-    const labels = {x: state.x === "strain" ? (brazilian ? "Approach of the plates / diameter (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)") : (brazilian ? "Approach of the plates (mm)" : "Platen displacement (mm)"),
-      y: brazilian ? "2P / (\u03c0Dt) (MPa)" : "Axial stress (MPa)", right: "Broken contact area (%)", height: 420};
+    const labels = {x: state.x === "strain" ? strainLabelOf(own[0]) : (brazilian ? "Approach of the plates (mm)" : "Platen displacement (mm)"),
+      y: stressLabelOf(own[0]), right: "Broken contact area (%)", height: 420};
     const series = comparedSeries(chosen(), state);
     if (!chart) chart = new XYChart(curves, {...labels, series});
     else { Object.assign(chart.options, labels); chart.set(series); }

@@ -95,12 +95,43 @@ function writeProperties() {
     (compared ? "; orange mark: laboratory." : ".")));
 }
 
+/** The moments of a Brazilian test, as marks on its curve; each of the same shape and colour everywhere. */
+const markLooks = {"first crack": ["#e69f00", "triangle", 5], "first dip": ["#0072b2", "square", 4], "start of the splitting crack": ["#d55e00", "diamond", 4],
+  "start of the longest crack": ["#d55e00", "diamond", 4], strength: ["ink", "ring", 7], "largest stress": ["#cc79a7", "dot", 4]};
+
+/** The marks of a test; those that fall together become one with both names. The strength comes first: its ring is drawn around others. */
+function marksOf(test) {
+  const marks = [];
+  for (const m of (test.brazilian && test.brazilian.marks) || []) {
+    const same = marks.find((other) => (m.crack >= 0 ? other.crack === m.crack : other.crack < 0 && other.strain === m.strain && other.stress === m.stress));
+    if (same) Object.assign(same, {name: same.name + " = " + m.name, look: markLooks[m.name]});
+    else marks.push({...m, look: markLooks[m.name]});
+  }
+  return marks.sort((a, b) => (b.look[1] === "ring") - (a.look[1] === "ring"));
+}
+
+function markSeries(test) {
+  return marksOf(test).map(({name, strain, stress, look: [color, mark, size]}) => ({label: name, x: [strain], y: [stress], color, mark, size}));
+}
+
+function strainLabelOf(test, short) {
+  if (test.kind !== "brazilian") return short ? "Axial strain (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
+  const over = test.brazilian && test.brazilian.flat_coefficient !== null ? "distance of the flats" : "diameter";
+  return (short ? "Approach / " : "Approach of the plates / ") + over + " (10\u207b\u00b3)";
+}
+
+function stressLabelOf(test) {
+  if (test.kind !== "brazilian") return "Axial stress (MPa)";
+  return (test.brazilian && test.brazilian.flat_coefficient !== null ? "k " : "") + "2P / (\u03c0Dt) (MPa)";
+}
+
 function stressSeries(tests, chosen) {
   const t = tests[chosen], others = tests.filter((other) => other !== t);
   return [...others.map((o, i) => ({label: i ? "packing " + o.seed : "other packings", x: o.history.strain, y: o.history.stress, color: "context", width: 1.3, quiet: i > 0})),
     {label: "packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "ink", width: 2.2},
     {label: "its tensile cracks", x: t.history.strain, y: t.history.tensile, color: "tensile", width: 1.5, right: true, step: true},
-    {label: "shear cracks", x: t.history.strain, y: t.history.shear, color: "shear", width: 1.5, right: true, step: true}];
+    {label: "shear cracks", x: t.history.strain, y: t.history.shear, color: "shear", width: 1.5, right: true, step: true},
+    ...markSeries(t)];
 }
 
 function strainSeries(test) {
@@ -155,8 +186,8 @@ function writeTest(host, tests) {
   const summary = peaks.length ? "Strength " + show(median(peaks)) + " MPa" + (peaks.length > 1 ? ", median of " + peaks.length + " packings (" + show(Math.min(...peaks)) + " to " + show(Math.max(...peaks)) + ")" : "") + "." : "";
   const open = tests.filter((t) => !t.peak_reached).length;
   host.append(h("h3", {}, titleOf(tests[0])), h("p", {class: "soft"}, summary + (open ? " The peak was not reached in " + plural(open, "test") + "." : "")));
-  const strainLabel = tests[0].kind === "brazilian" ? "Approach of the plates / diameter (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
-  const stressLabel = tests[0].kind === "brazilian" ? "2P / (\u03c0Dt) (MPa)" : "Axial stress (MPa)";
+  const strainLabel = strainLabelOf(tests[0]);
+  const stressLabel = stressLabelOf(tests[0]);
   const updates = [];
   host.append(picker("Packing (seed)", tests.map((t) => String(t.seed)), 0, (i) => updates.forEach((update) => update(i))) || "");
   const grid = h("div", {class: "grid"});
@@ -187,10 +218,11 @@ function testFacts(tests, updates) {
     for (const remark of t.remarks) add("Note", remark);
     if (t.brazilian) {
       const b = t.brazilian, at = (radius, angle) => "r/R " + show(radius, 2) + ", " + show(angle, 3) + "\u00b0 from the loading plate";
+      if (b.flat_coefficient !== null) add("Flattened disc", "stress k 2P / (\u03c0Dt), k = " + show(b.flat_coefficient));
       add("First dip of 5 %, largest", show(b.first_dip, 4) + " MPa, " + show(b.largest, 4) + " MPa");
       if (b.first_crack_radius !== null) add("First crack at", at(b.first_crack_radius, b.first_crack_angle));
       if (b.splitting_radius !== null) add(b.split ? "Splitting crack began at" : "Longest crack began at", at(b.splitting_radius, b.splitting_angle) + ", " + show(100 * b.splitting_share, 2) + " % of the strength");
-      add("Valid by ISRM", b.valid ? "yes: split from the central part" : b.split ? "no: not a centre start" : "no: not split");
+      add("Valid by ISRM", b.valid ? "yes: split from the central part" : b.why + (b.split ? ", not from the central part" : ""));
       add("Arc of contact at the strength", show(b.arc_top, 2) + "\u00b0 top, " + show(b.arc_bottom, 2) + "\u00b0 bottom");
     }
     if (t.E !== null) add("E, secant at 50 %", show(t.E) + " GPa");
@@ -265,7 +297,7 @@ function writePattern() {
   let curve = null, playing = null, current = 0, specimen = null;
   const cache = [];
 
-  const viewer = new Viewer(canvas, readout, () => showMoment());
+  const viewer = new Viewer(canvas, readout, () => showMoment(), (test) => marksOf(data.tests[test]).filter((m) => m.crack >= 0));
   const go = (n) => { viewer.snapshot = n; slider.value = n; showMoment(); viewer.draw(); };
   slider.addEventListener("input", () => go(Number(slider.value)));
   const play = h("button", {type: "button", onclick: () => {
@@ -304,6 +336,7 @@ function writePattern() {
       const [first, last] = viewer.crackTimes(), colors = palette("viridis");
       crackKey.append(key(css(colors[0]), "first crack, strain " + show(first) + "\u00b710\u207b\u00b3"), key(css(colors[128]), "midway"), key(css(colors[255]), "last crack, " + show(last) + "\u00b710\u207b\u00b3"));
     }
+    if (specimen) for (const m of viewer.marksOf(specimen.meta.test)) crackKey.append(h("span", {}, h("b", {class: m.look[1], style: "background:" + m.look[0]}), m.name));
   }
   function showMoment() {
     const n = viewer.snapshot, s = specimen.meta.snapshots[n], test = data.tests[specimen.meta.test];
@@ -315,8 +348,9 @@ function writePattern() {
     const all = specimen.meta.snapshots;
     const series = [{label: "stress", x: test.history.strain, y: test.history.stress, color: "context", width: 1.8},
       {label: "moments kept", x: all.map((k) => k.strain), y: all.map((k) => k.stress), color: "soft", mark: "dot", size: 3},
-      {label: "shown", x: [s.strain], y: [s.stress], color: "shear", mark: "ring", size: 5}];
-    const x = test.kind === "brazilian" ? "Approach / diameter (10\u207b\u00b3)" : "Axial strain (10\u207b\u00b3)";
+      {label: "shown", x: [s.strain], y: [s.stress], color: "shear", mark: "ring", size: 5},
+      ...markSeries(test).map((m) => ({...m, size: m.size - 1}))];
+    const x = strainLabelOf(test, true);
     if (curve) { curve.options.x = x; curve.set(series); }
     else curve = new XYChart(curveCard, {x, y: "Stress (MPa)", height: 190, series});
   }

@@ -136,9 +136,9 @@ const fieldKinds = {
 };
 
 class Viewer {
-  /** onSnapshot(n) is called when another moment is shown. */
-  constructor(canvas, readout, onSnapshot) {
-    Object.assign(this, {canvas, readout, onSnapshot, field: "grain", cracks: "mode", magnify: 1, snapshot: 0, specimen: null, ids: null});
+  /** onSnapshot(n) is called when another moment is shown; marksOf(test) are cracks to point at: {name, crack, look: [colour, mark, size]}. */
+  constructor(canvas, readout, onSnapshot, marksOf) {
+    Object.assign(this, {canvas, readout, onSnapshot, marksOf, field: "grain", cracks: "mode", magnify: 1, snapshot: 0, specimen: null, ids: null});
     canvas.addEventListener("pointerdown", (e) => { this.drag = [e.offsetX, e.offsetY]; canvas.setPointerCapture(e.pointerId); });
     canvas.addEventListener("pointerup", () => { this.drag = null; });
     canvas.addEventListener("pointermove", (e) => this.move(e));
@@ -242,6 +242,7 @@ class Viewer {
     ctx.putImageData(image, 0, 0);
     this.paintGrainEdges(ctx, px, py);
     this.paintCracks(ctx, p);
+    this.paintMarks(ctx, p);
     this.paintRuler(ctx);
   }
 
@@ -311,6 +312,18 @@ class Viewer {
     for (const [color, lines] of groups) {
       ctx.strokeStyle = /^[a-z]+$/.test(color) ? theme.get(color) : color;
       trace(lines);
+    }
+  }
+
+  /** Points at cracks with a name, once they are there. */
+  paintMarks(ctx, positions) {
+    const s = this.specimen, count = s.meta.snapshots[this.snapshot].cracks;
+    for (const {crack, look: [color, mark, size]} of this.marksOf(s.meta.test)) {
+      if (crack >= count) continue;
+      const [x0, y0, x1, y1] = s.crack(crack, positions);
+      const x = this.canvas.width / 2 + ((x0 + x1) / 2 - this.cx) * this.scale, y = this.canvas.height / 2 - ((y0 + y1) / 2 - this.cy) * this.scale;
+      drawMark(ctx, mark, x, y, (size + 3.5) * this.dpr, theme.get("halo"));
+      drawMark(ctx, mark, x, y, (size + 1.5) * this.dpr, color);
     }
   }
 
