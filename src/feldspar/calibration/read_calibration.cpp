@@ -7,6 +7,7 @@
 
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/study/reader_on_job.hpp"
 
 namespace feldspar {
 namespace {
@@ -47,18 +48,16 @@ struct RangeRule {
     bool logarithmic = true;
 };
 
-class CalibrationReader {
+class CalibrationReader : private ReaderOnJob {
 public:
     CalibrationReader(const std::string& text, const std::filesystem::path& file)
-        : tree_(parse_toml(text, file.string())),
-          root_(required(TableReader(tree_, "", file.string(),
-                                     {"name", "job", "set", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"}))),
-          result_{file, text, {}, {}, BaseJob(root_, file), {}, {}, {}, {}, 300, {}} {}
+        : ReaderOnJob(text, file, {"name", "job", "set", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"},
+                      {"job", "targets", "unknown"}),
+          result_{file, text, {}, {}, base_, {}, {}, {}, {}, 300, {}} {}
 
     Calibration read() {
-        result_.name = read_directory_name(root_, "name", variant_stem(result_.file.stem().string()));
-        result_.results = std::filesystem::path("results") / read_directory_name(root_, "results", result_.name);
-        if (result_.base.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
+        read_names(result_);
+        if (base_.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
         read_set();
         read_seeds();
         read_targets();
@@ -68,14 +67,9 @@ public:
     }
 
 private:
-    static TableReader required(const TableReader& root) {
-        root.require({"job", "targets", "unknown"});
-        return root;
-    }
-
     void read_set() {
         try {
-            rock_ = result_.base.with({});
+            rock_ = base_.with({});
         } catch (const InputError& error) {
             throw InputError({root_.file(), 0, 0, "set"}, error.place().key + " " + error.problem(), error.allowed(), error.suggestion());
         }
@@ -296,8 +290,6 @@ private:
         }
     }
 
-    toml::table tree_;
-    TableReader root_;
     Calibration result_;
     Job rock_;   // the job before anything is known of the unknowns
 };

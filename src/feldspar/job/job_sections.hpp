@@ -14,7 +14,7 @@
 namespace feldspar {
 
 /// A whole job from its tree. @param text  as it was read, for provenance; @param name  stands in for the file in messages
-Job read_tree(const toml::table& tree, const std::string& text, const std::string& name);
+Job read_tree(toml::table tree, const std::string& text, const std::string& name);
 
 /// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles.
 SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, bool filled);

@@ -159,7 +159,7 @@ Job BaseJob::with(const toml::table& piece) const {
         }
     }
     tree.insert_or_assign("variant", toml::array{variant});
-    Job job = read_tree(tree, text_, file_.string());
+    Job job = read_tree(std::move(tree), text_, file_.string());
     job.variants.front().name.clear();
     job.variants.front().stem.clear();
     return job;

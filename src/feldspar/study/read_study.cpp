@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "feldspar/job/job_sections.hpp"
-#include "feldspar/study/base_job.hpp"
+#include "feldspar/study/reader_on_job.hpp"
 #include "feldspar/study/study.hpp"
 
 namespace feldspar {
@@ -43,18 +43,16 @@ std::string label_of(const toml::node& node) {
     return text.str();
 }
 
-class StudyReader {
+class StudyReader : private ReaderOnJob {
 public:
     StudyReader(const std::string& text, const std::filesystem::path& file)
-        : tree_(parse_toml(text, file.string())),
-          root_(required(TableReader(tree_, "", file.string(), {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}))),
-          base_(root_, file) {
+        : ReaderOnJob(text, file, {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}, {"job"}) {
         study_.file = file;
         study_.text = text;
     }
 
     Study read() {
-        read_names();
+        read_names(study_);
         read_common();
         if (base_.job().has_variants()) axes_.push_back(variant_axis());
         if (root_.has("axis")) read_axes();
@@ -65,19 +63,9 @@ public:
     }
 
 private:
-    static TableReader required(const TableReader& root) {
-        root.require({"job"});
-        return root;
-    }
-
-    void read_names() {
-        study_.name = read_directory_name(root_, "name", variant_stem(study_.file.stem().string()));
-        study_.title = root_.text("title", study_.name);
-        study_.results = std::filesystem::path("results") / read_directory_name(root_, "results", study_.name);
-        study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
-    }
-
     void read_common() {
+        study_.title = root_.text("title", study_.name);
+        study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
         seeds_ = root_.has("seeds") ? read_seed_list(root_, "seeds") : std::vector<std::uint64_t>{};
         tests_ = read_kinds(root_);
         for (TestKind kind : tests_) check_kind(root_, kind);
@@ -285,11 +273,7 @@ private:
         return {};
     }
 
-    toml::table tree_;
-    TableReader root_;
     Study study_;
-    BaseJob base_;
-    toml::table common_;
     std::vector<std::uint64_t> seeds_;   // empty = the job's
     std::vector<TestKind> tests_;        // empty = the job's
     std::vector<Axis> axes_;
