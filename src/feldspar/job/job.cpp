@@ -23,10 +23,11 @@ std::string name_from_stem(const std::filesystem::path& file) {
 std::string read_name(const TableReader& root, const std::filesystem::path& file) {
     if (!root.has("name")) return name_from_stem(file);
     const std::string given = root.text("name");
-    for (char c : given)
-        if (!fits_file_name(c) || given.front() == '.' || given.size() > 100)
+    root.check({"name"}, [&] {
+        if (given.front() == '.' || given.size() > 100 || !std::all_of(given.begin(), given.end(), fits_file_name))
             root.fail("name", shown(*root.find("name")) + " cannot name a directory",
                       "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+    });
     return given;
 }
 
@@ -42,14 +43,17 @@ SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m) {
 
 // A packing that is loaded has no other seeds.
 void check_one_packing(const TableReader& root, const Job& job) {
+    if (!root.sound({"run", "test", "specimen.packing"})) return;
     if (job.specimen.packing_file.empty()) return;
     bool several = job.seeds.size() > 1;
     for (const TestSpec& test : job.tests)
         several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
-    if (several)
+    if (!several) return;
+    root.check({}, [&] {
         root.table("specimen",
                    {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
             .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
+    });
 }
 
 // The parts of a job in the order in which one asks for another.
@@ -73,8 +77,10 @@ public:
         job_.threads = run.threads;
         job_.at_once = run.at_once;
         job_.variants = read_variants(root_);
-        const bool filled = std::any_of(job_.variants.begin(), job_.variants.end(),
-                                        [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
+        std::optional<bool> filled;
+        if (kinds_known(root_, job_.variants))
+            filled = std::any_of(job_.variants.begin(), job_.variants.end(),
+                                 [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
         job_.specimen = read_specimen(root_, job_.file.parent_path(), filled);
         TestList tests = read_tests(root_, job_.specimen, job_.variants, job_.seeds);
         job_.tests = std::move(tests.tests);
@@ -84,6 +90,7 @@ public:
         job_.laboratory_confined = read_laboratory_confined(root_);
 
         check_one_packing(root_, job_);
+        finish();
         return std::move(job_);
     }
 
