@@ -51,6 +51,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     control.threads = thread_count(options.threads.value_or(0));
     control.at_once = options.at_once.value_or(0);
     control.keep = Keep::numbers;
+    control.retry_failed = options.retry_failed;
     control.stop = &stop_requested();
     control.provenance = collect_provenance(options.command_line, control.threads);
     const RunLaboratory* running = nullptr;

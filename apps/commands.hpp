@@ -41,6 +41,7 @@ struct StudyOptions {
     std::string command_line;             ///< for provenance
     std::string on;                       ///< "slurm": on that cluster; empty: on this machine
     SlurmOptions slurm;
+    bool retry_failed = false;            ///< also runs that failed for good
     bool wait = false;                    ///< on Slurm: until the results are there
 };
 
@@ -83,6 +84,7 @@ struct CalibrateOptions {
     std::optional<int> threads;
     std::optional<int> at_once;           ///< runs side by side
     bool insist = false;                  ///< run even if the targets contradict each other
+    bool retry_failed = false;            ///< also runs that failed for good
     std::string command_line;             ///< for provenance
 };
 
@@ -105,6 +107,7 @@ struct EnvelopeCommandOptions : JobOptions {
     std::optional<int> packings;             ///< how many
     std::vector<std::string> sigma3;         ///< "2 MPa"; empty = the job's, else a default series
     bool with_tension = false;
+    bool retry_failed = false;               ///< also runs that failed for good
     std::optional<std::string> results;      ///< directory of ledger, runs and files
     std::string command_line;                ///< for provenance
 };
@@ -116,6 +119,7 @@ ExitCode envelope_command(const EnvelopeCommandOptions& options);
 struct ConvergeCommandOptions : JobOptions {
     std::optional<int> packings;             ///< how many
     std::string within = "5 %";              ///< a change that does not matter
+    bool retry_failed = false;               ///< also runs that failed for good
     std::optional<std::string> results;      ///< directory of ledger, runs and files
     std::string command_line;                ///< for provenance
 };

@@ -76,6 +76,11 @@ void add_thread_options(CLI::App& command, Options& options, const std::string& 
     add("--at-once", options.at_once, "at most so many side by side (default: " + at_once + ")", "K");
 }
 
+template <class Options>
+void add_retry_option(CLI::App& command, Options& options) {
+    command.add_flag("--retry-failed", options.retry_failed, "run again what failed for good: of its input or numerically, with this version of the program");
+}
+
 constexpr const char* all_cores = "one for each core";
 constexpr const char* job_or_all_cores = "as the job says, else one for each core";
 constexpr const char* by_size = "as suits their size";
@@ -133,6 +138,7 @@ void add_made_study_options(CLI::App& command, Options& options, const char* pac
     command.add_option("--seeds", options.packings, packings)->type_name("N")->check(CLI::Range(1, 1000));
     command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")->type_name("NAME")->allow_extra_args(false);
     add_thread_options(command, options, job_or_all_cores, by_size);
+    add_retry_option(command, options);
 }
 
 // The commands, each with what it does. What follows from the command line lives in the action, as long as it may be called.
@@ -200,6 +206,7 @@ void add_study(CommandLine& line) {
     command.require_subcommand(0, 1);
     add_thread_options(command, *options, all_cores, by_size);
     add_slurm_options(command, *options);
+    add_retry_option(command, *options);
     add_study_options(command, *options);
     const auto inside = [&](const char* name, const char* what, ExitCode (*does)(const StudyOptions&)) -> CLI::App& {
         CLI::App& own = *command.add_subcommand(name, what);
@@ -267,6 +274,7 @@ void add_calibrate(CommandLine& line) {
     command.add_option("--results", options->results, "directory of the ledger and the runs (default: as the file says)")->type_name("DIR");
     command.add_option("--budget", options->budget, "at most so many runs (default: as the file says)")->type_name("N")->check(CLI::Range(20, 100'000));
     add_thread_options(command, *options, all_cores, by_size);
+    add_retry_option(command, *options);
     command.add_flag("--insist", options->insist, "run even if the targets contradict each other");
     line.does(command, [options] { return calibrate_command(*options); });
 }

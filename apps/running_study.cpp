@@ -15,20 +15,26 @@ namespace {
 // Tells of a study while it runs: a line for every run that ends, with what is left.
 class StudyProgress {
 public:
-    explicit StudyProgress(const Study& study, const Ledger& ledger) : study_(study) {
+    /// @param program  runs that failed for good with it are not repeated; none if they are
+    StudyProgress(const Study& study, const Ledger& ledger, const Provenance* program) : study_(study) {
         std::vector<std::string> ids;
         for (const Run& run : study.runs) numbers_.emplace(run.id, 0);
         for (const auto& [id, number] : numbers_) ids.push_back(id);
         int number = 0;
         for (const Run& run : study.runs)
             if (numbers_[run.id] == 0) numbers_[run.id] = ++number;
-        for (const RunRecord& record : ledger.find(ids)) ended_ += record.state == RunState::done;
-        first_ = ended_;
+        for (const RunRecord& record : ledger.find(ids)) {
+            done_ += record.state == RunState::done;
+            failed_ += program != nullptr && failed_for_good(record, *program);
+        }
+        first_ = ended_ = done_ + failed_;
         progress_.keep_log_short();
     }
 
     int runs() const { return static_cast<int>(numbers_.size()); }
-    int done() const { return ended_; }
+    /// Found in the ledger.
+    int done() const { return done_; }
+    int failed() const { return failed_; }
 
     void report(const Run& run, const TestProgress& progress) { progress_.report(numbers_[run.id], runs(), label_of(study_, run), progress); }
 
@@ -52,7 +58,7 @@ private:
 
     const Study& study_;
     std::map<std::string, int> numbers_;   // of each run, from 1 on
-    int ended_ = 0, first_ = 0;
+    int done_ = 0, failed_ = 0, ended_ = 0, first_ = 0;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     Progress progress_;
 };
@@ -74,15 +80,17 @@ std::string result_text(const RunRecord& record) {
 
 Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& running) {
     ledger.enrol(study);
-    StudyProgress progress(study, ledger);
-    progress.note(fmt::format("{}: {} runs at {} point{}, {} done already; results in {}", study.name, progress.runs(), study.points.size(),
-                              study.points.size() == 1 ? "" : "s", progress.done(), study.results.string()));
     ExecuteControl control;
+    control.provenance = collect_provenance(running.command_line, running.threads);
+    control.retry_failed = running.retry_failed;
+    StudyProgress progress(study, ledger, running.retry_failed ? nullptr : &control.provenance);
+    const std::string failed = progress.failed() > 0 ? fmt::format(", {} failed before and not repeated", progress.failed()) : "";
+    progress.note(fmt::format("{}: {} runs at {} point{}, {} done already{}; results in {}", study.name, progress.runs(), study.points.size(),
+                              study.points.size() == 1 ? "" : "s", progress.done(), failed, study.results.string()));
     control.threads = running.threads;
     control.at_once = running.at_once;
     control.keep = study.keep;
     control.stop = &stop_requested();
-    control.provenance = collect_provenance(running.command_line, control.threads);
     control.progress = [&](const Run& run, const TestProgress& state) { progress.report(run, state); };
     control.ended = [&](const Run& run, const RunRecord& record) { progress.ended(run, record); };
     control.note = [&](const std::string& line) { progress.note(line); };
@@ -94,13 +102,14 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
 void print_execution(const Study& study, const Execution& execution) {
     fmt::print("{} runs done now, {} before, {} failed; {} of runs in {}\n", execution.done, execution.found_done, execution.failed,
                duration_text(execution.run_s), duration_text(execution.wall_s));
+    if (execution.found_failed > 0) fmt::print("{} failed before and were not repeated; --retry-failed runs them again\n", execution.found_failed);
     fmt::print("Ledger: {}\n", (study.results / "ledger.sqlite").string());
     if (execution.left > 0) fmt::print(stderr, "interrupted with {} runs left; the same command goes on with them\n", execution.left);
 }
 
 ExitCode outcome(const Execution& execution) {
     if (execution.left > 0) return ExitCode::interrupted;
-    return execution.failed > 0 ? ExitCode::numerical : ExitCode::success;
+    return execution.failed + execution.found_failed > 0 ? ExitCode::numerical : ExitCode::success;
 }
 
 }  // namespace feldspar

@@ -13,6 +13,7 @@ struct StudyRunning {
     int threads = 1;            ///< of the whole program
     int at_once = 0;            ///< runs side by side; 0 = as suits their size
     std::string command_line;   ///< for provenance
+    bool retry_failed = false;  ///< also runs that failed for good
 };
 
 /// "biaxial at 4 MPa, seed 1".
@@ -30,7 +31,7 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
 /// Counts and times, where the ledger is, and what to do about an interruption.
 void print_execution(const Study& study, const Execution& execution);
 
-/// Interrupted if runs are left, numerical if one failed.
+/// Interrupted if runs are left, numerical if one failed, now or before.
 ExitCode outcome(const Execution& execution);
 
 }  // namespace feldspar

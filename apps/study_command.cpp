@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "commands.hpp"
@@ -22,7 +23,7 @@ ExitCode study_command(const StudyOptions& options) {
     const Study study = study_with_options(options);
     if (options.on == "slurm") return study_on_slurm(study, options);
     Ledger ledger(study.results, Ledger::Access::write);
-    const Execution execution = run_study(study, ledger, {thread_count(options.threads.value_or(0)), options.at_once.value_or(0), options.command_line});
+    const Execution execution = run_study(study, ledger, {thread_count(options.threads.value_or(0)), options.at_once.value_or(0), options.command_line, options.retry_failed});
 
     const std::vector<PointResults> points = point_results(study, ledger);
     write_study_report(study, points, study_page(study));
@@ -49,6 +50,10 @@ ExitCode study_status_command(const StudyOptions& options) {
     for (const RunRecord& record : by_state[RunState::done]) spent_s += record.numbers.at("wall_s");
     fmt::print("Time of the runs that are done: {}\n", duration_text(spent_s));
     for (const RunRecord& record : by_state[RunState::failed]) fmt::print("failed: {}: {}\n", label_of(study, *runs.at(record.id)), record.reason);
+    const Provenance here = collect_provenance({}, 1);
+    const auto& failed = by_state[RunState::failed];
+    const auto kept = std::count_if(failed.begin(), failed.end(), [&](const RunRecord& record) { return failed_for_good(record, here); });
+    if (kept > 0) fmt::print("{} of the failed runs will not be repeated, but by --retry-failed\n", kept);
     for (const RunRecord& record : by_state[RunState::running]) fmt::print("running, or left behind: {}\n", label_of(study, *runs.at(record.id)));
     print_slurm_status(study.results);
     return ExitCode::success;

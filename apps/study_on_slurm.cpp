@@ -39,6 +39,8 @@ ExitCode outcome(const Gathering& gathering) {
 void print_submission(const Submission& submission, const std::string& study) {
     if (submission.queued > 0) fmt::print("{} already in Slurm's queue\n", counted(static_cast<std::size_t>(submission.queued), "run"));
     if (submission.elsewhere > 0) fmt::print("{} left to another process of this machine\n", counted(static_cast<std::size_t>(submission.elsewhere), "run"));
+    if (submission.failed > 0)
+        fmt::print("{} failed before and not repeated; --retry-failed submits them again\n", counted(static_cast<std::size_t>(submission.failed), "run"));
     if (!submission.plan) {
         fmt::print("Nothing to submit: {} done\n", counted(static_cast<std::size_t>(submission.done), "run"));
         return;
@@ -106,7 +108,7 @@ std::vector<SlurmPlan> plans_in_queue(const fs::path& results) {
 ExitCode study_on_slurm(const Study& study, const StudyOptions& options) {
     require_slurm();
     Ledger ledger(study.results, Ledger::Access::write);
-    const Submission submission = submit(study, ledger, options.slurm, fs::read_symlink("/proc/self/exe"));
+    const Submission submission = submit(study, ledger, options.slurm, fs::read_symlink("/proc/self/exe"), options.retry_failed);
     print_submission(submission, options.study);
     if (!options.wait) return ExitCode::success;
     std::fflush(stdout);

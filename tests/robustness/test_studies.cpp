@@ -91,6 +91,64 @@ TEST(Studies, CtrlCLeavesTheRestToTheNextTime) {
     EXPECT_NE(status.out.find(" 0 running, 0 failed"), std::string::npos) << status.out;
 }
 
+TEST(Studies, RunsThatFailForGoodAreNotRepeatedUnlessAskedFor) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    write_text(place / "study.toml", "job = \"job.toml\"\n[[axis]]\nname = \"mass\"\nkey = \"numerics.mass_factor\"\nvalues = [0.001, 2]\n");
+    const auto study = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"study", "study.toml", "--threads", "1"});
+        return run_program(place.path(), more);
+    };
+    const Outcome first = study({});
+    EXPECT_EQ(first.code, 3) << first.err;
+    EXPECT_NE(first.out.find("1 runs done now, 0 before, 1 failed;"), std::string::npos) << first.out;
+    const Outcome second = study({});
+    EXPECT_EQ(second.code, 3) << second.err;
+    EXPECT_NE(second.err.find("1 done already, 1 failed before and not repeated"), std::string::npos) << second.err;
+    EXPECT_NE(second.out.find("0 runs done now, 1 before, 0 failed;"), std::string::npos) << second.out;
+    EXPECT_NE(second.out.find("1 failed before and were not repeated; --retry-failed runs them again"), std::string::npos) << second.out;
+    EXPECT_NE(read_text(place / "results/study/study.html").find("mass_factor"), std::string::npos);   // its reason is shown still
+    const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
+    EXPECT_NE(status.out.find("1 done, 0 running, 1 failed, 0 to do"), std::string::npos) << status.out;
+    EXPECT_NE(status.out.find("1 of the failed runs will not be repeated"), std::string::npos) << status.out;
+    const Outcome third = study({"--retry-failed"});
+    EXPECT_EQ(third.code, 3) << third.err;
+    EXPECT_NE(third.out.find("0 runs done now, 1 before, 1 failed;"), std::string::npos) << third.out;
+}
+
+TEST(Studies, ThoseThatCommandsMakeOfAJobKeepFailuresToo) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", "kind = \"paper\"\nmass_factor = 0.001\n"));
+    for (const std::string command : {"envelope", "converge"}) {
+        SCOPED_TRACE(command);
+        const auto call = [&](std::vector<std::string> more) {
+            more.insert(more.begin(), {command, "job.toml", "--seeds", "2", "--threads", "2"});
+            return run_program(place.path(), more);
+        };
+        const Outcome first = call({});
+        EXPECT_EQ(first.code, 3) << first.err;
+        EXPECT_EQ(first.out.find("not repeated"), std::string::npos) << first.out;
+        const Outcome second = call({});
+        EXPECT_EQ(second.code, 3) << second.err;
+        EXPECT_NE(second.out.find("0 runs done now, 0 before, 0 failed;"), std::string::npos) << second.out;
+        EXPECT_NE(second.out.find("failed before and were not repeated"), std::string::npos) << second.out;
+        EXPECT_EQ(call({"--retry-failed"}).out.find("not repeated"), std::string::npos);
+    }
+}
+
+TEST(Studies, AKilledRunIsNoFailureForGood) {
+    const TemporaryFolder place;
+    write_study(place);
+    Program program(place.path(), {"study", "study.toml", "--threads", "1"});
+    ASSERT_TRUE(program.wait_until([&] { return !finished(place).empty(); })) << program.err_so_far();
+    program.send(SIGKILL);
+    (void)program.finish();
+    const Outcome again = run_program(place.path(), {"study", "study.toml", "--threads", "2"});
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_EQ(again.err.find("not repeated"), std::string::npos) << again.err;
+    EXPECT_EQ(finished(place).size(), static_cast<std::size_t>(runs_of_two_axes));
+}
+
 TEST(Studies, TablesAndStatusWithoutALedger) {
     const TemporaryFolder place;
     write_study(place);

@@ -186,8 +186,11 @@ TEST(StudyOnSlurm, FailuresCarryTheirReason) {
     EXPECT_NE(first.out.find("failed: uniaxial-compression, seed 1 (run "), std::string::npos) << first.out;
     EXPECT_NE(first.out.find("mass_factor"), std::string::npos) << first.out;
     EXPECT_NE(read_text(cluster / "there/slurm/1/gather.out").find("2 failed"), std::string::npos) << read_text(cluster / "there/slurm/1/gather.out");
-    const Outcome again = cluster.submit();
-    EXPECT_NE(again.out.find("Submitted 2 runs"), std::string::npos) << again.out;
+    const Outcome again = cluster.submit();   // they would fail again
+    EXPECT_NE(again.out.find("2 runs failed before and not repeated"), std::string::npos) << again.out;
+    EXPECT_NE(again.out.find("Nothing to submit"), std::string::npos) << again.out;
+    const Outcome asked = cluster.submit({"--retry-failed"});
+    EXPECT_NE(asked.out.find("Submitted 2 runs"), std::string::npos) << asked.out;
 }
 
 TEST(StudyOnSlurm, AnElementEndsCleanlyWhenAsked) {

@@ -7,6 +7,7 @@
 
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/study/reader_on_job.hpp"
 
 namespace feldspar {
 namespace {
@@ -47,37 +48,34 @@ struct RangeRule {
     bool logarithmic = true;
 };
 
-class CalibrationReader {
+class CalibrationReader : private ReaderOnJob {
 public:
     CalibrationReader(const std::string& text, const std::filesystem::path& file)
-        : tree_(parse_toml(text, file.string())),
-          root_(required(TableReader(tree_, "", file.string(),
-                                     {"name", "job", "set", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"}))),
-          result_{file, text, {}, {}, BaseJob(root_, file), {}, {}, {}, {}, 300, {}} {}
+        : ReaderOnJob(text, file, {"name", "job", "set", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"},
+                      {"job", "targets", "unknown"}),
+          result_{file, text, {}, {}, base_, {}, {}, {}, {}, 300, {}} {}
 
     Calibration read() {
-        result_.name = read_directory_name(root_, "name", variant_stem(result_.file.stem().string()));
-        result_.results = std::filesystem::path("results") / read_directory_name(root_, "results", result_.name);
-        if (result_.base.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
-        read_set();
+        read_names(result_);
+        root_.check({"job"}, [&] {
+            if (base_.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
+        });
+        if (root_.sound({"job", "set"})) read_set();
         read_seeds();
         read_targets();
         read_unknowns();
-        check_determined();
+        root_.check({"job", "targets", "unknown"}, [&] { check_determined(); });
+        finish();
         return std::move(result_);
     }
 
 private:
-    static TableReader required(const TableReader& root) {
-        root.require({"job", "targets", "unknown"});
-        return root;
-    }
-
     void read_set() {
         try {
-            rock_ = result_.base.with({});
+            rock_ = base_.with({});
         } catch (const InputError& error) {
-            throw InputError({root_.file(), 0, 0, "set"}, error.place().key + " " + error.problem(), error.allowed(), error.suggestion());
+            for (const InputError& one : each_mistake(error))
+                mistakes_.add(InputError({root_.file(), 0, 0, "set"}, one.place().key + " " + one.problem(), one.allowed(), one.suggestion()), "set");
         }
     }
 
@@ -90,8 +88,10 @@ private:
             for (std::uint64_t seed = 1001; seed <= 1010; ++seed) result_.confirm_seeds.push_back(seed);
         for (const std::uint64_t seed : result_.confirm_seeds)
             if (std::find(result_.seeds.begin(), result_.seeds.end(), seed) != result_.seeds.end())
-                root_.fail(root_.has("confirm_seeds") ? "confirm_seeds" : "seeds", fmt::format("the packing {} is also one that calibration learns from", seed),
-                           "fresh packings, which confirm what was learned");
+                root_.check({"seeds", "confirm_seeds"}, [&] {
+                    root_.fail(root_.has("confirm_seeds") ? "confirm_seeds" : "seeds", fmt::format("the packing {} is also one that calibration learns from", seed),
+                               "fresh packings, which confirm what was learned");
+                });
         result_.budget = static_cast<int>(root_.integer("budget", 20, 100'000, 300));
     }
 
@@ -103,14 +103,15 @@ private:
             if (!table.has(kind.name)) continue;
             const toml::node& node = *table.find(kind.name);
             if (std::string(kind.name) == "sigma1") {
-                for (const toml::node& item : table.array(kind.name)) {
-                    if (!item.is_table()) table.fail_at(item, kind.name, shown(item) + " is not a strength under confinement", "{ sigma3 = \"10 MPa\", value = \"190 MPa\" }");
-                    const TableReader one(*item.as_table(), "targets.sigma1", root_.file(), {"sigma3", "value", "tolerance", "standard_deviation"});
-                    one.require({"sigma3", "value"});
-                    Target target = read_target(one, kind);
-                    target.sigma3_Pa = one.quantity("sigma3", Dimension::stress, positive);
-                    result_.targets.push_back(target);
-                }
+                for (const toml::node& item : table.array(kind.name))
+                    table.check({}, [&] {
+                        if (!item.is_table()) table.fail_at(item, kind.name, shown(item) + " is not a strength under confinement", "{ sigma3 = \"10 MPa\", value = \"190 MPa\" }");
+                        const TableReader one(*item.as_table(), "targets.sigma1", root_.file(), {"sigma3", "value", "tolerance", "standard_deviation"}, 0, &mistakes_);
+                        one.require({"sigma3", "value"});
+                        Target target = read_target(one, kind);
+                        target.sigma3_Pa = one.quantity("sigma3", Dimension::stress, positive);
+                        result_.targets.push_back(target);
+                    });
             } else if (node.is_table()) {
                 const TableReader one = table.table(kind.name, {"value", "tolerance", "standard_deviation"});
                 one.require({"value"});
@@ -121,21 +122,27 @@ private:
                 result_.targets.push_back(target);
             }
         }
-        if (result_.targets.empty()) root_.fail("targets", "there is no target", listed(names));
-        check_order(table);
+        if (result_.targets.empty()) root_.check({"targets"}, [&] { root_.fail("targets", "there is no target", listed(names)); });
+        root_.check({"targets"}, [&] { check_order(table); });
+        if (!root_.sound({"job", "set", "targets"})) return;
         std::vector<double>& sigma3 = result_.sigma3_Pa;
         for (const TestSpec& test : rock_.tests)
             if (test.kind == TestKind::biaxial) sigma3.push_back(test.sigma3_Pa);
         for (const Target& target : result_.targets) {
             const bool envelope = target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
-            if (envelope && sigma3.empty())
-                table.fail(target.name, "is read from confined tests, and the job has none", "a biaxial [[test]] in the job, with the laboratory's range of sigma3");
-            if (target.name == "sigma1" && std::find(sigma3.begin(), sigma3.end(), target.sigma3_Pa) == sigma3.end())
-                table.fail("sigma1", fmt::format("the job has no biaxial test at {:g} MPa", target.sigma3_Pa / 1e6), "a sigma3 of the job's biaxial tests");
+            table.check({}, [&] {
+                if (envelope && sigma3.empty())
+                    table.fail(target.name, "is read from confined tests, and the job has none", "a biaxial [[test]] in the job, with the laboratory's range of sigma3");
+                if (target.name == "sigma1" && std::find(sigma3.begin(), sigma3.end(), target.sigma3_Pa) == sigma3.end())
+                    table.fail("sigma1", fmt::format("the job has no biaxial test at {:g} MPa", target.sigma3_Pa / 1e6), "a sigma3 of the job's biaxial tests");
+            });
         }
+        if (!root_.sound({"targets"})) return;
         for (const Observable& quantity : observables_for(result_))
-            if (std::none_of(rock_.tests.begin(), rock_.tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
-                root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name), fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
+            root_.check({}, [&] {
+                if (std::none_of(rock_.tests.begin(), rock_.tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
+                    root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name), fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
+            });
     }
 
     // No rock is weaker in compression than in tension: Griffith's criterion has a ratio of 8, rocks have 5 to 30.
@@ -167,7 +174,7 @@ private:
     Target read_target(const TableReader& table, const TargetKind& kind) const {
         Target target{kind.name, 0.0, read_value(table, "value", kind), 0.0};
         if (table.has("tolerance") && table.has("standard_deviation"))
-            table.fail("standard_deviation", "given beside tolerance", "one of the two");
+            table.check({}, [&] { table.fail("standard_deviation", "given beside tolerance", "one of the two"); });
         const char* key = table.has("tolerance") ? "tolerance" : "standard_deviation";
         target.tolerance = kind.absolute ? kind.tolerance : kind.tolerance * target.value;
         if (!table.has(key)) return target;
@@ -218,8 +225,9 @@ private:
             result_.unknowns.push_back(read_unknown(table));
         for (std::size_t i = 0; i < result_.unknowns.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
-                if (result_.unknowns[i].key == result_.unknowns[j].key)
-                    root_.fail("unknown", "'" + result_.unknowns[i].key + "' is given twice", "each key once");
+                if (result_.unknowns[i].key == result_.unknowns[j].key && !result_.unknowns[i].key.empty())
+                    root_.check({}, [&] { root_.fail("unknown", "'" + result_.unknowns[i].key + "' is given twice", "each key once"); });
+        if (!root_.sound({"job", "set", "targets", "unknown"})) return;
         try {
             std::vector<double> low, high;
             for (const Unknown& unknown : result_.unknowns) {
@@ -229,7 +237,8 @@ private:
             (void)result_.job_with(low);
             (void)result_.job_with(high);
         } catch (const InputError& error) {
-            throw InputError({root_.file(), 0, 0, error.place().key}, "at an end of the ranges: " + error.problem(), error.allowed(), error.suggestion());
+            for (const InputError& one : each_mistake(error))
+                mistakes_.add(InputError({root_.file(), 0, 0, one.place().key}, "at an end of the ranges: " + one.problem(), one.allowed(), one.suggestion()), {});
         }
     }
 
@@ -240,7 +249,8 @@ private:
         unknown.name = table.text("name", unknown.key.substr(unknown.key.rfind('.') + 1));
         if (table.has("times")) unknown.times = read_job_key(table, "times", table.text("times"));
         if (table.has("coupled")) unknown.coupled = read_coupled(table);
-        const std::vector<RangeRule> rules = range_rules();
+        const bool rules_known = root_.sound({"job", "set", "targets"});
+        const std::vector<RangeRule> rules = rules_known ? range_rules() : std::vector<RangeRule>{};
         const auto rule = std::find_if(rules.begin(), rules.end(), [&](const RangeRule& r) { return unknown.key == r.key; });
         if (rule != rules.end()) {
             unknown.elastic = rule->elastic;
@@ -254,11 +264,20 @@ private:
             unknown.high = six_digits(rule->high / unit.in_SI);
             unknown.unit = unit.name;
         } else {
-            table.fail("range", "is missing: neither the key nor the targets say what is usual", "range = [lowest, highest]");
+            if (!rules_known) table.do_not_miss({"range"});
+            table.check({"key", "times", "range"}, [&] {
+                table.fail("range", "is missing: neither the key nor the targets say what is usual", "range = [lowest, highest]");
+            });
         }
         unknown.logarithmic = table.choice<bool>("scale", {{"log", true}, {"linear", false}}, unknown.logarithmic);
-        if (!(unknown.low < unknown.high)) table.fail("range", "is empty", "the lower value first");
-        if (unknown.logarithmic && !(unknown.low > 0.0)) table.fail("range", "begins at zero or below, and is divided by its logarithm", "a lower end above zero, or scale = \"linear\"");
+        table.check({"key", "range"}, [&] {
+            if (!(unknown.low < unknown.high)) table.fail("range", "is empty", "the lower value first");
+        });
+        const bool usual_scale = table.has("scale") || rules_known;   // without the rules "linear" may be the usual one
+        if (unknown.logarithmic && usual_scale)
+            table.check({"key", "range", "scale"}, [&] {
+                if (!(unknown.low > 0.0)) table.fail("range", "begins at zero or below, and is divided by its logarithm", "a lower end above zero, or scale = \"linear\"");
+            });
         return unknown;
     }
 
@@ -276,13 +295,15 @@ private:
 
     void read_range(const TableReader& table, Unknown& unknown) const {
         const toml::array& range = table.array("range");
-        if (range.size() != 2) table.fail("range", fmt::format("has {} values", range.size()), "two: the lowest and the highest");
-        const Measure low = measure_of(range[0]), high = measure_of(range[1]);
-        if (std::isnan(low.number) || std::isnan(high.number)) table.fail("range", "has values that do not begin with a number", "such as [\"5 MPa\", \"20 MPa\"]");
-        if (low.unit != high.unit) table.fail("range", fmt::format("has the units '{}' and '{}'", low.unit, high.unit), "the same unit twice");
-        unknown.low = low.number;
-        unknown.high = high.number;
-        unknown.unit = low.unit;
+        table.check({"range"}, [&] {
+            if (range.size() != 2) table.fail("range", fmt::format("has {} values", range.size()), "two: the lowest and the highest");
+            const Measure low = measure_of(range[0]), high = measure_of(range[1]);
+            if (std::isnan(low.number) || std::isnan(high.number)) table.fail("range", "has values that do not begin with a number", "such as [\"5 MPa\", \"20 MPa\"]");
+            if (low.unit != high.unit) table.fail("range", fmt::format("has the units '{}' and '{}'", low.unit, high.unit), "the same unit twice");
+            unknown.low = low.number;
+            unknown.high = high.number;
+            unknown.unit = low.unit;
+        });
     }
 
     // Unknowns that no target can tell anything of.
@@ -296,8 +317,6 @@ private:
         }
     }
 
-    toml::table tree_;
-    TableReader root_;
     Calibration result_;
     Job rock_;   // the job before anything is known of the unknowns
 };

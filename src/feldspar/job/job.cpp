@@ -1,7 +1,9 @@
 #include "feldspar/job/job.hpp"
 
 #include <cctype>
+#include <utility>
 
+#include "feldspar/job/file_reader.hpp"
 #include "feldspar/job/job_sections.hpp"
 
 namespace feldspar {
@@ -21,10 +23,11 @@ std::string name_from_stem(const std::filesystem::path& file) {
 std::string read_name(const TableReader& root, const std::filesystem::path& file) {
     if (!root.has("name")) return name_from_stem(file);
     const std::string given = root.text("name");
-    for (char c : given)
-        if (!fits_file_name(c) || given.front() == '.' || given.size() > 100)
+    root.check({"name"}, [&] {
+        if (given.front() == '.' || given.size() > 100 || !std::all_of(given.begin(), given.end(), fits_file_name))
             root.fail("name", shown(*root.find("name")) + " cannot name a directory",
                       "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+    });
     return given;
 }
 
@@ -41,48 +44,64 @@ SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double fla
 
 // A packing that is loaded has no other seeds.
 void check_one_packing(const TableReader& root, const Job& job) {
+    if (!root.sound({"run", "test", "specimen.packing"})) return;
     if (job.specimen.packing_file.empty()) return;
     bool several = job.seeds.size() > 1;
     for (const TestSpec& test : job.tests)
         several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
-    if (several)
+    if (!several) return;
+    root.check({}, [&] {
         root.table("specimen",
                    {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
             .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
+    });
 }
+
+// The parts of a job in the order in which one asks for another.
+class JobReader : private FileReader {
+public:
+    JobReader(toml::table tree, const std::string& text, const std::string& name)
+        : FileReader(std::move(tree), name, {"name", "specimen", "model", "material", "numerics", "variant", "test", "run", "laboratory"}, {}, job_level) {
+        job_.file = name;
+        job_.text = text;
+    }
+
+    Job read() {
+        job_.name = read_name(root_, job_.file);
+        if (root_.has("variant"))
+            root_.require({"specimen", "test"});
+        else
+            root_.require({"specimen", "material", "test"});
+
+        const RunSettings run = read_run(root_);
+        job_.seeds = run.seeds;
+        job_.threads = run.threads;
+        job_.at_once = run.at_once;
+        job_.variants = read_variants(root_);
+        std::optional<bool> filled;
+        if (kinds_known(root_, job_.variants))
+            filled = std::any_of(job_.variants.begin(), job_.variants.end(),
+                                 [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
+        job_.specimen = read_specimen(root_, job_.file.parent_path(), filled);
+        TestList tests = read_tests(root_, job_.specimen, job_.variants, job_.seeds);
+        job_.tests = std::move(tests.tests);
+        if (tests.brazilian_diameter_m) job_.brazilian_specimen = disc_of(job_.specimen, *tests.brazilian_diameter_m, tests.flat_angle_rad);
+        check_variants(root_, job_);
+        job_.laboratory = read_laboratory(root_);
+        job_.laboratory_confined = read_laboratory_confined(root_);
+
+        check_one_packing(root_, job_);
+        finish();
+        return std::move(job_);
+    }
+
+private:
+    Job job_;
+};
 
 }  // namespace
 
-Job read_tree(const toml::table& tree, const std::string& text, const std::string& name) {
-    const TableReader root(
-        tree, "", name, {"name", "specimen", "model", "material", "numerics", "variant", "test", "run", "laboratory"}, job_level);
-    Job job;
-    job.file = name;
-    job.text = text;
-    job.name = read_name(root, job.file);
-    if (root.has("variant"))
-        root.require({"specimen", "test"});
-    else
-        root.require({"specimen", "material", "test"});
-
-    const RunSettings run = read_run(root);
-    job.seeds = run.seeds;
-    job.threads = run.threads;
-    job.at_once = run.at_once;
-    job.variants = read_variants(root);
-    const bool filled = std::any_of(job.variants.begin(), job.variants.end(),
-                                    [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
-    job.specimen = read_specimen(root, job.file.parent_path(), filled);
-    TestList tests = read_tests(root, job.specimen, job.variants, job.seeds);
-    job.tests = std::move(tests.tests);
-    if (tests.brazilian_diameter_m) job.brazilian_specimen = disc_of(job.specimen, *tests.brazilian_diameter_m, tests.flat_angle_rad);
-    check_variants(root, job);
-    job.laboratory = read_laboratory(root);
-    job.laboratory_confined = read_laboratory_confined(root);
-
-    check_one_packing(root, job);
-    return job;
-}
+Job read_tree(toml::table tree, const std::string& text, const std::string& name) { return JobReader(std::move(tree), text, name).read(); }
 
 Job parse_job(const std::string& text, const std::string& name) { return read_tree(parse_toml(text, name), text, name); }
 

@@ -14,10 +14,11 @@
 namespace feldspar {
 
 /// A whole job from its tree. @param text  as it was read, for provenance; @param name  stands in for the file in messages
-Job read_tree(const toml::table& tree, const std::string& text, const std::string& name);
+Job read_tree(toml::table tree, const std::string& text, const std::string& name);
 
-/// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles.
-SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, bool filled);
+/// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles; nothing if a
+/// mistake in the models leaves that open.
+SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, std::optional<bool> filled);
 
 /// [model], [material] and [numerics] of the job, or of one of its variants, whose tables lie over the job's.
 struct Physics {
@@ -28,10 +29,13 @@ struct Physics {
 };
 Physics read_physics(const TableReader& root, const TableReader* variant);
 
+/// What kinds of grains the job and its variants have was read without a mistake.
+bool kinds_known(const TableReader& root, const std::vector<Variant>& variants);
+
 /// [[variant]]: always one at least; a job without the list has one without a name.
 std::vector<Variant> read_variants(const TableReader& root);
 
-/// @throws InputError for a variant whose seeds or tests are not the job's, or which would run nothing.
+/// A mistake for each variant whose seeds or tests are not the job's, or which would run nothing.
 void check_variants(const TableReader& root, const Job& job);
 
 /// The levels of tables that lie over each other; a preset's is one more than that of the table that names it.

@@ -45,12 +45,13 @@ std::string kind_setting(GrainKind kind) { return std::string("kind = \"") + nam
 struct ReadModel {
     ModelSpec model;
     int decided_at = not_given;
+    bool known = true;   // false: its kind could not be read, so nothing is held against it
 };
 
 void refuse_value(const TableReader& table, std::string_view key, const ReadModel& read, const std::string& why,
                   const std::string& allowed) {
     if (table.level_of(key) > read.decided_at || !table.has(key)) return;
-    table.fail(key, shown(*table.find(key)) + " does not apply to " + kind_setting(read.model.kind) + why, allowed);
+    table.check({key}, [&] { table.fail(key, shown(*table.find(key)) + " does not apply to " + kind_setting(read.model.kind) + why, allowed); });
 }
 
 void suit_contact(const TableReader& table, ReadModel& read) {
@@ -73,8 +74,10 @@ void suit_plane(const TableReader& table, ReadModel& read) {
     read.model.plane = PlaneState::stress;
 }
 
-ReadModel read_model(const std::optional<TableReader>& found) {
+ReadModel read_model(const Layers& holders) {
     ReadModel read;
+    read.known = std::all_of(holders.begin(), holders.end(), [](const TableReader& holder) { return holder.sound({"model.kind"}); });
+    const std::optional<TableReader> found = laid_over(tables_of(holders, "model", model_keys));
     if (!found) return read;
     const TableReader& table = *found;
     ModelSpec& model = read.model;
@@ -83,20 +86,24 @@ ReadModel read_model(const std::optional<TableReader>& found) {
     model.contact = table.choice("contact", contact_kinds, {model.contact});
     model.normal = table.choice("normal", contact_normals, {model.normal});
     model.plane = table.choice("plane", plane_states, {model.plane});
+    read.known = read.known && table.sound({"kind"});
+    if (!read.known) return read;
     suit_contact(table, read);
     suit_normal(table, read);
     suit_plane(table, read);
     return read;
 }
 
-const Preset& preset_of(const TableReader& material, std::string_view key, std::span<const Preset> presets) {
+// Nothing if there is none of that name.
+const Preset* preset_of(const TableReader& material, std::string_view key, std::span<const Preset> presets) {
     const std::string given = material.text(key);
     std::vector<std::string_view> names;
     for (const Preset& preset : presets) {
-        if (preset.name == given) return preset;
+        if (preset.name == given) return &preset;
         names.push_back(preset.name);
     }
-    material.fail(key, "'" + given + "' is not a preset", listed(names), did_you_mean(given, names));
+    material.check({key}, [&] { material.fail(key, "'" + given + "' is not a preset", listed(names), did_you_mean(given, names)); });
+    return nullptr;
 }
 
 // A preset fitted for other grains would give them the wrong stiffness without a word.
@@ -118,17 +125,29 @@ struct MaterialTables {
     std::optional<TableReader> contact;  // [material.contact] over presets
 };
 
-MaterialTables material_tables(const Layers& holders, GrainKind kind) {
-    const Layers materials = tables_of(holders, "material", material_keys);
-    if (materials.empty()) holders.front().require({"material"});
+bool all_sound(const Layers& holders, const std::string& key) {
+    return std::all_of(holders.begin(), holders.end(), [&](const TableReader& holder) { return holder.sound({key}); });
+}
+
+MaterialTables material_tables(const Layers& holders, const ReadModel& model) {
+    Layers materials = tables_of(holders, "material", material_keys);
+    if (materials.empty()) materials.push_back((holders.back().sound({"material"}) ? holders.front() : holders.back()).table("material", material_keys));
     MaterialTables result{*laid_over(materials), {}, {}};
     Layers grains = tables_of(materials, "grain", grain_keys), contacts = tables_of(materials, "contact", contact_keys);
+    bool presets_known = true;
     const auto add_preset = [&](std::string_view key, std::span<const Preset> presets) {
-        if (!result.all.has(key)) return;
-        const Preset& preset = preset_of(result.all, key, presets);
-        check_kind(result.all, preset, kind);
+        const bool known = all_sound(holders, "material." + std::string(key));   // else a table above may name another one
+        presets_known = presets_known && known;
+        if (!result.all.has(key) || !known) return;
+        const Preset* preset = preset_of(result.all, key, presets);
+        if (preset != nullptr && model.known) result.all.check({key}, [&] { check_kind(result.all, *preset, model.model.kind); });
+        if (preset == nullptr || !result.all.sound({key})) {
+            presets_known = false;
+            return;
+        }
         const TableReader table =
-            TableReader(preset_table(preset), "material", result.all.file(), {"grain", "contact"}, result.all.level_of(key) + 1)
+            TableReader(preset_table(*preset), "material", result.all.file(), {"grain", "contact"}, result.all.level_of(key) + 1,
+                        result.all.mistakes())
                 .placed_at(*result.all.find(key));
         if (table.has("grain")) grains.push_back(table.table("grain", grain_keys));
         if (table.has("contact")) contacts.push_back(table.table("contact", contact_keys));
@@ -137,13 +156,22 @@ MaterialTables material_tables(const Layers& holders, GrainKind kind) {
     add_preset("strength_preset", strength_presets());
     result.grain = laid_over(grains);
     result.contact = laid_over(contacts);
+    // what is not there may be in a preset or a table that could not be read
+    if (!presets_known || !all_sound(holders, "material.grain")) {
+        result.all.do_not_miss({"grain"});
+        if (result.grain) result.grain->do_not_miss(grain_keys);
+    }
+    if (!presets_known || !all_sound(holders, "material.contact")) {
+        result.all.do_not_miss({"contact"});
+        if (result.contact) result.contact->do_not_miss(contact_keys);
+    }
     return result;
 }
 
 GrainMaterial read_grain(const MaterialTables& material, const ReadModel& read) {
     GrainMaterial grain;
-    const bool flexible = read.model.kind == GrainKind::flexible;
-    if (flexible && !material.grain) material.all.require({"grain"});
+    const bool flexible = read.model.kind == GrainKind::flexible || !read.known;
+    if (flexible && read.known && !material.grain) material.all.require({"grain"});
     if (!material.grain) return grain;
     const TableReader& table = *material.grain;
     grain.density_kg_m3 = table.quantity("density", Dimension::density, positive, grain.density_kg_m3);
@@ -152,6 +180,7 @@ GrainMaterial read_grain(const MaterialTables& material, const ReadModel& read) 
                      "density; the specimen deforms by Kn and eta of its contacts", read.decided_at);
         return grain;
     }
+    if (!read.known) table.do_not_miss({"E", "nu"});
     table.require({"E", "nu"});
     grain.E_Pa = table.quantity("E", Dimension::stress, positive);
     Range range = poisson_range;
@@ -163,9 +192,12 @@ GrainMaterial read_grain(const MaterialTables& material, const ReadModel& read) 
 
 // ks / kn, given itself or as its inverse; of two tables the upper one counts.
 double read_eta(const TableReader& table) {
-    if (!table.has("eta") && !table.has("kratio")) table.fail("eta", "missing key: eta", "eta = ks/kn, or kratio = kn/ks");
-    if (table.has("eta") && table.level_of("eta") == table.level_of("kratio"))
-        table.fail("kratio", "given beside eta, of which it is the inverse", "either eta = ks/kn or kratio = kn/ks");
+    table.check({"eta", "kratio"}, [&] {
+        if (!table.has("eta") && !table.has("kratio")) table.fail("eta", "missing key: eta", "eta = ks/kn, or kratio = kn/ks");
+        if (table.has("eta") && table.level_of("eta") == table.level_of("kratio"))
+            table.fail("kratio", "given beside eta, of which it is the inverse", "either eta = ks/kn or kratio = kn/ks");
+    });
+    if (!table.has("eta") && !table.has("kratio")) return 1.0;   // a mistake that is noted
     const bool inverse = table.level_of("kratio") < table.level_of("eta");
     return inverse ? 1.0 / table.number("kratio", positive) : table.number("eta", positive);
 }
@@ -182,11 +214,15 @@ void read_softening(const TableReader& table, ContactMaterial& contact) {
 }
 
 ContactMaterial read_contact(const MaterialTables& material) {
-    if (!material.contact) material.all.require({"contact"});
-    const TableReader& table = *material.contact;
     ContactMaterial contact;
+    if (!material.contact) {
+        material.all.require({"contact"});
+        return contact;
+    }
+    const TableReader& table = *material.contact;
     contact.law = table.choice("law", contact_laws, {contact.law});
-    const bool softens = contact.law != ContactLaw::brittle;
+    if (!table.sound({"law"})) table.do_not_miss({"Gfn", "Gfs"});
+    const bool softens = contact.law != ContactLaw::brittle || !table.sound({"law"});
     if (softens) {
         table.require({"Kn", "sigma_nt", "tau", "mu", "Gfn", "Gfs"});
     } else {
@@ -204,6 +240,7 @@ ContactMaterial read_contact(const MaterialTables& material) {
 }
 
 void refuse_other_numerics(const TableReader& table, NumericsKind kind) {
+    if (!table.sound({"kind"})) return;
     const int decided_at = table.level_of("kind");
     switch (kind) {
         case NumericsKind::adaptive:
@@ -227,7 +264,7 @@ void refuse_other_numerics(const TableReader& table, NumericsKind kind) {
 void read_accuracy(const TableReader& table, NumericsSpec& numerics) {
     const bool target = table.has("residual_target");
     if (target && table.level_of("accuracy") == table.level_of("residual_target"))
-        table.fail("residual_target", "given beside accuracy, which it would override", "one of the two");
+        table.check({}, [&] { table.fail("residual_target", "given beside accuracy, which it would override", "one of the two"); });
     if (target && table.level_of("residual_target") < table.level_of("accuracy")) {
         numerics.residual_target = table.number("residual_target", {0.0, 0.5, false, true, "greater than 0, at most 0.5"});
         return;
@@ -262,8 +299,8 @@ Physics read_physics(const TableReader& root, const TableReader* variant) {
     Layers holders;
     if (variant != nullptr) holders.push_back(*variant);
     holders.push_back(root);
-    const ReadModel model = read_model(laid_over(tables_of(holders, "model", model_keys)));
-    const MaterialTables material = material_tables(holders, model.model.kind);
+    const ReadModel model = read_model(holders);
+    const MaterialTables material = material_tables(holders, model);
     Physics physics;
     physics.model = model.model;
     physics.grain = read_grain(material, model);
@@ -278,7 +315,7 @@ std::map<std::string, double> read_laboratory(const TableReader& root) {
     const TableReader table = root.table("laboratory", laboratory_keys);
     const auto one_of = [&](std::string_view name, std::string_view alias) {
         if (table.has(name) && table.has(alias))
-            table.fail(alias, "given beside " + std::string(name) + ", which is the same", "one of the two");
+            table.check({}, [&] { table.fail(alias, "given beside " + std::string(name) + ", which is the same", "one of the two"); });
         return table.has(alias) ? alias : name;
     };
     for (const char* name : {"E", "UCS", "DTS", "BTS"})
@@ -298,15 +335,16 @@ std::vector<ConfinedStrength> read_laboratory_confined(const TableReader& root) 
     if (!root.has("laboratory")) return strengths;
     const TableReader table = root.table("laboratory", laboratory_keys);
     if (!table.has("confined")) return strengths;
-    for (const toml::node& node : table.array("confined")) {
-        const toml::array* pair = node.as_array();
-        if (pair == nullptr || pair->size() != 2)
-            table.fail_at(node, "confined", shown(node) + " is not a strength under confinement", "pairs of sigma_3 and sigma_1: [[\"4 MPa\", \"150 MPa\"], ...]");
-        const ConfinedStrength strength{table.quantity_of(*pair->get(0), "confined", Dimension::stress, positive),
-                                        table.quantity_of(*pair->get(1), "confined", Dimension::stress, positive)};
-        if (strength.sigma1_Pa <= strength.sigma3_Pa) table.fail_at(node, "confined", "sigma_1 is not larger than sigma_3", "sigma_3 first, then sigma_1");
-        strengths.push_back(strength);
-    }
+    for (const toml::node& node : table.array("confined"))
+        table.check({}, [&] {
+            const toml::array* pair = node.as_array();
+            if (pair == nullptr || pair->size() != 2)
+                table.fail_at(node, "confined", shown(node) + " is not a strength under confinement", "pairs of sigma_3 and sigma_1: [[\"4 MPa\", \"150 MPa\"], ...]");
+            const ConfinedStrength strength{table.quantity_of(*pair->get(0), "confined", Dimension::stress, positive),
+                                            table.quantity_of(*pair->get(1), "confined", Dimension::stress, positive)};
+            if (strength.sigma1_Pa <= strength.sigma3_Pa) table.fail_at(node, "confined", "sigma_1 is not larger than sigma_3", "sigma_3 first, then sigma_1");
+            strengths.push_back(strength);
+        });
     return strengths;
 }
 

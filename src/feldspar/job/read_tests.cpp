@@ -21,6 +21,13 @@ bool has_label(const OutlineSpec& outline, std::string_view label) {
     return std::find(outline.edge_labels.begin(), outline.edge_labels.end(), label) != outline.edge_labels.end();
 }
 
+// What a test is held against, as far as it was read without a mistake.
+struct Known {
+    bool outline = true;
+    bool grain_sizes = true;
+    bool kinds = true;   // of the grains of all variants
+};
+
 // Platens need a flat top and bottom.
 void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& outline) {
     if (kind == TestKind::brazilian || outline.shape == Shape::rectangle) return;
@@ -39,17 +46,21 @@ void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& o
 }
 
 // The Brazilian test makes its own disc, of the specimen's width unless the test says otherwise.
-double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen) {
+double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen, const Known& known) {
+    if (!known.outline) table.do_not_miss({"diameter"});
     if (!table.has("diameter") && specimen.outline.shape == Shape::polygon)
-        table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)");
+        table.check({"diameter"}, [&] { table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)"); });
     const double usual = specimen.outline.shape == Shape::disc ? specimen.outline.diameter_m : specimen.outline.width_m;
     const double diameter = table.quantity("diameter", Dimension::length, positive, usual);
-    const double largest = largest_diameter_m(specimen.grain_sizes);
-    if (largest > 0.5 * diameter)
-        table.fail("diameter",
-                   "grains of up to " + format_exact(1000.0 * largest) + " mm do not fit a disc of " +
-                       format_exact(1000.0 * diameter) + " mm",
-                   "a disc of at least twice the largest grain");
+    if (!known.grain_sizes) return diameter;
+    table.check({"diameter"}, [&] {
+        const double largest = largest_diameter_m(specimen.grain_sizes);
+        if (largest > 0.5 * diameter)
+            table.fail("diameter",
+                       "grains of up to " + format_exact(1000.0 * largest) + " mm do not fit a disc of " +
+                           format_exact(1000.0 * diameter) + " mm",
+                       "a disc of at least twice the largest grain");
+    });
     return diameter;
 }
 
@@ -58,20 +69,24 @@ const Range flat_angle_range{10.0 * std::numbers::pi / 180.0, 40.0 * std::number
 constexpr double usual_flat_angle_rad = 20.0 * std::numbers::pi / 180.0;
 
 // The disc may have two flats, on which flat plates press. 0 = a whole disc.
-double read_flats(const TableReader& table, const SpecimenSpec& specimen, double diameter_m, const TestSpec& test) {
+double read_flats(const TableReader& table, const SpecimenSpec& specimen, double diameter_m, const Known& known, const TestSpec& test) {
     enum class Disc { whole, flattened };
     const Disc disc = table.has("disc") ? table.choice<Disc>("disc", {{"whole", Disc::whole}, {"flattened", Disc::flattened}}) : Disc::whole;
     if (disc == Disc::whole) {
-        table.refuse({"flat_angle"}, "a whole disc", "disc = \"flattened\"");
+        if (table.sound({"disc"})) table.refuse({"flat_angle"}, "a whole disc", "disc = \"flattened\"");
         return 0.0;
     }
-    if (test.plates == PlateShape::curved) table.fail("plates", "curved jaws do not fit the flats of a flattened disc", "plates = \"flat\", or disc = \"whole\"");
+    table.check({"plates", "disc"}, [&] {
+        if (test.plates == PlateShape::curved) table.fail("plates", "curved jaws do not fit the flats of a flattened disc", "plates = \"flat\", or disc = \"whole\"");
+    });
     const double angle_rad = table.quantity("flat_angle", Dimension::angle, flat_angle_range, usual_flat_angle_rad);
     const double width_m = diameter_m * std::sin(0.5 * angle_rad), largest_m = largest_diameter_m(specimen.grain_sizes);
-    if (width_m < largest_m)
-        table.fail(table.has("flat_angle") ? "flat_angle" : "disc",
-                   fmt::format("the flats would be {:.3g} mm wide, less than the largest grain of {:.3g} mm", 1e3 * width_m, 1e3 * largest_m),
-                   "flats wider than the largest grain: a larger angle, a larger disc, or smaller grains");
+    table.check({"flat_angle", "disc", "diameter"}, [&] {
+        if (known.outline && known.grain_sizes && width_m < largest_m)
+            table.fail(table.has("flat_angle") ? "flat_angle" : "disc",
+                       fmt::format("the flats would be {:.3g} mm wide, less than the largest grain of {:.3g} mm", 1e3 * width_m, 1e3 * largest_m),
+                       "flats wider than the largest grain: a larger angle, a larger disc, or smaller grains");
+    });
     return angle_rad;
 }
 
@@ -80,9 +95,9 @@ std::vector<double> confining_stresses(const TableReader& table) {
     const Range range{0.0, std::numeric_limits<double>::infinity(), false, true,
                       "greater than zero (for zero: kind = \"uniaxial-compression\")"};
     if (list == nullptr) return {table.quantity("sigma3", Dimension::stress, range)};
-    if (list->empty()) table.fail("sigma3", "the list is empty", "one stress or more");
+    if (list->empty()) table.check({}, [&] { table.fail("sigma3", "the list is empty", "one stress or more"); });
     std::vector<double> values;
-    for (const toml::node& node : *list) values.push_back(table.quantity_of(node, "sigma3", Dimension::stress, range));
+    for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, "sigma3", Dimension::stress, range)); });
     return values;
 }
 
@@ -99,20 +114,22 @@ LoadControl read_control(const TableReader& table, TestKind kind, const std::vec
     });
     if (!table.has("control")) return adaptive ? usual_control(kind) : LoadControl::displacement;
     const LoadControl control = table.choice("control", load_controls);
-    if (control == LoadControl::lateral_strain && (kind == TestKind::direct_tension || kind == TestKind::brazilian))
-        table.fail("control", fmt::format("'lateral-strain' is meant for specimens that widen as they fail, which kind = \"{}\" does not measure", name(kind)),
-                   "control = \"displacement\" or \"dissipation\"");
-    if (control != LoadControl::displacement && !adaptive)
-        table.fail("control", fmt::format("'{}' changes the platen speed, which only adaptive numerics do", name(control)),
-                   "[numerics] kind = \"adaptive\", or control = \"displacement\"");
+    table.check({"control", "kind"}, [&] {
+        if (control == LoadControl::lateral_strain && (kind == TestKind::direct_tension || kind == TestKind::brazilian))
+            table.fail("control", fmt::format("'lateral-strain' is meant for specimens that widen as they fail, which kind = \"{}\" does not measure", name(kind)),
+                       "control = \"displacement\" or \"dissipation\"");
+        if (control != LoadControl::displacement && !adaptive)
+            table.fail("control", fmt::format("'{}' changes the platen speed, which only adaptive numerics do", name(control)),
+                       "[numerics] kind = \"adaptive\", or control = \"displacement\"");
+    });
     return control;
 }
 
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
-void read_plates(const TableReader& table, bool particles, TestSpec& test) {
+void read_plates(const TableReader& table, bool particles, const Known& known, TestSpec& test) {
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
     const bool brazilian = test.kind == TestKind::brazilian, tension = test.kind == TestKind::direct_tension;
-    if (!brazilian && !particles)
+    if (!brazilian && !particles && known.kinds)
         table.refuse({"plate_stiffness_factor", "plate_Kn", "plate_mu", "membrane_plates"}, setting + " of flexible grains",
                      "only with kind = \"brazilian\", or with rigid grains or inner particles, which are loaded by plates");
     if (tension)
@@ -124,11 +141,11 @@ void read_plates(const TableReader& table, bool particles, TestSpec& test) {
     if (!brazilian && !particles) return;
     if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
     if (table.has("jaw_radius")) {
-        if (test.plates != PlateShape::curved) table.fail("jaw_radius", "given for flat plates", "plates = \"curved\"");
+        if (test.plates != PlateShape::curved) table.check({"plates"}, [&] { table.fail("jaw_radius", "given for flat plates", "plates = \"curved\""); });
         test.jaw_radius = table.number("jaw_radius", {1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}, test.jaw_radius);
     }
     if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
-        table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them");
+        table.check({}, [&] { table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them"); });
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn", Dimension::stiffness_gradient, positive);
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
     if (!tension) test.plate_mu = table.number("plate_mu", not_negative, brazilian ? 0.4 : 0.0);
@@ -141,14 +158,15 @@ struct ReadTest {
     double flat_angle_rad = 0.0;
 };
 
-ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants) {
+ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants, const Known& known) {
     TestSpec test;
     test.kind = table.choice("kind", test_kinds);
+    const bool kind_known = table.sound({"kind"});
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
     const bool brazilian = test.kind == TestKind::brazilian;
-    if (!brazilian) table.refuse({"diameter", "disc", "flat_angle"}, setting, "only with kind = \"brazilian\"");
-    if (test.kind != TestKind::biaxial) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
-    check_outline(table, test.kind, specimen.outline);
+    if (kind_known && !brazilian) table.refuse({"diameter", "disc", "flat_angle"}, setting, "only with kind = \"brazilian\"");
+    if (kind_known && test.kind != TestKind::biaxial) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
+    if (known.outline) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
 
     test.stop_fraction =
         table.fraction("stop_fraction", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.stop_fraction);
@@ -159,12 +177,18 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
     test.snapshots = static_cast<int>(table.integer("snapshots", 0, 1000, test.snapshots));
     if (table.has("seeds"))
         for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
-    read_plates(table, has_particles(test.kind, variants), test);
+    if (!kind_known) {
+        table.quantity("diameter", Dimension::length, positive, 0.0);
+        table.quantity("plate_Kn", Dimension::stiffness_gradient, positive, 0.0);
+        if (table.has("sigma3")) (void)confining_stresses(table);
+        return {};
+    }
+    read_plates(table, has_particles(test.kind, variants), known, test);
 
     ReadTest result;
     if (brazilian) {
-        result.diameter_m = brazilian_diameter(table, specimen);
-        result.flat_angle_rad = read_flats(table, specimen, *result.diameter_m, test);
+        result.diameter_m = brazilian_diameter(table, specimen, known);
+        result.flat_angle_rad = read_flats(table, specimen, *result.diameter_m, known, test);
     }
     if (test.kind != TestKind::biaxial) {
         result.tests.push_back(test);
@@ -172,7 +196,10 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
     }
     for (double sigma3 : confining_stresses(table)) {
         test.sigma3_Pa = sigma3;
-        if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= sigma3) table.fail("maximum_stress", "is there before the specimen is loaded", "a sigma1 above sigma3");
+        table.check({"maximum_stress", "sigma3"}, [&] {
+            if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= sigma3)
+                table.fail("maximum_stress", "is there before the specimen is loaded", "a sigma1 above sigma3");
+        });
         result.tests.push_back(test);
     }
     return result;
@@ -182,32 +209,39 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
 
 std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_view key) {
     std::vector<std::uint64_t> seeds;
-    for (const toml::node& node : table.array(key)) {
-        const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, 0, largest_seed));
-        if (std::find(seeds.begin(), seeds.end(), seed) != seeds.end())
-            table.fail_at(node, key, "the seed " + std::to_string(seed) + " is given twice", "each seed once");
-        seeds.push_back(seed);
-    }
-    if (seeds.empty()) table.fail(key, "the list is empty", "one seed or more, such as [1, 2, 3]");
+    for (const toml::node& node : table.array(key))
+        table.check({}, [&] {
+            const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, 0, largest_seed));
+            if (std::find(seeds.begin(), seeds.end(), seed) != seeds.end())
+                table.fail_at(node, key, "the seed " + std::to_string(seed) + " is given twice", "each seed once");
+            seeds.push_back(seed);
+        });
+    if (seeds.empty()) table.check({key}, [&] { table.fail(key, "the list is empty", "one seed or more, such as [1, 2, 3]"); });
     return seeds;
 }
 
 TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                     const std::vector<std::uint64_t>& run_seeds) {
-    if (!root.has("test")) throw InputError({root.file(), 0, 0, {}}, "there is no test", "one [[test]] or more");
     TestList result;
+    if (!root.has("test")) return result;   // a mistake that is noted
+    const Known known{
+        root.sound({"specimen.shape", "specimen.width", "specimen.height", "specimen.diameter", "specimen.vertices", "specimen.edge_labels"}),
+        root.sound({"specimen.grains.diameter"}), kinds_known(root, variants)};
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",
                                                 {"kind", "sigma3", "stop_fraction", "control", "maximum_strain", "maximum_stress", "diameter", "disc", "flat_angle",
                                                  "plates", "jaw_radius", "plate_stiffness_factor", "plate_Kn",
                                                  "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
-        ReadTest read = read_one(table, specimen, variants);
-        if (read.diameter_m) {
-            if (result.brazilian_diameter_m && *result.brazilian_diameter_m != *read.diameter_m)
-                table.fail("diameter", "differs from that of an earlier Brazilian test", "one diameter in a job");
-            if (result.brazilian_diameter_m && result.flat_angle_rad != read.flat_angle_rad)
-                table.fail(table.has("flat_angle") ? "flat_angle" : table.has("disc") ? "disc" : "kind", "the flats of the disc differ from those of an earlier Brazilian test",
-                           "one disc in a job");
+        ReadTest read = read_one(table, specimen, variants, known);
+        if (read.diameter_m && std::isfinite(*read.diameter_m)) {
+            table.check({"diameter", "disc", "flat_angle"}, [&] {
+                if (!result.brazilian_diameter_m) return;
+                if (*result.brazilian_diameter_m != *read.diameter_m)
+                    table.fail("diameter", "differs from that of an earlier Brazilian test", "one diameter in a job");
+                if (result.flat_angle_rad != read.flat_angle_rad)
+                    table.fail(table.has("flat_angle") ? "flat_angle" : table.has("disc") ? "disc" : "kind", "the flats of the disc differ from those of an earlier Brazilian test",
+                               "one disc in a job");
+            });
             result.brazilian_diameter_m = read.diameter_m;
             result.flat_angle_rad = read.flat_angle_rad;
         }
@@ -220,10 +254,13 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
                 const std::string key =
                     std::string(name(test.kind)) +
                     (test.kind == TestKind::biaxial ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
-                if (!taken.insert(key + " s" + std::to_string(seed)).second)
-                    table.fail(table.has("sigma3") ? "sigma3" : "kind",
-                               key + " with seed " + std::to_string(seed) + " is asked for twice",
-                               "each test once for each seed");
+                const bool again = !taken.insert(key + " s" + std::to_string(seed)).second;
+                if (again && root.sound({"run"}))
+                    table.check({"kind", "sigma3", "seeds"}, [&] {
+                        table.fail(table.has("sigma3") ? "sigma3" : "kind",
+                                   key + " with seed " + std::to_string(seed) + " is asked for twice",
+                                   "each test once for each seed");
+                    });
             }
             result.tests.push_back(std::move(test));
         }
@@ -237,8 +274,10 @@ namespace {
 int read_number_or_auto(const TableReader& table, const char* key, const char* things) {
     const toml::node* node = table.find(key);
     if (node == nullptr || (node->is_string() && node->as_string()->get() == "auto")) return 0;
-    if (!node->is_integer())
-        table.fail(key, shown(*node) + " is not a number of " + things, "\"auto\", or a whole number from 1 to 256");
+    if (!node->is_integer()) {
+        table.check({}, [&] { table.fail(key, shown(*node) + " is not a number of " + things, "\"auto\", or a whole number from 1 to 256"); });
+        return 0;
+    }
     return static_cast<int>(table.integer(key, 1, 256));
 }
 
@@ -248,7 +287,7 @@ RunSettings read_run(const TableReader& root) {
     RunSettings run;
     if (!root.has("run")) return run;
     const TableReader table = root.table("run", {"seeds", "seed", "threads", "at_once"});
-    if (table.has("seeds") && table.has("seed")) table.fail("seed", "given beside seeds", "seeds = [1, 2, 3], or seed = 1");
+    if (table.has("seeds") && table.has("seed")) table.check({}, [&] { table.fail("seed", "given beside seeds", "seeds = [1, 2, 3], or seed = 1"); });
     if (table.has("seeds")) run.seeds = read_seed_list(table, "seeds");
     if (table.has("seed")) run.seeds = {static_cast<std::uint64_t>(table.integer("seed", 0, largest_seed))};
     run.threads = read_number_or_auto(table, "threads", "threads");

@@ -14,19 +14,22 @@ bool is_plain(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0;
 
 std::string read_variant_name(const TableReader& table) {
     const std::string given = table.text("name");
+    if (!table.sound({"name"})) return given;
     const bool fits = std::all_of(given.begin(), given.end(), [](char c) {
         return is_plain(c) || std::string_view(" ,.-_%()+=").find(c) != std::string_view::npos;
     });
     if (!fits || given.size() > longest_name || variant_stem(given).empty() || given.front() == ' ' || given.back() == ' ')
-        table.fail("name", shown(*table.find("name")) + " cannot name a variant",
-                   "up to 60 letters, digits, blanks and , . - _ % ( ) + =, with a letter or digit among them");
+        table.check({}, [&] {
+            table.fail("name", shown(*table.find("name")) + " cannot name a variant",
+                       "up to 60 letters, digits, blanks and , . - _ % ( ) + =, with a letter or digit among them");
+        });
     return given;
 }
 
 std::vector<TableReader> variant_tables(const TableReader& root) {
     std::vector<TableReader> tables = root.tables("variant", "a variant", {"name", "seeds", "tests", "model", "material", "numerics"}, variant_level);
     if (tables.size() > largest_variant_count)
-        root.fail("variant", std::to_string(tables.size()) + " variants are more than a report can show", "at most 50");
+        root.check({"variant"}, [&] { root.fail("variant", std::to_string(tables.size()) + " variants are more than a report can show", "at most 50"); });
     return tables;
 }
 
@@ -69,16 +72,18 @@ std::vector<TestKind> read_kinds(const TableReader& table) {
     if (!table.has("tests")) return kinds;
     std::vector<std::string_view> words;
     for (TestKind kind : test_kinds) words.emplace_back(name(kind));
-    for (const toml::node& node : table.array("tests")) {
-        const std::string word = table.text_of(node, "tests");
-        const auto found = std::find_if(test_kinds.begin(), test_kinds.end(), [&](TestKind kind) { return word == name(kind); });
-        if (found == test_kinds.end())
-            table.fail_at(node, "tests", "'" + word + "' is not a kind of test", listed(words), did_you_mean(word, words));
-        if (std::find(kinds.begin(), kinds.end(), *found) != kinds.end())
-            table.fail_at(node, "tests", "'" + word + "' is given twice", "each kind once");
-        kinds.push_back(*found);
-    }
-    if (kinds.empty()) table.fail("tests", "the list is empty", "one kind of test or more, or leave it out for all");
+    for (const toml::node& node : table.array("tests"))
+        table.check({}, [&] {
+            const std::string word = table.text_of(node, "tests");
+            const auto found = std::find_if(test_kinds.begin(), test_kinds.end(), [&](TestKind kind) { return word == name(kind); });
+            if (found == test_kinds.end())
+                table.fail_at(node, "tests", "'" + word + "' is not a kind of test", listed(words), did_you_mean(word, words));
+            if (std::find(kinds.begin(), kinds.end(), *found) != kinds.end())
+                table.fail_at(node, "tests", "'" + word + "' is given twice", "each kind once");
+            kinds.push_back(*found);
+        });
+    if (kinds.empty())
+        table.check({"tests"}, [&] { table.fail("tests", "the list is empty", "one kind of test or more, or leave it out for all"); });
     return kinds;
 }
 
@@ -96,28 +101,36 @@ std::string variant_stem(const std::string& name) {
     return stem;
 }
 
+bool kinds_known(const TableReader& root, const std::vector<Variant>& variants) {
+    for (std::size_t i = 0; i < variants.size(); ++i)
+        if (!root.sound({"variant[" + std::to_string(i + 1) + "].model.kind"})) return false;
+    return root.sound({"model.kind"});
+}
+
 std::vector<Variant> read_variants(const TableReader& root) {
     if (!root.has("variant")) return {read_variant(root, nullptr)};
     std::vector<Variant> variants;
     std::map<std::string, std::string> taken;  // stem -> name
     for (const TableReader& table : variant_tables(root)) {
         Variant variant = read_variant(root, &table);
-        const auto [other, fresh] = taken.emplace(variant.stem, variant.name);
-        if (!fresh)
-            table.fail(
-                "name",
-                shown(*table.find("name")) +
-                    (other->second == variant.name ? " is given twice" : " would share its files with '" + other->second + "'"),
-                "each variant a name of its own");
+        table.check({"name"}, [&] {
+            const auto [other, fresh] = taken.emplace(variant.stem, variant.name);
+            if (!fresh)
+                table.fail(
+                    "name",
+                    shown(*table.find("name")) +
+                        (other->second == variant.name ? " is given twice" : " would share its files with '" + other->second + "'"),
+                    "each variant a name of its own");
+        });
         variants.push_back(std::move(variant));
     }
     return variants;
 }
 
 void check_variants(const TableReader& root, const Job& job) {
-    if (!root.has("variant")) return;
+    if (!root.has("variant") || !root.sound({"test", "run"})) return;
     const std::vector<TableReader> tables = variant_tables(root);
-    for (std::size_t i = 0; i < tables.size(); ++i) check_variant(tables[i], job.variants[i], job);
+    for (std::size_t i = 0; i < tables.size(); ++i) tables[i].check({"seeds", "tests"}, [&] { check_variant(tables[i], job.variants[i], job); });
 }
 
 }  // namespace feldspar

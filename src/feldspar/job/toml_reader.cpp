@@ -7,10 +7,12 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 namespace feldspar {
 namespace {
 
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();   // stands in for a number that could not be read
 constexpr std::size_t largest_file = 16u << 20;  // bytes; what a user writes is a page, so anything beyond is a mistaken file
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
@@ -123,18 +125,24 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
 }
 
 TableReader::TableReader(const toml::table& table, std::string path, std::string file, std::span<const std::string_view> known,
-                         int level)
-    : table_(&table), path_(std::move(path)), file_(std::move(file)), level_(level) {
-    // complain about the first unknown key in the order of the file, not of the alphabet
-    const toml::key* first = nullptr;
-    for (const auto& [key, value] : table) {
-        if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-        const auto& here = key.source().begin;
-        if (first == nullptr || here < first->source().begin) first = &key;
+                         int level, Mistakes* mistakes)
+    : table_(&table), path_(std::move(path)), file_(std::move(file)), level_(level), mistakes_(mistakes) {
+    std::vector<const toml::key*> unknown;
+    for (const auto& [key, value] : table)
+        if (std::find(known.begin(), known.end(), key.str()) == known.end()) unknown.push_back(&key);
+    // in the order of the file, not of the alphabet
+    std::sort(unknown.begin(), unknown.end(), [](const toml::key* a, const toml::key* b) { return a->source().begin < b->source().begin; });
+    if (unknown.empty()) return;
+    std::vector<std::string_view> likely(known.begin(), known.end());   // of equally near ones the key that is not there yet was meant
+    std::stable_partition(likely.begin(), likely.end(), [&](std::string_view key) { return !table.contains(key); });
+    for (const toml::key* key : unknown) {
+        const InputError error(place_of(key->source(), file_, full(key->str())), "unknown key", listed(known), did_you_mean(key->str(), likely));
+        if (mistakes_ == nullptr) throw error;
+        const std::string_view meant = nearest(key->str(), likely);
+        // a table may be there in part, under its right name
+        const bool missed = !meant.empty() && (!has(meant) || table.get(key->str())->is_table() || table.get(key->str())->is_array_of_tables());
+        mistakes_->add(error, missed ? full(meant) : std::string());
     }
-    if (first == nullptr) return;
-    throw InputError(place_of(first->source(), file_, full(first->str())), "unknown key", listed(known),
-                     did_you_mean(first->str(), known));
 }
 
 TableReader TableReader::placed_at(const toml::node& place) const {
@@ -160,50 +168,84 @@ std::string TableReader::full(std::string_view key) const {
     return path.empty() ? std::string(key) : path + "." + std::string(key);
 }
 
-void TableReader::require(std::initializer_list<std::string_view> keys) const {
-    std::vector<std::string_view> missing;
-    for (std::string_view key : keys)
-        if (!has(key)) missing.push_back(key);
-    if (missing.empty()) return;
+bool TableReader::is_sound(std::string_view key) const {
+    if (mistakes_ == nullptr) return true;
+    if (has(key)) return mistakes_->sound(full(key));
+    for (const TableReader* reader = this; reader != nullptr; reader = reader->under_.get())
+        if (!mistakes_->sound(reader->path_.empty() ? std::string(key) : reader->path_ + "." + std::string(key))) return false;
+    return true;
+}
+
+void TableReader::do_not_miss(std::span<const std::string_view> keys) const {
+    for (const std::string_view key : keys)
+        if (mistakes_ != nullptr && !has(key)) mistakes_->spoil(full(key));
+}
+
+InputError TableReader::missing(std::span<const std::string_view> keys) const {
     InputPlace place = path_.empty() ? InputPlace{file_, 0, 0, {}} : place_of(region_of(*table_), file_, path_);
-    throw InputError(std::move(place), (missing.size() == 1 ? "missing key: " : "missing keys: ") + listed(missing));
+    return InputError(std::move(place), (keys.size() == 1 ? "missing key: " : "missing keys: ") + listed(keys));
+}
+
+void TableReader::require(std::initializer_list<std::string_view> keys) const {
+    std::vector<std::string_view> absent;
+    for (std::string_view key : keys)
+        if (!has(key) && is_sound(key)) absent.push_back(key);
+    if (absent.empty()) return;
+    const InputError error = missing(absent);
+    if (mistakes_ == nullptr) throw error;
+    mistakes_->add(error, {});
+    do_not_miss(absent);
 }
 
 void TableReader::refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed,
                          int decided_at) const {
     for (std::string_view key : keys)
-        if (has(key) && level_of(key) <= decided_at) fail(key, "does not apply to " + setting, allowed);
+        if (has(key) && level_of(key) <= decided_at) check({}, [&] { fail(key, "does not apply to " + setting, allowed); });
 }
 
 const toml::node& TableReader::must_have(std::string_view key) const {
-    if (!has(key)) require({key});
+    if (!has(key)) throw missing(std::span(&key, 1));
     return *find(key);
 }
 
 TableReader TableReader::table(std::string_view key, std::span<const std::string_view> known) const {
-    const toml::node& node = must_have(key);
-    if (!node.is_table()) fail(key, "is " + type_words(node) + ", not a table", "a table [" + full(key) + "]");
-    TableReader inside(*node.as_table(), full(key), file_, known, owner(key).level_);
+    static const toml::table empty;
+    const toml::table& found = *noted<const toml::table*>(key, &empty, [&] {
+        const toml::node& node = must_have(key);
+        if (!node.is_table()) fail(key, "is " + type_words(node) + ", not a table", "a table [" + full(key) + "]");
+        return node.as_table();
+    });
+    TableReader inside(found, full(key), file_, known, owner(key).level_, mistakes_);
     inside.stands_in_ = owner(key).stands_in_;
     return inside;
 }
 
 std::vector<TableReader> TableReader::tables(std::string_view key, std::string_view what, std::span<const std::string_view> known, int level) const {
     const std::string head = "[[" + without_numbers(full(key)) + "]]";
-    if (must_have(key).is_table()) fail(key, "is written as one table", "a list of tables, each headed " + head);
     std::vector<TableReader> readers;
-    for (const toml::node& node : array(key)) {
-        if (!node.is_table()) fail_at(node, key, shown(node) + " is not " + std::string(what), "a table headed " + head);
-        readers.emplace_back(*node.as_table(), full(key) + "[" + std::to_string(readers.size() + 1) + "]", file_, known, level);
+    if (has(key) && find(key)->is_table()) {
+        check({key}, [&] { fail(key, "is written as one table", "a list of tables, each headed " + head); });
+        return readers;
     }
-    if (readers.empty()) fail(key, "the list is empty", "one " + head + " or more");
+    std::size_t number = 0;
+    for (const toml::node& node : array(key)) {
+        ++number;
+        check({}, [&] {
+            if (!node.is_table()) fail_at(node, key, shown(node) + " is not " + std::string(what), "a table headed " + head);
+            readers.emplace_back(*node.as_table(), full(key) + "[" + std::to_string(number) + "]", file_, known, level, mistakes_);
+        });
+    }
+    if (number == 0) check({key}, [&] { fail(key, "the list is empty", "one " + head + " or more"); });
     return readers;
 }
 
 const toml::array& TableReader::array(std::string_view key) const {
-    const toml::node& node = must_have(key);
-    if (!node.is_array()) fail(key, shown(node) + " is not a list", "a list in square brackets");
-    return *node.as_array();
+    static const toml::array empty;
+    return *noted<const toml::array*>(key, &empty, [&] {
+        const toml::node& node = must_have(key);
+        if (!node.is_array()) fail(key, shown(node) + " is not a list", "a list in square brackets");
+        return node.as_array();
+    });
 }
 
 double TableReader::quantity_of(const toml::node& node, std::string_view key, Dimension dimension, const Range& range) const {
@@ -224,17 +266,19 @@ double TableReader::quantity_of(const toml::node& node, std::string_view key, Di
 double TableReader::quantity(std::string_view key, Dimension dimension, const Range& range,
                              std::optional<double> fallback) const {
     if (!has(key) && fallback) return *fallback;
-    return quantity_of(must_have(key), key, dimension, range);
+    return noted(key, fallback.value_or(nothing), [&] { return quantity_of(must_have(key), key, dimension, range); });
 }
 
 double TableReader::number(std::string_view key, const Range& range, std::optional<double> fallback) const {
     if (!has(key) && fallback) return *fallback;
-    const toml::node& node = must_have(key);
-    if (!node.is_number()) fail(key, shown(node) + " is not a plain number", bounded(range, "a number without quotes or unit"));
-    const double value = *node.value<double>();
-    if (!std::isfinite(value)) fail(key, shown(node) + " is not a finite number", bounded(range, "a number"));
-    if (!range.contains(value)) fail(key, shown(node) + " is not allowed", bounded(range, "a number"));
-    return value;
+    return noted(key, fallback.value_or(nothing), [&] {
+        const toml::node& node = must_have(key);
+        if (!node.is_number()) fail(key, shown(node) + " is not a plain number", bounded(range, "a number without quotes or unit"));
+        const double value = *node.value<double>();
+        if (!std::isfinite(value)) fail(key, shown(node) + " is not a finite number", bounded(range, "a number"));
+        if (!range.contains(value)) fail(key, shown(node) + " is not allowed", bounded(range, "a number"));
+        return value;
+    });
 }
 
 double TableReader::fraction_of(const toml::node& node, std::string_view key, const Range& range) const {
@@ -257,7 +301,7 @@ double TableReader::fraction_of(const toml::node& node, std::string_view key, co
 
 double TableReader::fraction(std::string_view key, const Range& range, std::optional<double> fallback) const {
     if (!has(key) && fallback) return *fallback;
-    return fraction_of(must_have(key), key, range);
+    return noted(key, fallback.value_or(nothing), [&] { return fraction_of(must_have(key), key, range); });
 }
 
 long long TableReader::integer_of(const toml::node& node, std::string_view key, long long low, long long high) const {
@@ -272,14 +316,16 @@ long long TableReader::integer_of(const toml::node& node, std::string_view key, 
 
 long long TableReader::integer(std::string_view key, long long low, long long high, std::optional<long long> fallback) const {
     if (!has(key) && fallback) return *fallback;
-    return integer_of(must_have(key), key, low, high);
+    return noted(key, fallback.value_or(low), [&] { return integer_of(must_have(key), key, low, high); });
 }
 
 bool TableReader::flag(std::string_view key, bool fallback) const {
     if (!has(key)) return fallback;
-    const toml::node& node = *find(key);
-    if (!node.is_boolean()) fail(key, shown(node) + " is neither true nor false", "true, false (without quotes)");
-    return node.as_boolean()->get();
+    return noted(key, fallback, [&] {
+        const toml::node& node = *find(key);
+        if (!node.is_boolean()) fail(key, shown(node) + " is neither true nor false", "true, false (without quotes)");
+        return node.as_boolean()->get();
+    });
 }
 
 std::string TableReader::text_of(const toml::node& node, std::string_view key) const {
@@ -291,7 +337,7 @@ std::string TableReader::text_of(const toml::node& node, std::string_view key) c
 
 std::string TableReader::text(std::string_view key, std::optional<std::string> fallback) const {
     if (!has(key) && fallback) return *fallback;
-    return text_of(must_have(key), key);
+    return noted(key, fallback.value_or(std::string()), [&] { return text_of(must_have(key), key); });
 }
 
 void TableReader::fail(std::string_view key, const std::string& problem, const std::string& allowed,

@@ -18,6 +18,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
+#include "feldspar/job/mistakes.hpp"
 #include "feldspar/job/toml_include.hpp"
 
 namespace feldspar {
@@ -50,16 +51,22 @@ std::string listed(std::span<const std::string_view> words);
 inline constexpr int not_given = std::numeric_limits<int>::max();
 
 /// One table, with the names that may stand in it.
+///
+/// With a list of mistakes reading goes on after one: it is noted, and its key takes its fallback, or a value that stands in (not-a-number, "", the
+/// first of the choices, the lowest whole number, an empty list or table). What rests on such a key is to be asked for by check() or after sound(),
+/// else one mistake would cause messages that only follow from it. Whoever made the list throws at the end, so no such value is ever used. Without a
+/// list the first mistake is thrown.
 class TableReader {
 public:
     /// @param path   dotted path of the table, "" for the file itself
-    /// @param known  all keys that may stand in it. @throws InputError for any other, with "did you mean"
+    /// @param known  all keys that may stand in it. Any other is a mistake, with "did you mean"; the key that was meant counts as spoilt
     /// @param level  among tables that lie over each other: a smaller one goes before a larger one
+    /// @param mistakes  takes those of this table and of all tables in it; must outlive them
     TableReader(const toml::table& table, std::string path, std::string file, std::span<const std::string_view> known,
-                int level = 0);
+                int level = 0, Mistakes* mistakes = nullptr);
     TableReader(const toml::table& table, std::string path, std::string file, std::initializer_list<std::string_view> known,
-                int level = 0)
-        : TableReader(table, std::move(path), std::move(file), std::span(known.begin(), known.size()), level) {}
+                int level = 0, Mistakes* mistakes = nullptr)
+        : TableReader(table, std::move(path), std::move(file), std::span(known.begin(), known.size()), level, mistakes) {}
 
     /// This table, which stands elsewhere (a preset), as if it were written at `place`, where it is named.
     TableReader placed_at(const toml::node& place) const;
@@ -76,14 +83,36 @@ public:
     /// Line of the table's head.
     int line() const { return static_cast<int>(region_of(*table_).begin.line); }
 
-    /// @throws InputError naming every one of `keys` that is missing.
+    /// These keys, and all that is in them, were read without a mistake.
+    bool sound(std::initializer_list<std::string_view> keys) const {
+        return std::all_of(keys.begin(), keys.end(), [&](std::string_view key) { return is_sound(key); });
+    }
+    /// Does what may fail(), if `keys` are sound: a mistake in it is noted, and reading goes on behind it.
+    template <class Action>
+    void check(std::initializer_list<std::string_view> keys, Action&& action) const {
+        if (mistakes_ == nullptr) return action();
+        if (!sound(keys)) return;
+        try {
+            action();
+        } catch (const InputError& error) {
+            const bool here = error.place().file == file_;
+            mistakes_->add(error, here ? error.place().key : keys.size() == 0 ? std::string() : full(*keys.begin()));
+        }
+    }
+    /// Of these keys, those that are not there are not missed: they may be in what could not be read.
+    void do_not_miss(std::span<const std::string_view> keys) const;
+    void do_not_miss(std::initializer_list<std::string_view> keys) const { do_not_miss(std::span(keys.begin(), keys.size())); }
+    /// Where mistakes go, or nothing.
+    Mistakes* mistakes() const { return mistakes_; }
+
+    /// Every one of `keys` must be there: a mistake that names those that are missing.
     void require(std::initializer_list<std::string_view> keys) const;
-    /// @throws InputError if one of `keys` is given; `setting` is what it contradicts ("shape = \"disc\""). A key from a table
+    /// A mistake for each of `keys` that is given; `setting` is what it contradicts ("shape = \"disc\""). A key from a table
     /// below the one that made the setting (`decided_at`) is not a mistake: the setting has put it aside.
     void refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed = {},
                 int decided_at = not_given) const;
 
-    /// A table inside this one, which must be there.
+    /// A table inside this one, which must be there; without any key if it is not and mistakes are collected.
     TableReader table(std::string_view key, std::span<const std::string_view> known) const;
     TableReader table(std::string_view key, std::initializer_list<std::string_view> known) const {
         return table(key, std::span(known.begin(), known.size()));
@@ -121,7 +150,8 @@ public:
         return choice_among<Value>(key, choices, fallback);
     }
 
-    /// The same readings for a value that stands in a list; `key` is what messages call it.
+    /// The same readings for a value that stands in a list; `key` is what messages call it. @throws InputError also if mistakes are collected
+    /// (see check()).
     double quantity_of(const toml::node& node, std::string_view key, Dimension dimension, const Range& range) const;
     double fraction_of(const toml::node& node, std::string_view key, const Range& range) const;
     long long integer_of(const toml::node& node, std::string_view key, long long low, long long high) const;
@@ -138,14 +168,30 @@ private:
     template <class Value>
     Value choice_among(std::string_view key, std::span<const std::pair<std::string_view, Value>> choices, std::optional<Value> fallback) const {
         if (!has(key) && fallback) return *fallback;
-        const std::string given = text(key);
-        std::vector<std::string_view> words;
-        for (const auto& [word, value] : choices) {
-            if (word == given) return value;
-            words.push_back(word);
-        }
-        fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
+        return noted(key, fallback.value_or(choices.front().second), [&] {
+            const std::string given = text_of(must_have(key), key);
+            std::vector<std::string_view> words;
+            for (const auto& [word, value] : choices) {
+                if (word == given) return value;
+                words.push_back(word);
+            }
+            fail(key, "'" + given + "' is not one of the choices", listed(words), did_you_mean(given, words));
+        });
     }
+    // What `read` gives; after a mistake, which is noted, or for a key that is known to be spoilt and missing, what stands in.
+    template <class Value, class Read>
+    Value noted(std::string_view key, Value stand_in, Read&& read) const {
+        if (mistakes_ == nullptr) return read();
+        if (!has(key) && !is_sound(key)) return stand_in;
+        try {
+            return read();
+        } catch (const InputError& error) {
+            mistakes_->add(error, full(key));
+            return stand_in;
+        }
+    }
+    bool is_sound(std::string_view key) const;
+    InputError missing(std::span<const std::string_view> keys) const;
     const TableReader& owner(std::string_view key) const;  // the table that gives the key, or this one
     std::string full(std::string_view key) const;
     const toml::node& must_have(std::string_view key) const;
@@ -155,6 +201,7 @@ private:
     std::string path_;
     std::string file_;
     int level_ = 0;
+    Mistakes* mistakes_ = nullptr;
     std::optional<toml::source_region> stands_in_;  // of a table that is placed elsewhere
     std::shared_ptr<const TableReader> under_;
 };

@@ -91,23 +91,30 @@ std::string read_job_key(const TableReader& table, std::string_view key, const s
     const std::vector<std::string> path = split(dotted);
     if (path.size() < 2 || std::find(job_pieces.begin(), job_pieces.end(), path.front()) == job_pieces.end() ||
         std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
-        table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(job_pieces), "a dotted key such as \"material.contact.tau\"");
+        table.check({key}, [&] {
+            table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(job_pieces), "a dotted key such as \"material.contact.tau\"");
+        });
     return dotted;
 }
 
 std::vector<std::pair<std::string, double>> read_coupled(const TableReader& table) {
     const toml::node& node = *table.find("coupled");
     const std::string allowed = "keys and factors, such as { material.contact.Gfs = 31.5 }";
-    if (!node.is_table()) table.fail("coupled", shown(node) + " is not a table", allowed);
     std::vector<std::pair<std::string, double>> factors;
+    if (!node.is_table()) {
+        table.check({}, [&] { table.fail("coupled", shown(node) + " is not a table", allowed); });
+        return factors;
+    }
     const std::function<void(const toml::table&, const std::string&)> walk = [&](const toml::table& inside, const std::string& path) {
         for (const auto& [key, value] : inside) {
             const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
             if (value.is_table()) {
                 walk(*value.as_table(), full);
             } else {
-                if (!value.is_number()) table.fail_at(value, "coupled", shown(value) + " is not a factor", allowed);
-                factors.emplace_back(read_job_key(table, "coupled", full), *value.value<double>());
+                table.check({}, [&] {
+                    if (!value.is_number()) table.fail_at(value, "coupled", shown(value) + " is not a factor", allowed);
+                    factors.emplace_back(read_job_key(table, "coupled", full), *value.value<double>());
+                });
             }
         }
     };
@@ -117,7 +124,10 @@ std::vector<std::pair<std::string, double>> read_coupled(const TableReader& tabl
 
 toml::table read_piece(const TableReader& table, std::string_view key) {
     const toml::node& node = *table.find(key);
-    if (!node.is_table()) table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }");
+    if (!node.is_table()) {
+        table.check({}, [&] { table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }"); });
+        return {};
+    }
     (void)table.table(key, job_pieces);   // refuses other names
     return *node.as_table();
 }
@@ -127,19 +137,24 @@ std::string read_directory_name(const TableReader& table, std::string_view key, 
     const bool fits = !name.empty() && name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
     });
-    if (!fits) table.fail(key, "'" + name + "' cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+    if (!fits) {
+        table.check({key}, [&] { table.fail(key, "'" + name + "' cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'"); });
+        return fallback;
+    }
     return name;
 }
 
 BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : file_(root.text("job")) {
     if (file_.is_relative()) file_ = file.parent_path() / file_;
-    try {
-        text_ = read_toml_file(file_, "job");
-    } catch (const InputError& error) {
-        root.fail("job", "'" + file_.string() + "' " + error.problem(), "a job file; a relative path counts from this file's folder");
-    }
-    tree_ = parse_toml(text_, file_.string());
-    job_ = read_tree(tree_, text_, file_.string());
+    root.check({"job"}, [&] {
+        try {
+            text_ = read_toml_file(file_, "job");
+        } catch (const InputError& error) {
+            root.fail("job", "'" + file_.string() + "' " + error.problem(), "a job file; a relative path counts from this file's folder");
+        }
+        tree_ = parse_toml(text_, file_.string());
+        job_ = read_tree(tree_, text_, file_.string());
+    });
     if (root.has("set")) common_ = read_piece(root, "set");
 }
 
@@ -159,7 +174,7 @@ Job BaseJob::with(const toml::table& piece) const {
         }
     }
     tree.insert_or_assign("variant", toml::array{variant});
-    Job job = read_tree(tree, text_, file_.string());
+    Job job = read_tree(std::move(tree), text_, file_.string());
     job.variants.front().name.clear();
     job.variants.front().stem.clear();
     return job;

@@ -31,17 +31,17 @@ void insert(toml::table& piece, const std::string& key, const Measure& measure);
 /// Lays a table over another, key by key. A grain size distribution replaces another as a whole.
 void lay_over(toml::table& under, const toml::table& over);
 
-/// The piece of a job that a key holds. @throws InputError unless it is a table of job_pieces; what is in it is judged with the whole job
+/// The piece of a job that a key holds, which must be a table of job_pieces; what is in it is judged with the whole job
 toml::table read_piece(const TableReader& table, std::string_view key);
 
-/// The dotted key, checked to be of a job's pieces. @param key  of the table, for messages
+/// The dotted key, which must be of a job's pieces. @param key  of the table, for messages
 std::string read_job_key(const TableReader& table, std::string_view key, const std::string& dotted);
 
 /// `coupled` of a table, such as { material.contact.Gfs = 31.5 }: dotted keys and the factors by which they follow another one.
 std::vector<std::pair<std::string, double>> read_coupled(const TableReader& table);
 
 /// The name that a key gives to a directory of results, which lies under results/ and nowhere else.
-/// @param fallback  if the key is missing  @throws InputError unless it is up to 100 letters, digits, '-', '_' and '.', not beginning with '.'
+/// @param fallback  if the key is missing. It must be up to 100 letters, digits, '-', '_' and '.', not beginning with '.'
 std::string read_directory_name(const TableReader& table, std::string_view key, const std::string& fallback);
 
 /// The job that a file names by `job`, with the file's `[set]`, if there is one, laid over it. In a piece `test.plate_mu` is for every test,
@@ -49,7 +49,7 @@ std::string read_directory_name(const TableReader& table, std::string_view key, 
 /// is decided in one place (job/read_physics.cpp).
 class BaseJob {
 public:
-    /// Reads the keys `job` and `set` of a file; a relative path counts from that file's folder. @throws InputError
+    /// Reads the keys `job` and `set` of a file; a relative path counts from that file's folder. Mistakes in the job are noted as such of `job`.
     BaseJob(const TableReader& root, const std::filesystem::path& file);
 
     /// As the job's own file has it.

@@ -66,14 +66,21 @@ private:
         const std::size_t i = waiting_.front();
         waiting_.pop_front();
         const Run& run = *runs_[i];
-        switch (ledger_.claim(run)) {
+        switch (ledger_.claim(run, control_.retry_failed ? nullptr : &control_.provenance)) {
             case Ledger::Claim::done: ++execution_.found_done; return;
+            case Ledger::Claim::failed: ++execution_.found_failed; return;
             case Ledger::Claim::others: others_.push_back(i); return;
             case Ledger::Claim::ours: break;
         }
         if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
             ledger_.record(*record);
             ++execution_.found_done;
+            return;
+        }
+        if (const auto record = control_.retry_failed ? std::nullopt : failure_left(ledger_.run_directory(run.id), run);
+            record && failed_for_good(*record, control_.provenance)) {
+            ledger_.record(*record);
+            ++execution_.found_failed;
             return;
         }
         running_.start(i, expected_bodies(run), waiting_.size() + 1, [this, &run](const RunControl& run_control) { return run_one(run, run_control); });
@@ -111,10 +118,18 @@ private:
             ++interrupted_;
             if (!lost_) lost_ = std::current_exception();
             *control_.stop = true;   // what still runs could not be written either
-        } catch (const std::exception& problem) {
-            record(run, failed_record(run, problem.what(), control_.provenance));
-            ++execution_.failed;
+        } catch (const InputError& problem) {
+            fail(run, problem, Failure::input);
+        } catch (const NumericalError& problem) {
+            fail(run, problem, Failure::numerical);
+        } catch (const std::exception& problem) {   // there may be more memory another time
+            fail(run, problem, Failure::other);
         }
+    }
+
+    void fail(const Run& run, const std::exception& problem, Failure failure) {
+        record(run, failed_record(run, problem.what(), failure, control_.provenance));
+        ++execution_.failed;
     }
 
     void record(const Run& run, const RunRecord& record) {

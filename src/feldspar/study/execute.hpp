@@ -16,6 +16,7 @@ struct ExecuteControl {
     int threads = 1;                          ///< of the whole program
     int at_once = 0;                          ///< at most so many runs side by side; 0 = as suits their size
     Keep keep = Keep::histories;
+    bool retry_failed = false;                ///< also runs that failed for good: of their input or numerically, with this version of the program
     std::atomic<bool>* stop = nullptr;        ///< becomes true when the user interrupts
     Provenance provenance;
     std::function<void(const Run&, const TestProgress&)> progress;          ///< a run tells how far it is; may be empty
@@ -26,6 +27,7 @@ struct ExecuteControl {
 /// How many of the runs were found in which state, and what became of the others.
 struct Execution {
     int found_done = 0;
+    int found_failed = 0;   ///< for good, and not repeated
     int done = 0;
     int failed = 0;
     int left = 0;        ///< not run: interrupted
@@ -34,7 +36,7 @@ struct Execution {
 };
 
 /// Runs what is not done yet, and waits for what another process has claimed. A failed run is recorded with its reason and does not stop
-/// the others. @throws OutputError when results cannot be written
+/// the others; one that failed for good is not repeated. @throws OutputError when results cannot be written
 Execution execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control);
 
 }  // namespace feldspar

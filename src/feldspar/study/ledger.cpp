@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <sstream>
 
 #include "feldspar/base/error.hpp"
@@ -81,6 +82,7 @@ double number_in(const SQLite::Column& column) { return column.isNull() ? std::n
 struct Ledger::Database {
     fs::path directory;
     std::string me = this_process();
+    std::set<std::string> failed_here;   // for good, recorded by this object
     SQLite::Database file;
 
     Database(const fs::path& directory_, const std::string& name, int flags) : directory(directory_), file(name, flags, busy_timeout_ms) {}
@@ -239,16 +241,22 @@ void Ledger::enrol(const Study& study) {
     });
 }
 
-Ledger::Claim Ledger::claim(const Run& run) {
+Ledger::Claim Ledger::claim(const Run& run, const Provenance* program) {
     return guarded(directory(), [&] {
         SQLite::Database& file = database_->file;
         SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
         {
-            SQLite::Statement look(file, "SELECT state, holder, heard FROM run WHERE id = ?");
+            SQLite::Statement look(file, "SELECT state, holder, heard, failure, version, commit_id FROM run WHERE id = ?");
             look.bind(1, run.id);
             if (look.executeStep()) {
                 const std::string state = look.getColumn(0).getString();
                 if (state == "done") return Claim::done;
+                if (state == "failed") {
+                    RunRecord failed;
+                    failed.state = RunState::failed;
+                    for (int column = 3; column <= 5; ++column) failed.texts[look.getColumn(column).getName()] = look.getColumn(column).getString();
+                    if (database_->failed_here.contains(run.id) || (program != nullptr && failed_for_good(failed, *program))) return Claim::failed;
+                }
                 if (state == "running" && alive(look.getColumn(1).getString(), look.getColumn(2).getInt64())) return Claim::others;
             }
         }
@@ -282,6 +290,8 @@ void Ledger::record(const RunRecord& record) {
         }
         database_->write(record);
         transaction.commit();
+        const auto failure = record.texts.find("failure");
+        if (record.state == RunState::failed && failure != record.texts.end() && failure->second != name(Failure::other)) database_->failed_here.insert(record.id);
     });
 }
 

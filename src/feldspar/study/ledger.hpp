@@ -33,10 +33,12 @@ public:
     /// study's file; replaces what was there of this study.
     void enrol(const Study& study);
 
-    enum class Claim { ours, done, others };   ///< `others`: another live process is at it
+    enum class Claim { ours, done, failed, others };   ///< `others`: another live process is at it
 
-    /// Takes a run for this process unless it is done or another live process has it. A failed run may be taken again.
-    Claim claim(const Run& run);
+    /// Takes a run for this process unless it is done or another live process has it. A failed run may be taken again, but for one that failed
+    /// for good: with this program, or on this object (so that whoever asks for it again gets the same answer).
+    /// @param program  whose failures count; none if all may be taken again
+    Claim claim(const Run& run, const Provenance* program = nullptr);
 
     /// Gives a claimed run back as if it had never been taken (interrupted).
     void release(const std::string& id);

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "feldspar/job/job_sections.hpp"
-#include "feldspar/study/base_job.hpp"
+#include "feldspar/study/reader_on_job.hpp"
 #include "feldspar/study/study.hpp"
 
 namespace feldspar {
@@ -43,41 +43,31 @@ std::string label_of(const toml::node& node) {
     return text.str();
 }
 
-class StudyReader {
+class StudyReader : private ReaderOnJob {
 public:
     StudyReader(const std::string& text, const std::filesystem::path& file)
-        : tree_(parse_toml(text, file.string())),
-          root_(required(TableReader(tree_, "", file.string(), {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}))),
-          base_(root_, file) {
+        : ReaderOnJob(text, file, {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}, {"job"}) {
         study_.file = file;
         study_.text = text;
     }
 
     Study read() {
-        read_names();
+        read_names(study_);
         read_common();
-        if (base_.job().has_variants()) axes_.push_back(variant_axis());
-        if (root_.has("axis")) read_axes();
+        if (root_.sound({"job"}) && base_.job().has_variants()) axes_.push_back(variant_axis());
+        if (root_.has("axis") && root_.sound({"axis"})) read_axes();
         for (const Axis& axis : axes_) study_.axes.push_back(axis.name);
-        make_points();
+        if (root_.sound({"job", "set", "seeds", "tests", "axis"})) root_.check({}, [&] { make_points(); });
+        else if (root_.sound({"job", "set"})) check_base();
+        finish();
         index_runs(study_);
         return std::move(study_);
     }
 
 private:
-    static TableReader required(const TableReader& root) {
-        root.require({"job"});
-        return root;
-    }
-
-    void read_names() {
-        study_.name = read_directory_name(root_, "name", variant_stem(study_.file.stem().string()));
-        study_.title = root_.text("title", study_.name);
-        study_.results = std::filesystem::path("results") / read_directory_name(root_, "results", study_.name);
-        study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
-    }
-
     void read_common() {
+        study_.title = root_.text("title", study_.name);
+        study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
         seeds_ = root_.has("seeds") ? read_seed_list(root_, "seeds") : std::vector<std::uint64_t>{};
         tests_ = read_kinds(root_);
         for (TestKind kind : tests_) check_kind(root_, kind);
@@ -85,8 +75,9 @@ private:
 
     void check_kind(const TableReader& table, TestKind kind) const {
         const auto& tests = base_.job().tests;
+        if (!root_.sound({"job"})) return;
         if (std::none_of(tests.begin(), tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
-            table.fail("tests", fmt::format("the job has no test of kind '{}'", name(kind)), "kinds that stand in a [[test]] of the job");
+            table.check({}, [&] { table.fail("tests", fmt::format("the job has no test of kind '{}'", name(kind)), "kinds that stand in a [[test]] of the job"); });
     }
 
     Axis variant_axis() const {
@@ -109,9 +100,11 @@ private:
     void read_axes() {
         for (const TableReader& table : root_.tables("axis", "an axis", {"name", "key", "values", "times", "coupled", "value"})) {
             Axis axis = table.has("value") ? read_named_values(table) : read_key_values(table);
-            if (std::any_of(axes_.begin(), axes_.end(), [&](const Axis& other) { return other.name == axis.name; }))
-                table.fail("name", "'" + axis.name + "' is the name of another axis", "each axis a name of its own");
-            check_labels(table, axis);
+            table.check({"name"}, [&] {
+                if (std::any_of(axes_.begin(), axes_.end(), [&](const Axis& other) { return other.name == axis.name; }))
+                    table.fail("name", "'" + axis.name + "' is the name of another axis", "each axis a name of its own");
+            });
+            table.check({"value", "values"}, [&] { check_labels(table, axis); });
             axes_.push_back(std::move(axis));
         }
     }
@@ -130,13 +123,15 @@ private:
         axis.key = read_job_key(table, "key", table.text("key"));
         if (table.has("times")) axis.times = read_job_key(table, "times", table.text("times"));
         const toml::array& values = table.array("values");
-        if (values.empty()) table.fail("values", "the list is empty", "one value or more");
+        if (values.empty()) table.check({"values"}, [&] { table.fail("values", "the list is empty", "one value or more"); });
         for (const toml::node& node : values) {
             Choice choice;
             choice.value = {label_of(node), measure_of(node).number};
-            if (!axis.times.empty() && !node.is_number())
-                table.fail_at(node, "values", shown(node) + " is not a factor", "plain numbers, which multiply the value of `times`");
-            insert(choice.piece, axis.key, node);
+            table.check({}, [&] {
+                if (table.has("times") && !node.is_number())
+                    table.fail_at(node, "values", shown(node) + " is not a factor", "plain numbers, which multiply the value of `times`");
+            });
+            if (table.sound({"key"})) insert(choice.piece, axis.key, node);
             axis.choices.push_back(std::move(choice));
         }
         if (table.has("coupled")) axis.coupled = read_coupled(table);
@@ -190,7 +185,8 @@ private:
                 if (!axes_[a].times.empty()) add_multiple(piece, axes_[a], *chosen[a]);
             point.job = base_.with(piece);
         } catch (const InputError& error) {
-            throw in_point(error, point);
+            note(error, point);
+            return;
         }
         point.job.name = study_.name;
         narrow(point.job, chosen, point);
@@ -254,6 +250,24 @@ private:
         return words.empty() ? "" : fmt::format(", with {}", fmt::join(words, ", "));
     }
 
+    // Mistakes that show only in points' jobs: of each the first point that has it.
+    void note(const InputError& error, const Point& point) {
+        for (const InputError& one : each_mistake(error)) {
+            const InputError placed = in_point(one, point);
+            const InputError alone(placed.place(), one.problem());
+            if (told_.insert(alone.what()).second) mistakes_.add(placed, {});
+        }
+    }
+
+    // What is wrong with `set`, where axes are broken, so that no point can be made.
+    void check_base() {
+        try {
+            (void)base_.with({});
+        } catch (const InputError& error) {
+            note(error, {});
+        }
+    }
+
     // A mistake that shows only in a point's job: where its key stands in the study, if it does.
     InputError in_point(const InputError& error, const Point& point) const {
         std::string key = error.place().key;
@@ -267,11 +281,12 @@ private:
         };
         if (const toml::node* list = tree_.get("axis"); list != nullptr && list->is_array())
             for (const toml::node& axis : *list->as_array()) {
+                if (!axis.is_table()) continue;
                 if (axis.as_table()->at_path("key").value_or(std::string{}) == key) look(axis.as_table()->get("values"));
                 look(axis.as_table()->at_path("coupled." + key).node());
                 if (const toml::node* values = axis.as_table()->get("value"); values != nullptr && values->is_array())
                     for (const toml::node& value : *values->as_array())
-                        if (value.as_table()->at_path("label").value_or(std::string{}) == label_on(point, axis)) look(value.as_table()->at_path("set." + key).node());
+                        if (value.is_table() && value.as_table()->at_path("label").value_or(std::string{}) == label_on(point, axis)) look(value.as_table()->at_path("set." + key).node());
             }
         look(tree_.at_path("set." + key).node());
         return InputError(place, error.problem() + at(point), error.allowed(), error.suggestion());
@@ -280,19 +295,16 @@ private:
     // The label of the point's value on the axis that this node describes.
     std::string label_on(const Point& point, const toml::node& axis) const {
         const std::string name = axis.as_table()->at_path("name").value_or(std::string{});
-        for (std::size_t a = 0; a < axes_.size(); ++a)
+        for (std::size_t a = 0; a < point.values.size(); ++a)
             if (axes_[a].name == name) return point.values[a].label;
         return {};
     }
 
-    toml::table tree_;
-    TableReader root_;
     Study study_;
-    BaseJob base_;
-    toml::table common_;
     std::vector<std::uint64_t> seeds_;   // empty = the job's
     std::vector<TestKind> tests_;        // empty = the job's
     std::vector<Axis> axes_;
+    std::set<std::string> told_;         // of points' mistakes, without the point
 };
 
 }  // namespace

@@ -50,13 +50,21 @@ void finish_files(const Run& run, const TestResult& result, const fs::path& path
     directory.write_text(record_file.string(), to_json(record_of(run, result, provenance)));
 }
 
-std::optional<RunRecord> finished_record(const fs::path& directory, const Run& run) {
+namespace {
+
+std::optional<RunRecord> record_in(const fs::path& directory, const Run& run, RunState state) {
     std::error_code error;
     if (!fs::exists(directory / record_file, error)) return std::nullopt;
     RunRecord record = read_record(directory / record_file);
     if (record.id != run.id) throw InputError({(directory / record_file).string(), 0, 0, "id"}, "is not the record of run " + run.id);
-    if (record.state != RunState::done) return std::nullopt;
+    if (record.state != state) return std::nullopt;
     return record;
 }
+
+}  // namespace
+
+std::optional<RunRecord> finished_record(const fs::path& directory, const Run& run) { return record_in(directory, run, RunState::done); }
+
+std::optional<RunRecord> failure_left(const fs::path& directory, const Run& run) { return record_in(directory, run, RunState::failed); }
 
 }  // namespace feldspar

@@ -21,4 +21,7 @@ void finish_files(const Run& run, const TestResult& result, const std::filesyste
 /// The record of a run that is done, from run.json; none if the directory is not that of a finished run.
 std::optional<RunRecord> finished_record(const std::filesystem::path& directory, const Run& run);
 
+/// The record of a run that failed, which elements of job arrays leave in its directory.
+std::optional<RunRecord> failure_left(const std::filesystem::path& directory, const Run& run);
+
 }  // namespace feldspar

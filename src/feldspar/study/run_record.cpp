@@ -167,6 +167,15 @@ const char* name(RunState state) {
     return "?";
 }
 
+const char* name(Failure failure) {
+    switch (failure) {
+        case Failure::input: return "input";
+        case Failure::numerical: return "numerical";
+        case Failure::other: return "other";
+    }
+    return "?";
+}
+
 const std::vector<std::string>& number_columns() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
@@ -177,7 +186,7 @@ const std::vector<std::string>& number_columns() {
 }
 
 const std::vector<std::string>& text_columns() {
-    static const std::vector<std::string> names{"grains",  "law",       "grade",   "verdict",  "stop_reason", "version",
+    static const std::vector<std::string> names{"grains",  "law",       "grade",   "verdict",  "stop_reason", "failure", "version",
                                                 "commit_id", "machine", "compiler", "started", "command_line"};
     return names;
 }
@@ -192,11 +201,21 @@ RunRecord record_of(const Run& run, const TestResult& result, const Provenance& 
     return record;
 }
 
-RunRecord failed_record(const Run& run, const std::string& reason, const Provenance& provenance) {
+RunRecord failed_record(const Run& run, const std::string& reason, Failure failure, const Provenance& provenance) {
     RunRecord record = record_for(run, provenance);
     record.state = RunState::failed;
     record.reason = reason;
+    record.texts["failure"] = name(failure);
     return record;
+}
+
+bool failed_for_good(const RunRecord& record, const Provenance& program) {
+    const auto is = [&](const char* column, const std::string& text) {
+        const auto found = record.texts.find(column);
+        return found != record.texts.end() && found->second == text;
+    };
+    return record.state == RunState::failed && (is("failure", name(Failure::input)) || is("failure", name(Failure::numerical))) &&
+           is("version", program.version) && is("commit_id", program.commit);
 }
 
 TestResult result_of(const RunRecord& record) {

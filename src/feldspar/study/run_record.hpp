@@ -16,6 +16,11 @@ enum class RunState { running, done, failed };
 
 const char* name(RunState state);
 
+/// What a run failed of. The first two would fail again: the same program finds the same mistake, or takes the same wrong turn.
+enum class Failure { input, numerical, other };
+
+const char* name(Failure failure);
+
 /// Numbers are SI, angles degrees, compression positive; not-a-number where a test does not define one.
 struct RunRecord {
     std::string id;
@@ -32,11 +37,14 @@ struct RunRecord {
 /// Names of the numbers of a record, in the ledger's order: properties, evidence, steps and times.
 const std::vector<std::string>& number_columns();
 
-/// grade, verdict, stop_reason, version, commit, machine, started, ...
+/// grade, verdict, stop_reason, failure, version, commit, machine, started, ...
 const std::vector<std::string>& text_columns();
 
 RunRecord record_of(const Run& run, const TestResult& result, const Provenance& provenance);
-RunRecord failed_record(const Run& run, const std::string& reason, const Provenance& provenance);
+RunRecord failed_record(const Run& run, const std::string& reason, Failure failure, const Provenance& provenance);
+
+/// The run failed for good: of its input or numerically, with this very version and commit of the program.
+bool failed_for_good(const RunRecord& record, const Provenance& program);
 
 /// As much of a result as summarise() reads.
 TestResult result_of(const RunRecord& record);

@@ -242,10 +242,16 @@ bool taken_elsewhere(Ledger& ledger, const Run& run) {
 }
 
 // The runs that nobody has done, waits for or is at.
-std::vector<const Run*> open_runs(const Study& study, Ledger& ledger, const std::set<std::string>& queued, Submission& submission) {
+std::vector<const Run*> open_runs(const Study& study, Ledger& ledger, const std::set<std::string>& queued, bool retry_failed, Submission& submission) {
     std::vector<std::string> ids;
     for (const Run& run : study.runs) ids.push_back(run.id);
-    const std::map<std::string, RunState> states = states_in(ledger, ids);
+    const Provenance here = collect_provenance({}, 1);
+    std::map<std::string, RunState> states;
+    std::set<std::string> failed;   // for good
+    for (const RunRecord& record : ledger.find(ids)) {
+        states[record.id] = record.state;
+        if (!retry_failed && failed_for_good(record, here)) failed.insert(record.id);
+    }
     std::vector<const Run*> open;
     std::set<std::string> seen;
     for (const Run& run : study.runs) {
@@ -253,6 +259,7 @@ std::vector<const Run*> open_runs(const Study& study, Ledger& ledger, const std:
         const auto state = states.find(run.id);
         if (state != states.end() && state->second == RunState::done) ++submission.done;
         else if (queued.contains(run.id)) ++submission.queued;
+        else if (failed.contains(run.id)) ++submission.failed;
         else if (state != states.end() && state->second == RunState::running && taken_elsewhere(ledger, run)) ++submission.elsewhere;
         else open.push_back(&run);
     }
@@ -300,14 +307,14 @@ void require_slurm() {
         if (!call_program({program, "--version"})) no_slurm(program);
 }
 
-Submission submit(const Study& study, Ledger& ledger, const SlurmOptions& options, const fs::path& program) {
+Submission submit(const Study& study, Ledger& ledger, const SlurmOptions& options, const fs::path& program, bool retry_failed) {
     ledger.enrol(study);
     const std::vector<SlurmPlan> plans = read_plans(ledger.directory());
     const Queue queue = queue_of(plans);
     (void)gather(ledger, plans, queue);
 
     Submission submission;
-    const std::vector<const Run*> open = open_runs(study, ledger, queued_runs(plans, queue), submission);
+    const std::vector<const Run*> open = open_runs(study, ledger, queued_runs(plans, queue), retry_failed, submission);
     if (open.empty()) return submission;
     std::vector<std::string> ids;
     for (const Run& run : study.runs) ids.push_back(run.id);

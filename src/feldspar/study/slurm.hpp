@@ -21,6 +21,7 @@ void require_slurm();
 /// What became of the runs of a study that was to be submitted.
 struct Submission {
     int done = 0;                    ///< were done before
+    int failed = 0;                  ///< failed for good before, and are not repeated
     int queued = 0;                  ///< are in Slurm's queue already
     int elsewhere = 0;               ///< a live process of this machine is at them
     int submitted = 0;
@@ -28,9 +29,10 @@ struct Submission {
     std::optional<SlurmPlan> plan;   ///< none if nothing was to be submitted
 };
 
-/// Takes in what earlier elements have left, and submits what is neither done nor on its way.
+/// Takes in what earlier elements have left, and submits what is neither done nor on its way, nor failed for good unless `retry_failed`.
 /// @throws InputError when Slurm is not there or refuses, with its own words
-Submission submit(const Study& study, Ledger& ledger, const SlurmOptions& options, const std::filesystem::path& program);
+Submission submit(const Study& study, Ledger& ledger, const SlurmOptions& options, const std::filesystem::path& program,
+                  bool retry_failed = false);
 
 /// Runs what an array's element is for and is not done yet. Writes nothing but the runs' directories; a failed run leaves its reason in
 /// run.json. May be repeated (requeued), and ends cleanly when asked to stop. `control.keep` is the plan's.

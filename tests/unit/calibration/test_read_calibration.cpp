@@ -2,11 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "../../switched_on.hpp"
+#include "../job/broken_lines.hpp"
 #include "calibration_files.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job_template.hpp"
+#include "feldspar/job/mistakes.hpp"
 
 namespace feldspar {
 namespace {
@@ -22,6 +25,16 @@ protected:
         ADD_FAILURE() << "no error for\n" << text;
         return InputError({}, "");
     }
+    std::vector<InputError> mistakes(const std::string& text) const {
+        try {
+            (void)folder_.read(text);
+        } catch (const InputError& error) {
+            return each_mistake(error);
+        }
+        return {};
+    }
+    static std::string only_message(const std::vector<InputError>& one) { return one.size() == 1 ? one.front().what() : ""; }
+    static std::string edited(std::string text, const std::string& from, const std::string& to) { return text.replace(text.find(from), from.size(), to); }
     CalibrationFolder folder_;
 };
 
@@ -123,6 +136,63 @@ TEST_F(ReadCalibration, ResultsStayInTheResultsDirectory) {
         }
     }
     EXPECT_EQ(folder_.read("results = \"granite-1.2\"\n" + rest).results, std::filesystem::path("results") / "granite-1.2");
+}
+
+const std::string whole_calibration = R"(name = "rock"
+results = "rock"
+seeds = [1, 2]
+confirm_seeds = [11, 12]
+budget = 100
+[set]
+material.contact.mu = 0.25
+[targets]
+E = "25 GPa"
+nu = 0.2
+UCS = { value = "120 MPa", tolerance = "4 %" }
+BTS = { value = "9 MPa", standard_deviation = "1.5 MPa" }
+sigma1 = [{ sigma3 = "10 MPa", value = "190 MPa" }]
+[[unknown]]
+key = "material.contact.Kn"
+[[unknown]]
+name = "E"
+key = "material.grain.E"
+range = ["10 GPa", "50 GPa"]
+scale = "linear"
+[[unknown]]
+name = "tau/sigma_nt"
+key = "material.contact.tau"
+times = "material.contact.sigma_nt"
+range = [2, 4]
+)";
+
+TEST_F(ReadCalibration, FiveMistakesAreToldInTheOrderOfLinesEachAsIfAlone) {
+    const std::vector<std::pair<std::string, std::string>> edits{{"budget = 100", "budget = 1"},
+                                                                 {"material.contact.mu = 0.25", "material.contact.muu = 0.25"},
+                                                                 {"nu = 0.2", "nu = \"0.2\""},
+                                                                 {"key = \"material.contact.Kn\"", "key = \"Kn\""},
+                                                                 {"range = [2, 4]", "range = [4, 2]"}};
+    std::string text = whole_calibration;
+    std::set<std::string> wanted, told;
+    for (const auto& [from, to] : edits) {
+        text = edited(text, from, to);
+        wanted.insert(only_message(mistakes(edited(whole_calibration, from, to))));
+    }
+    int line = -1;
+    for (const InputError& error : mistakes(text)) {
+        told.insert(error.what());
+        EXPECT_GE(error.place().line, line);
+        line = error.place().line;
+    }
+    EXPECT_EQ(told, wanted);
+    EXPECT_EQ(wanted.size(), 5u);
+}
+
+TEST_F(ReadCalibration, OneBrokenLineIsOneMistake) {
+    EXPECT_TRUE(mistakes(whole_calibration).empty());
+    for (const BrokenLine& broken : broken_lines(whole_calibration)) {
+        const std::vector<InputError> found = mistakes(broken.text);
+        ASSERT_EQ(found.size(), 1u) << broken.written << "\n" << found.front().what() << "\n" << found.back().what();
+    }
 }
 
 TEST(ExamplesOfCalibrations, Read) {

@@ -6,6 +6,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/job/mistakes.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {
@@ -16,6 +17,7 @@ struct BadJob {
     std::string text;
     int line;                        // 0: the message has no place in the file
     std::vector<std::string> parts;  // of the whole message
+    std::size_t mistakes = 1;        // told together
 };
 
 std::string with_test(const std::string& keys) { return edited("kind = \"uniaxial-compression\"", keys); }
@@ -97,7 +99,7 @@ std::vector<BadJob> bad_jobs() {
         {"friction negative", edited("mu = 0.40", "mu = -0.4"), 25, {"mu", "zero or greater"}},
         {"fracture energy zero", edited("\"20 N/m\"", "\"0 N/m\""), 26, {"Gfn", "greater than zero"}},
         {"Gfn missing", edited("Gfn = \"20 N/m\"\n", ""), 19, {"material.contact", "missing key: Gfn"}},
-        {"Gfn with brittle", edited("\"bilinear\"", "\"brittle\""), 26, {"Gfn", "does not apply to law = \"brittle\""}},
+        {"Gfn with brittle", edited("\"bilinear\"", "\"brittle\""), 26, {"Gfn", "does not apply to law = \"brittle\""}, 2},
         {"eta and kratio", edited("eta = 0.28", "eta = 0.28\nkratio = 3.6"), 23, {"kratio", "eta = ks/kn or kratio = kn/ks"}},
         {"neither eta nor kratio", edited("eta = 0.28\n", ""), 19, {"eta", "missing key", "kratio"}},
         {"unknown law", edited("\"bilinear\"", "\"bilinaer\""), 20, {"law", "'bilinaer'", "did you mean 'bilinear'?"}},
@@ -294,7 +296,8 @@ std::vector<BadJob> bad_particle_jobs() {
         {"E of rigid grains",
          edited("kind = \"flexible\"", "kind = \"rigid\""),
          16,
-         {"material.grain.E", "no elastic constants", "Kn and eta"}},
+         {"material.grain.E", "no elastic constants", "Kn and eta"},
+         2},
         {"nu of inner particles",
          edited("density", "nu = 0.2\ndensity", inner),
          15,
@@ -408,7 +411,8 @@ std::vector<BadJob> bad_particle_jobs() {
         {"brittle preset with a fracture energy",
          edited("law = \"bilinear\"\n", "", with_material("strength_preset = \"augig-table2-brittle\"")),
          27,
-         {"Gfn", "does not apply to law = \"brittle\""}},
+         {"Gfn", "does not apply to law = \"brittle\""},
+         2},
         {"half a material",
          "[material]\nelastic_preset = \"augig-flexible\"\n" +
              edited("[material.contact]\nlaw = \"bilinear\"\nKn = \"18.00e4 GPa/m\"\neta = 0.28\nsigma_nt = \"8.5 MPa\"\ntau = "
@@ -470,7 +474,8 @@ std::vector<BadJob> bad_variant_jobs() {
         {"no material at all",
          with("[material]\nelastic_preset = \"augig-rigid\"\nstrength_preset = \"augig-table2-bilinear\"\n", ""),
          9,
-         {"variant[1]", "missing key: material"}},
+         {"variant[1]", "missing key: material"},
+         2},   // the second variant, which has a preset for stiffnesses only, misses strengths
         {"plates that no variant has",
          edited("kind = \"direct-tension\"", "kind = \"brazilian\"\nmembrane_plates = 3", variant_job),
          42,
@@ -486,6 +491,7 @@ void expect_refused(const std::vector<BadJob>& jobs) {
             ADD_FAILURE() << "accepted";
         } catch (const InputError& error) {
             const std::string message = error.what();
+            EXPECT_EQ(each_mistake(error).size(), bad.mistakes) << message;
             EXPECT_EQ(error.place().file, "job.toml");
             EXPECT_EQ(error.place().line, bad.line) << message;
             EXPECT_GE(error.place().column, bad.line > 0 ? 1 : 0) << message;

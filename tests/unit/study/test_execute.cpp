@@ -20,6 +20,7 @@ protected:
         control.threads = threads;
         control.keep = study.keep;
         control.stop = &stop_;
+        control.retry_failed = retry_failed_;
         control.provenance = collect_provenance("test", threads);
         control.ended = [this](const feldspar::Run& run, const RunRecord&) { ended_.push_back(run.id); };
         return execute(study.runs, ledger, control);
@@ -29,6 +30,7 @@ protected:
     std::filesystem::path place_ = folder_ / "results";
     std::atomic<bool> stop_{false};
     std::vector<std::string> ended_;
+    bool retry_failed_ = false;
 };
 
 constexpr const char* two_frictions = "[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.5]\n";
@@ -83,7 +85,31 @@ TEST_F(ExecuteStudy, AFailureIsRecordedAndDoesNotStopTheOthers) {
     EXPECT_EQ(record->state, RunState::failed);
     EXPECT_NE(record->reason.find("mass_factor"), std::string::npos) << record->reason;
     EXPECT_EQ(point_results(study, ledger)[0].failed.size(), 1u);
-    EXPECT_EQ(run(study, ledger).failed, 1);   // tried again
+
+    Ledger later(place_, Ledger::Access::write);
+    ended_.clear();
+    const Execution again = run(study, later);   // it would fail again
+    EXPECT_EQ(again.found_failed, 1);
+    EXPECT_EQ(again.found_done, 1);
+    EXPECT_EQ(again.failed + again.done, 0);
+    EXPECT_TRUE(ended_.empty());
+    EXPECT_EQ(later.find(study.runs[0].id)->reason, record->reason);
+    retry_failed_ = true;
+    EXPECT_EQ(run(study, later).failed, 1);
+    EXPECT_EQ(run(study, later).found_failed, 1);   // but not twice on one ledger
+}
+
+TEST_F(ExecuteStudy, AFailureThatAnElementHasLeftIsTakenForWhatItIs) {
+    const Study study = read("seeds = [1]\n");
+    Ledger ledger(place_, Ledger::Access::write);
+    const RunRecord left = failed_record(study.runs[0], "a force is not a number", Failure::numerical, collect_provenance("test", 1));
+    std::filesystem::create_directories(ledger.run_directory(study.runs[0].id));
+    folder_.write("results/runs/" + study.runs[0].id + "/run.json", to_json(left));
+    EXPECT_EQ(run(study, ledger).found_failed, 1);
+    EXPECT_EQ(ledger.find(study.runs[0].id)->reason, left.reason);
+    Ledger later(place_, Ledger::Access::write);
+    retry_failed_ = true;
+    EXPECT_EQ(run(study, later).done, 1);
 }
 
 TEST_F(ExecuteStudy, AnInterruptedStudyGoesOn) {

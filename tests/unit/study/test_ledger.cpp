@@ -77,7 +77,7 @@ TEST_F(LedgerOfAStudy, ARunIsTakenOnceAndNeverReplaced) {
     other.record(done(study_.runs[0], 1e6));
     EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::done);
     ledger.record(done(study_.runs[0], 2e6));
-    ledger.record(failed_record(study_.runs[0], "late", {}));
+    ledger.record(failed_record(study_.runs[0], "late", Failure::numerical, {}));
     EXPECT_EQ(ledger.find(study_.runs[0].id)->numbers.at("strength_Pa"), 1e6);
     ledger.release(study_.runs[0].id);
     EXPECT_TRUE(ledger.find(study_.runs[0].id));
@@ -86,11 +86,47 @@ TEST_F(LedgerOfAStudy, ARunIsTakenOnceAndNeverReplaced) {
 TEST_F(LedgerOfAStudy, AFailedRunHasAReasonAndMayBeTakenAgain) {
     Ledger ledger(place_, Ledger::Access::write);
     ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
-    ledger.record(failed_record(study_.runs[0], "a force is not a number", {}));
-    EXPECT_EQ(ledger.find(study_.runs[0].id)->reason, "a force is not a number");
-    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+    const Provenance program = collect_provenance("test", 1);
+    ledger.record(failed_record(study_.runs[0], "there is not enough memory", Failure::other, program));
+    EXPECT_EQ(ledger.find(study_.runs[0].id)->reason, "there is not enough memory");
+    EXPECT_EQ(ledger.claim(study_.runs[0], &program), Ledger::Claim::ours);
     ledger.record(done(study_.runs[0], 3e6));
     EXPECT_EQ(ledger.find(study_.runs[0].id)->reason, "");
+}
+
+TEST_F(LedgerOfAStudy, AFailureForGoodIsKeptForTheProgramThatHadIt) {
+    const Provenance program = collect_provenance("test", 1);
+    Provenance later = program, patched = program;
+    later.version = "9.9.9";
+    patched.commit = "another";
+    for (const Failure failure : {Failure::input, Failure::numerical}) {
+        const feldspar::Run& run = study_.runs[failure == Failure::input ? 0 : 1];
+        {
+            Ledger ledger(place_, Ledger::Access::write);
+            ASSERT_EQ(ledger.claim(run, &program), Ledger::Claim::ours);
+            ledger.record(failed_record(run, "a force is not a number", failure, program));
+            EXPECT_EQ(ledger.claim(run), Ledger::Claim::failed);   // what has failed here is not tried again here
+        }
+        for (const Provenance* other : std::initializer_list<const Provenance*>{&later, &patched, nullptr}) {
+            Ledger ledger(place_, Ledger::Access::write);
+            EXPECT_EQ(ledger.claim(run, &program), Ledger::Claim::failed);
+            EXPECT_EQ(ledger.find(run.id)->reason, "a force is not a number");
+            ASSERT_EQ(ledger.claim(run, other), Ledger::Claim::ours);   // another program's failure, or all may be tried again
+            ledger.record(failed_record(run, "a force is not a number", failure, program));
+        }
+    }
+}
+
+TEST_F(LedgerOfAStudy, WhatFailedBeforeThereWereKindsOfFailuresMayBeTakenAgain) {
+    const Provenance program = collect_provenance("test", 1);
+    {
+        Ledger ledger(place_, Ledger::Access::write);
+        ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+        ledger.record(failed_record(study_.runs[0], "a force is not a number", Failure::numerical, program));
+        raw().exec("ALTER TABLE run DROP COLUMN failure");
+    }
+    Ledger ledger(place_, Ledger::Access::write);
+    EXPECT_EQ(ledger.claim(study_.runs[0], &program), Ledger::Claim::ours);
 }
 
 TEST_F(LedgerOfAStudy, WhatADeadProcessHadIsFree) {

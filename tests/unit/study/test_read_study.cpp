@@ -7,9 +7,11 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job_template.hpp"
+#include "feldspar/job/mistakes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/study.hpp"
 #include "../../small_study.hpp"
+#include "../job/broken_lines.hpp"
 #include "../../switched_on.hpp"
 
 namespace feldspar {
@@ -29,6 +31,16 @@ protected:
         ADD_FAILURE() << "no error for\n" << text;
         return InputError({}, "");
     }
+
+    std::vector<InputError> mistakes(const std::string& text) const {
+        try {
+            (void)read(text);
+        } catch (const InputError& error) {
+            return each_mistake(error);
+        }
+        return {};
+    }
+    static std::string edited(std::string text, const std::string& from, const std::string& to) { return text.replace(text.find(from), from.size(), to); }
 
     static const ContactMaterial& contact(const Study& study, std::size_t point) { return study.points[point].job.variants.front().contact; }
 
@@ -241,6 +253,82 @@ TEST_F(ReadStudy, MistakesAreSaidWithPlaceAndSuggestion) {
               "material.contact.nothing");
     EXPECT_NE(mistake("results = \"../away\"\n").allowed().find("letters"), std::string::npos);
     EXPECT_NE(mistake("[[axis]]\nname = \"a\"\n[[axis.value]]\nlabel = \"x\"\nseeds = [9]\n").problem().find("nothing is left to run"), std::string::npos);
+}
+
+const std::string whole_study = R"(name = "trial"
+title = "A trial"
+results = "trial"
+keep = "histories"
+seeds = [1, 2]
+tests = ["direct-tension"]
+[set]
+material.contact.eta = 0.3
+test.stop_fraction = 0.9
+[[axis]]
+name = "mu"
+key = "material.contact.mu"
+values = [0.2, 0.5]
+[[axis]]
+name = "tau"
+key = "material.contact.tau"
+times = "material.contact.sigma_nt"
+values = [2, 3]
+[[axis]]
+name = "grains"
+[[axis.value]]
+label = "stiff"
+set = { material.grain.E = "50 GPa" }
+[[axis.value]]
+label = "soft"
+seeds = [2]
+)";
+
+TEST_F(ReadStudy, FiveMistakesAreToldInTheOrderOfLinesEachAsIfAlone) {
+    const std::vector<std::pair<std::string, std::string>> edits{{"keep = \"histories\"", "keep = \"some\""},
+                                                                 {"seeds = [1, 2]", "seeds = [1, 1]"},
+                                                                 {"material.contact.eta = 0.3", "material.contact.eta = -0.3"},
+                                                                 {"key = \"material.contact.mu\"", "key = \"mu\""},
+                                                                 {"label = \"soft\"", "label = \"stiff\""}};
+    std::string text = whole_study;
+    std::vector<std::string> wanted;
+    for (const auto& [from, to] : edits) {
+        text = edited(text, from, to);
+        const std::vector<InputError> alone = mistakes(edited(whole_study, from, to));
+        ASSERT_EQ(alone.size(), 1u) << to;
+        wanted.push_back(alone.front().what());
+    }
+    const std::vector<InputError> told = mistakes(text);
+    ASSERT_EQ(told.size(), wanted.size());
+    for (std::size_t i = 0; i < told.size(); ++i) {
+        // with broken axes there are no points, so the point that shows a mistake in [set] is not named
+        const std::string message = told[i].what();
+        EXPECT_EQ(message.substr(0, message.find('\n')), wanted[i].substr(0, std::min(wanted[i].find('\n'), wanted[i].find(", with mu")))) << i;
+        if (i > 0) {
+            EXPECT_GT(told[i].place().line, told[i - 1].place().line);
+        }
+    }
+}
+
+TEST_F(ReadStudy, MistakesOfTheJobComeBehindThoseOfTheStudy) {
+    folder_.write("job.toml", edited(edited(small_job, "12 mm", "12 mn"), "5 %", "50 %"));
+    const std::vector<InputError> told = mistakes("keep = \"some\"\ntests = [\"direct\"]\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = []\n");
+    ASSERT_EQ(told.size(), 5u);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(told[i].place().file, (folder_ / (i < 3 ? "study.toml" : "job.toml")).string());
+}
+
+TEST_F(ReadStudy, OneBrokenLineIsOneMistake) {
+    EXPECT_TRUE(mistakes(whole_study).empty());
+    for (const BrokenLine& broken : broken_lines(whole_study)) {
+        const std::vector<InputError> found = mistakes(broken.text);
+        ASSERT_EQ(found.size(), 1u) << broken.written << "\n" << found.front().what() << "\n" << found.back().what();
+    }
+}
+
+TEST_F(ReadStudy, AMistakeInAllPointsIsToldOnce) {
+    const std::vector<InputError> found = mistakes("[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.1, -0.2, 0.3, -0.4]\n"
+                                                   "[[axis]]\nname = \"width\"\nkey = \"specimen.width\"\nvalues = [\"12 mm\", \"13 mn\"]\n");
+    ASSERT_EQ(found.size(), 3u);   // two values of mu and one width, whatever the other axis has
+    EXPECT_NE(found.front().problem().find("with mu = -0.2, width = 12 mm"), std::string::npos);
 }
 
 TEST(ReadStudyFile, WithoutItsJobSaysWhereItLooked) {
