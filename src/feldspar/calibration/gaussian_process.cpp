@@ -12,7 +12,8 @@ namespace feldspar {
 struct GaussianProcess::Scales {
     double amplitude = 0.5;          // of f
     std::vector<double> lengths;
-    double packings = 0.1;
+    double packings = 0.1;           // of a
+    double changes = 0.1;            // of g
     double noise = 0.1;
 };
 
@@ -23,13 +24,15 @@ constexpr double slope_scale = 5.0;    // of its slopes: over the range of a par
 constexpr double least_noise = 1e-3;
 
 // Medians of the scales before anything is seen, and by which factor they may well be wrong.
-constexpr double usual_amplitude = 0.5, usual_length = 1.0, usual_packings = 0.2, usual_noise = 0.2;
+constexpr double usual_amplitude = 0.5, usual_length = 1.0, usual_packings = 0.2, usual_changes = 0.1, usual_noise = 0.2;
 constexpr double usual_spread = 1.0;   // of their logarithms
 
 double matern(double distance) {
     const double r = std::sqrt(5.0) * distance;
     return (1.0 + r + r * r / 3.0) * std::exp(-r);
 }
+
+constexpr std::size_t common = 4;      // scales before the lengths
 
 double squared(double x) { return x * x; }
 
@@ -50,18 +53,21 @@ GaussianProcess::Scales GaussianProcess::scales_from(const std::vector<double>& 
     Scales scales;
     scales.amplitude = std::exp(logarithms[0]);
     scales.packings = std::exp(logarithms[1]);
-    scales.noise = std::exp(logarithms[2]) + least_noise;
-    for (std::size_t i = 3; i < logarithms.size(); ++i) scales.lengths.push_back(std::exp(logarithms[i]));
+    scales.changes = std::exp(logarithms[2]);
+    scales.noise = std::exp(logarithms[3]) + least_noise;
+    for (std::size_t i = common; i < logarithms.size(); ++i) scales.lengths.push_back(std::exp(logarithms[i]));
     return scales;
 }
 
-double GaussianProcess::kernel(const Scales& scales, const std::vector<double>& a, const std::vector<double>& b) const {
+double GaussianProcess::kernel(const Scales& scales, const std::vector<double>& a, const std::vector<double>& b, bool same_packing) const {
     double trend = squared(level_scale), distance = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         trend += squared(slope_scale) * (a[i] - 0.5) * (b[i] - 0.5);
         distance += squared((a[i] - b[i]) / scales.lengths[i]);
     }
-    return trend + squared(scales.amplitude) * matern(std::sqrt(distance));
+    const double near = matern(std::sqrt(distance));
+    const double mean = trend + squared(scales.amplitude) * near;
+    return same_packing ? mean + squared(scales.packings) + squared(scales.changes) * near : mean;
 }
 
 Eigen::MatrixXd GaussianProcess::covariance(const Scales& scales) const {
@@ -70,10 +76,8 @@ Eigen::MatrixXd GaussianProcess::covariance(const Scales& scales) const {
     for (Eigen::Index i = 0; i < n; ++i)
         for (Eigen::Index j = 0; j <= i; ++j) {
             const Observation &a = observations_[static_cast<std::size_t>(i)], &b = observations_[static_cast<std::size_t>(j)];
-            double k = kernel(scales, a.x, b.x);
-            if (a.seed == b.seed) k += squared(scales.packings);
-            if (i == j) k += squared(scales.noise);
-            K(i, j) = K(j, i) = k;
+            const double own = i == j ? squared(scales.noise) + a.variance / squared(unit_) : 0.0;
+            K(i, j) = K(j, i) = kernel(scales, a.x, b.x, a.seed == b.seed) + own;
         }
     return K;
 }
@@ -86,15 +90,15 @@ double GaussianProcess::minus_log_posterior(const Scales& scales) const {
     if (factor.info() != Eigen::Success) return std::numeric_limits<double>::max();
     double value = 0.5 * y.dot(factor.solve(y)) + factor.matrixLLT().diagonal().array().log().sum();
     const auto prior = [](double scale, double usual) { return 0.5 * squared(std::log(scale / usual) / usual_spread); };
-    value += prior(scales.amplitude, usual_amplitude) + prior(scales.packings, usual_packings) + prior(scales.noise, usual_noise);
+    value += prior(scales.amplitude, usual_amplitude) + prior(scales.packings, usual_packings) + prior(scales.changes, usual_changes) + prior(scales.noise, usual_noise);
     for (const double length : scales.lengths) value += prior(length, usual_length);
     return value;
 }
 
 void GaussianProcess::fit(const GaussianProcess* before) {
-    const std::size_t parameters = observations_.front().x.size(), unknowns = 3 + parameters;
+    const std::size_t parameters = observations_.front().x.size(), unknowns = common + parameters;
     const auto start = [&](double amplitude, double noise, double length) {
-        std::vector<double> logarithms{std::log(amplitude), std::log(usual_packings), std::log(noise)};
+        std::vector<double> logarithms{std::log(amplitude), std::log(usual_packings), std::log(usual_changes), std::log(noise)};
         logarithms.resize(unknowns, std::log(length));
         return logarithms;
     };
@@ -126,7 +130,7 @@ void GaussianProcess::fit(const GaussianProcess* before) {
     if (logarithms_.empty()) logarithms_ = start(usual_amplitude, usual_noise, usual_length);
     const Scales scales = scales_from(logarithms_);
     lengths_ = scales.lengths;
-    variance_of_packings_ = squared(unit_ * scales.packings);
+    variance_of_packings_ = squared(unit_) * (squared(scales.packings) + squared(scales.changes));
     variance_of_noise_ = squared(unit_ * scales.noise);
     solve(scales);
 }
@@ -143,8 +147,8 @@ Belief GaussianProcess::at(const std::vector<double>& x) const {
     const Scales scales = scales_from(logarithms_);
     const auto n = static_cast<Eigen::Index>(observations_.size());
     Eigen::VectorXd k(n);
-    for (Eigen::Index i = 0; i < n; ++i) k[i] = kernel(scales, x, observations_[static_cast<std::size_t>(i)].x);
-    const double variance = kernel(scales, x, x) - factor_.matrixL().solve(k).squaredNorm();
+    for (Eigen::Index i = 0; i < n; ++i) k[i] = kernel(scales, x, observations_[static_cast<std::size_t>(i)].x, false);
+    const double variance = kernel(scales, x, x, false) - factor_.matrixL().solve(k).squaredNorm();
     return {centre_ + unit_ * k.dot(weights_), squared(unit_) * std::max(0.0, variance)};
 }
 

@@ -51,7 +51,7 @@ public:
                 const auto enough = enough_for.find(observables[q].name);
                 const bool too_far = !request.whole && enough != enough_for.end() && value > enough->second;
                 bounds += too_far;
-                own.push_back(too_far ? Reading{enough->second, true} : Reading{value});
+                own.push_back(too_far ? Reading{enough->second, Says::at_least} : Reading{value});
             }
             used_ += static_cast<int>(tests.size());
         }
