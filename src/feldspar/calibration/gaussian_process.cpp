@@ -8,15 +8,6 @@
 
 namespace feldspar {
 
-// Of the standardised observations.
-struct GaussianProcess::Scales {
-    double amplitude = 0.5;          // of f
-    std::vector<double> lengths;
-    double packings = 0.1;           // of a
-    double changes = 0.1;            // of g
-    double noise = 0.1;
-};
-
 namespace {
 
 constexpr double level_scale = 10.0;   // of the trend's level: anything
@@ -128,28 +119,46 @@ void GaussianProcess::fit(const GaussianProcess* before) {
         logarithms_ = logarithms;
     }
     if (logarithms_.empty()) logarithms_ = start(usual_amplitude, usual_noise, usual_length);
-    const Scales scales = scales_from(logarithms_);
-    lengths_ = scales.lengths;
-    variance_of_packings_ = squared(unit_) * (squared(scales.packings) + squared(scales.changes));
-    variance_of_noise_ = squared(unit_ * scales.noise);
-    solve(scales);
+    scales_ = scales_from(logarithms_);
+    scales_.packings = mean_scale(1);
+    scales_.changes = mean_scale(2);
+    variance_of_packings_ = squared(unit_) * (squared(scales_.packings) + squared(scales_.changes));
+    variance_of_noise_ = squared(unit_ * scales_.noise);
+    solve();
 }
 
-void GaussianProcess::solve(const Scales& scales) {
+// Few packings leave the scatter between packings open: the most probable one is too small in the mean, and an interval by it too narrow. So its
+// variance is averaged over what is possible, the other scales as they are.
+double GaussianProcess::mean_scale(std::size_t which) const {
+    constexpr double reach = 2.0, step = 0.25;   // of the logarithm
+    const double most_probable = minus_log_posterior(scales_from(logarithms_));
+    double weights = 0.0, variance = 0.0;
+    for (double off = -reach; off <= reach; off += step) {
+        std::vector<double> moved = logarithms_;
+        moved[which] += off;
+        const double weight = std::exp(most_probable - minus_log_posterior(scales_from(moved)));
+        weights += weight;
+        variance += weight * std::exp(2.0 * moved[which]);
+    }
+    return std::isfinite(variance) && weights > 0.0 ? std::sqrt(variance / weights) : std::exp(logarithms_[which]);
+}
+
+void GaussianProcess::solve() {
     const auto n = static_cast<Eigen::Index>(observations_.size());
     Eigen::VectorXd y(n);
     for (Eigen::Index i = 0; i < n; ++i) y[i] = (observations_[static_cast<std::size_t>(i)].y - centre_) / unit_;
-    factor_.compute(covariance(scales));
+    factor_.compute(covariance(scales_));
     weights_ = factor_.solve(y);
 }
 
 Belief GaussianProcess::at(const std::vector<double>& x) const {
-    const Scales scales = scales_from(logarithms_);
     const auto n = static_cast<Eigen::Index>(observations_.size());
     Eigen::VectorXd k(n);
-    for (Eigen::Index i = 0; i < n; ++i) k[i] = kernel(scales, x, observations_[static_cast<std::size_t>(i)].x, false);
-    const double variance = kernel(scales, x, x, false) - factor_.matrixL().solve(k).squaredNorm();
-    return {centre_ + unit_ * k.dot(weights_), squared(unit_) * std::max(0.0, variance)};
+    for (Eigen::Index i = 0; i < n; ++i) k[i] = kernel(scales_, x, observations_[static_cast<std::size_t>(i)].x, false);
+    const double mean = centre_ + unit_ * k.dot(weights_);
+    factor_.matrixL().solveInPlace(k);
+    const double variance = kernel(scales_, x, x, false) - k.squaredNorm();
+    return {mean, squared(unit_) * std::max(0.0, variance)};
 }
 
 void GaussianProcess::believe(const std::vector<double>& x) {
@@ -157,7 +166,7 @@ void GaussianProcess::believe(const std::vector<double>& x) {
     std::uint64_t seed = 0;
     for (const Observation& o : observations_) seed = std::max(seed, o.seed + 1);
     observations_.push_back({x, seed, at(x).mean});
-    solve(scales_from(logarithms_));
+    solve();
 }
 
 }  // namespace feldspar

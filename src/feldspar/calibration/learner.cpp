@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -13,7 +12,6 @@ namespace {
 constexpr double largest_nu = 0.5;
 constexpr double least_weight = 1e-3;     // of a bound, for which a value seen would have 1: below it teaches nothing
 constexpr double most_standing = 8.0;     // standard deviations by which a bound may be off: farther, only its own value counts
-constexpr double least_freedom = 2.0;
 
 double squared(double x) { return x * x; }
 
@@ -153,7 +151,6 @@ std::vector<Foresight> Learner::foresee(const std::vector<double>& x, std::size_
     const std::vector<double> means = means_of(believed), values = targets_by(means);
     const auto n = static_cast<double>(std::max<std::size_t>(1, packings));
     std::vector<Foresight> all(targets_.size());
-    std::vector<double> by_freedom(targets_.size(), 0.0);   // sum of variance^2 / degrees of freedom: Welch and Satterthwaite
     for (std::size_t q = 0; q < quantities_.size(); ++q) {
         const double unit = quantities_[q].logarithmic ? means[q] : 1.0;
         double own = 0.0;   // mean variance that tests have by their own errors
@@ -163,7 +160,6 @@ std::vector<Foresight> Learner::foresee(const std::vector<double>& x, std::size_
         const double doubt = std::sqrt(believed[q].variance);
         const double scatter = unit * std::sqrt((processes_[q]->packing_variance() + processes_[q]->noise_variance()) / n);
         const double grade = unit * std::sqrt(own / n);
-        const double freedom = std::max(least_freedom, static_cast<double>(this->packings(q)) - 1.0);
         std::vector<double> moved = means;
         const double together = std::sqrt(squared(doubt) + squared(scatter) + squared(grade));
         moved[q] += together;
@@ -174,7 +170,6 @@ std::vector<Foresight> Learner::foresee(const std::vector<double>& x, std::size_
             all[t].doubt += variance * squared(doubt / together);   // variances until all are summed
             all[t].scatter += variance * squared(scatter / together);
             all[t].grade += variance * squared(grade / together);
-            by_freedom[t] += squared(variance) / freedom;
         }
     }
     for (std::size_t t = 0; t < targets_.size(); ++t) {
@@ -185,17 +180,16 @@ std::vector<Foresight> Learner::foresee(const std::vector<double>& x, std::size_
         f.doubt = std::sqrt(f.doubt);
         f.scatter = std::sqrt(f.scatter);
         f.grade = std::sqrt(f.grade);
-        f.freedom = by_freedom[t] > 0.0 ? squared(variance) / by_freedom[t] : 1e6;
         const double off = f.value - targets_[t].value, tolerance = targets_[t].tolerance;
         if (!std::isfinite(off) || !std::isfinite(variance)) {
             f.low = f.high = std::numeric_limits<double>::quiet_NaN();
             continue;
         }
-        const boost::math::students_t student(f.freedom);
-        const double half = boost::math::quantile(student, 0.975) * f.deviation;
+        const boost::math::normal normal;
+        const double half = boost::math::quantile(normal, 0.975) * f.deviation;
         f.low = f.value - half;
         f.high = f.value + half;
-        if (f.deviation > 0.0) f.probability = boost::math::cdf(student, (tolerance - off) / f.deviation) - boost::math::cdf(student, (-tolerance - off) / f.deviation);
+        if (f.deviation > 0.0) f.probability = boost::math::cdf(normal, (tolerance - off) / f.deviation) - boost::math::cdf(normal, (-tolerance - off) / f.deviation);
         else f.probability = std::abs(off) <= tolerance ? 1.0 : 0.0;
     }
     return all;

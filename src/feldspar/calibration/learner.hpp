@@ -42,7 +42,6 @@ struct Foresight {
     double scatter = 0.0;      ///< of the mean of so many packings about that
     double grade = 0.0;        ///< of that mean by the estimated errors of the tests
     double deviation = 0.0;    ///< of all three together
-    double freedom = 1.0;      ///< degrees of freedom: scatter that was learned from few packings may be larger than it looked
     double low = 0.0, high = 0.0;   ///< 95 % interval
     double probability = 0.0;       ///< that it lies within the tolerance
 };
