@@ -80,8 +80,8 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
 
     const std::size_t everywhere = candidates_everywhere(dimensions);
     std::vector<std::vector<double>> chosen;
+    std::vector<double> best = best_point(learner, dimensions);
     for (std::size_t c = 0; c < count; ++c) {
-        const std::vector<double> best = best_point(learner, dimensions);
         const double least = learner.at(best).misfit;
         std::vector<std::vector<double>> candidates = evenly(dimensions, everywhere, 1 + everywhere * (2 + round + c));
         candidates.push_back(best);
@@ -110,6 +110,7 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
         }
         chosen.push_back(next);
         learner.believe(next);
+        if (learner.at(next).misfit < learner.at(best).misfit) best = next;   // surer now, and as good
     }
     return chosen;
 }
