@@ -257,6 +257,10 @@ TEST_F(CalibrateRock, ItsPageHoldsWhatWasLearned) {
     EXPECT_EQ(data["targets"][0]["unit"], "GPa");
     EXPECT_NEAR(data["targets"][0]["wanted"].get<double>(), 23.5, 1e-6);
     EXPECT_EQ(data["targets"][4]["unit"], "deg");
+    EXPECT_EQ(data["targets"][1]["grades"]["A"], 10);   // one test on each of ten packings; the friction angle takes two
+    EXPECT_EQ(data["targets"][4]["grades"]["A"], 20);
+    EXPECT_LT(data["targets"][1]["foreseen"][0], data["targets"][1]["predicted"]);
+    for (const nlohmann::json& target : data["targets"]) EXPECT_EQ(target["met"].get<bool>(), target["missed"].get<std::string>().empty());
     ASSERT_EQ(data["unknowns"].size(), 6u);
     EXPECT_EQ(data["unknowns"][1]["unit"], "MPa");
     EXPECT_NEAR(data["unknowns"][1]["best"].get<double>(), result.unknowns[1].best, 1e-4);
@@ -290,6 +294,11 @@ TEST_F(CalibrateRock, KeepsTheWayThere) {
     for (std::size_t u = 0; u < result.unknowns.size(); ++u) EXPECT_EQ(result.way.back().best[u], result.unknowns[u].best);
     const nlohmann::json json = nlohmann::json::parse(calibration_json(calibration, result, {}));
     EXPECT_EQ(json["way"].size(), result.way.size());
+    EXPECT_EQ(json["targets"][4]["grades"]["A"], 20);
+    EXPECT_EQ(json["targets"][1]["miss"] == "none", result.targets[1].met);
+    EXPECT_GT(json["targets"][1]["foreseen_high"].get<double>(), json["targets"][1]["foreseen_low"].get<double>());
+    EXPECT_NE(calibration_text(result).find("A/B/C"), std::string::npos);
+    EXPECT_NE(calibration_text(result).find("10/0/0"), std::string::npos);
     EXPECT_EQ(json["way"].back()["best"]["mu"], result.unknowns[3].best);
 }
 

@@ -204,8 +204,10 @@ TEST(GaussianProcess, RepeatsOnTheSamePackingsLeaveTheDoubtThatPackingsMake) {
         }
         return std::sqrt(GaussianProcess(seen).at({0.5}).variance);
     };
-    EXPECT_GT(doubt_after(6), 0.02);    // eight packings of 10 %: 0.035
-    EXPECT_LT(doubt_after(6), 0.08);
+    const double doubt = doubt_after(6);
+    RecordProperty("doubt_in_thousandths", static_cast<int>(1000.0 * doubt));
+    EXPECT_GT(doubt, 0.03);    // eight packings of 10 %: 0.035; with repeats taken for news it is 0.027
+    EXPECT_LT(doubt, 0.08);
 }
 
 // An observation that is unsure by itself counts less.
