@@ -5,12 +5,14 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "calibration_files.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/calibration/calibration_files.hpp"
+#include "feldspar/calibration/missed.hpp"
 
 namespace feldspar {
 namespace {
@@ -190,6 +192,69 @@ TEST_F(TrueDoubt, AnAnswerAtTheEndOfARangeIsTheReason) {
     EXPECT_EQ(result.targets.front().miss, Miss::range_end) << result.targets.front().missed;
     EXPECT_NE(result.targets.front().missed.find("sigma_nt stands at the upper end of its range, 8 MPa"), std::string::npos) << result.targets.front().missed;
     EXPECT_NE(calibration_text(result).find(result.targets.front().missed), std::string::npos);
+}
+
+// Each reason, by a result made by hand: BTS 12 MPa confirmed for 10 +- 1.
+TEST_F(TrueDoubt, EachReasonOfAMissHasItsSentence) {
+    const Calibration calibration = read();
+    const auto said = [&](const std::function<void(CalibrationResult&)>& change) {
+        CalibrationResult result;
+        TargetOutcome outcome;
+        outcome.target = calibration.targets.front();
+        outcome.predicted = outcome.foreseen.value = 10.5e6;
+        outcome.foreseen.doubt = 0.2e6;
+        outcome.foreseen.scatter = 0.9e6;
+        outcome.foreseen.grade = 0.1e6;
+        outcome.foreseen.low = 8.7e6;
+        outcome.foreseen.high = 12.3e6;
+        outcome.confirmed = {10, 12e6, 2.8e6, 10e6, 14e6};
+        outcome.grades = {10, 0, 0, 0, 0};
+        outcome.lowest = 9e6;
+        outcome.highest = 13e6;
+        result.targets = {outcome};
+        UnknownOutcome unknown;
+        unknown.unknown = calibration.unknowns.front();
+        unknown.best = 10.0;
+        result.unknowns = {unknown};
+        result.sensitivity = {{0.9}};
+        result.runs = 60;
+        change(result);
+        say_what_is_missed(calibration, result);
+        return std::pair{result.targets.front().miss, result.targets.front().missed};
+    };
+    const auto check = [&](Miss miss, const std::string& words, const std::function<void(CalibrationResult&)>& change) {
+        const auto [is, sentence] = said(change);
+        EXPECT_EQ(is, miss) << sentence;
+        EXPECT_NE(sentence.find(words), std::string::npos) << sentence;
+        EXPECT_TRUE(sentence.ends_with(".")) << sentence;
+    };
+    const auto first = [](CalibrationResult& result) -> TargetOutcome& { return result.targets.front(); };
+    check(Miss::scatter, "BTS is missed: 12 MPa for 10 MPa, 2 tolerances too high; the reason is the scatter of packings: the mean of 10 is known to ± 2 MPa", [](CalibrationResult&) {});
+    check(Miss::scatter, "take 121 confirm_seeds", [](CalibrationResult&) {});   // (2 x 1.96 x 2.8)^2
+    check(Miss::grade, "numerics.accuracy", [&](CalibrationResult& r) { first(r).foreseen.grade = 1.2e6; });
+    check(Miss::prediction, "give more seeds and a larger budget", [&](CalibrationResult& r) { first(r).foreseen.doubt = 1.2e6; });
+    check(Miss::prediction, "it said 10 MPa to 11 MPa", [&](CalibrationResult& r) {
+        first(r).foreseen.low = 10e6;
+        first(r).foreseen.high = 11e6;
+    });
+    check(Miss::budget, "60 of 60 runs were used", [&](CalibrationResult& r) { first(r).foreseen.value = 12e6; });
+    check(Miss::conflict, "11.5 MPa to 13 MPa is within reach", [&](CalibrationResult& r) {
+        first(r).foreseen.value = 12e6;
+        first(r).lowest = 11.5e6;
+    });
+    check(Miss::range_end, "sigma_nt stands at the lower end of its range, 4 MPa; widen it", [&](CalibrationResult& r) {
+        first(r).foreseen.value = 12e6;
+        r.unknowns.front().best = 4.0;
+        r.unknowns.front().at_an_end = true;
+    });
+    check(Miss::conflict, "give way", [&](CalibrationResult& r) {   // at the upper end: a wider range would make it worse
+        first(r).foreseen.value = 12e6;
+        first(r).lowest = 11.5e6;
+        r.unknowns.front().best = 25.0;
+        r.unknowns.front().at_an_end = true;
+    });
+    check(Miss::not_confirmed, "6 of 10 failed", [&](CalibrationResult& r) { first(r).grades = {4, 0, 0, 0, 6}; });
+    check(Miss::not_confirmed, "maximum_strain", [&](CalibrationResult& r) { first(r).grades = {10, 0, 0, 8, 0}; });
 }
 
 // The same packing again near by is no new packing.
