@@ -269,7 +269,7 @@ void add_claims(CommandLine& line) {
 
 void add_calibrate(CommandLine& line) {
     const auto options = line.options<CalibrateOptions>();
-    CLI::App& command = line.add("calibrate", "laboratory numbers in, contact parameters out; goes on where it was interrupted");
+    CLI::App& command = line.add("calibrate", "laboratory numbers in, contact parameters out, confirmed on fresh packings; tests that are not quasi-static (grade C) count as upper bounds or not at all; goes on where it was interrupted");
     command.add_option("calibration", options->calibration, "the file with targets and unknowns")->required()->type_name("TARGETS.toml");
     command.add_option("--results", options->results, "directory of the ledger and the runs (default: as the file says)")->type_name("DIR");
     command.add_option("--budget", options->budget, "at most so many runs (default: as the file says)")->type_name("N")->check(CLI::Range(20, 100'000));

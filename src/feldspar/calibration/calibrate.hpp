@@ -10,20 +10,43 @@
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/calibration/learner.hpp"
 #include "feldspar/study/execute.hpp"
+#include "feldspar/study/run_record.hpp"
 #include "feldspar/study/statistics.hpp"
 
 namespace feldspar {
+
+/// How the tests of one target went, on the packings that confirm. Tests of grade C, without a strength and failed ones are not in the mean.
+struct TestGrades {
+    int A = 0, B = 0, C = 0;
+    int unfinished = 0;           ///< of A and B: ended before the strength was known
+    int failed = 0;
+
+    int all() const { return A + B + C + failed; }
+    int in_mean() const { return A + B - unfinished; }
+};
+
+/// Why a target is missed: the first that explains it.
+enum class Miss { none, not_confirmed, range_end, conflict, budget, prediction, scatter, grade };
+
+const char* name(Miss miss);
 
 /// What became of a target.
 struct TargetOutcome {
     Target target;
     double predicted = 0.0;       ///< at the best set, by what was learned
-    double deviation = 0.0;       ///< standard deviation of that
+    double deviation = 0.0;       ///< standard deviation of that: how well the mean over all packings is known
+    Foresight foreseen;           ///< of the mean over as many packings as confirm
     MeanInterval confirmed;       ///< on fresh packings; for values that follow from several strengths by the jackknife
+    TestGrades grades;            ///< of the tests that confirm
     bool met = false;             ///< confirmed within the tolerance
+    Miss miss = Miss::none;
+    std::string missed;           ///< one sentence: by how much, why, what to change; empty if it is met
     /// What the ranges allow while all other targets are met; not-a-number if they never are.
     double lowest = std::numeric_limits<double>::quiet_NaN(), highest = std::numeric_limits<double>::quiet_NaN();
 };
+
+/// At least half of the tests that confirm it count.
+bool enough_confirmed(const TargetOutcome& outcome);
 
 /// What became of an unknown.
 struct UnknownOutcome {
@@ -42,6 +65,8 @@ struct WayPoint {
     std::string target;         ///< which one that is
     double doubt = 0.0;         ///< the largest standard deviation of a prediction, in tolerances
     std::string doubtful;       ///< of which target
+    double probability = 0.0;   ///< that the mean of the confirming packings will lie within the tolerance, of the least likely target
+    std::string unlikely;       ///< which one that is
     std::vector<double> best;   ///< of all unknowns, in their units
 };
 
@@ -55,6 +80,7 @@ struct CalibrationResult {
     std::vector<WayPoint> way;                      ///< one for each time that something was learned
     Job job;                                        ///< the base job with the best set: ready to run
     int runs = 0;                                   ///< used, confirmation included, those that were done before too
+    int failed = 0, grade_C = 0;                    ///< of the tests to learn from: left out; entered as an upper bound or left out
     bool complete = false;                          ///< false: interrupted
 };
 
@@ -70,12 +96,6 @@ struct Request {
 /// A strength so many times the wanted one is far enough to know: a test to learn from ends there.
 inline constexpr double far_from_wanted = 2.0;
 
-/// What a test says of a quantity.
-struct Reading {
-    double value = std::numeric_limits<double>::quiet_NaN();   ///< not-a-number where the test says nothing
-    bool at_least = false;                                     ///< it ended before the strength was known: that is no less
-};
-
 /// Where the tests are made.
 class Laboratory {
 public:
@@ -87,6 +107,11 @@ public:
     /// Tests made so far, those that were in the ledger before too.
     virtual int used() const = 0;
 };
+
+/// What a run says of a quantity. A run that is not quasi-static (grade C) shows too much strength if it went too fast through a law that softens: it
+/// is an upper bound then, and says nothing else. The estimated error of runs of grades A and B becomes part of their noise.
+/// @param elastic  a short test for E and nu before damage, which has no strength and needs no grade; @param brittle  the law of the contacts
+Reading reading_of(const RunRecord& record, const Observable& quantity, bool elastic, bool brittle);
 
 /// Makes the tests by runs on a ledger: those that are done are not repeated.
 class RunLaboratory : public Laboratory {

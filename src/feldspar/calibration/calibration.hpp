@@ -76,9 +76,13 @@ std::string calibration_template();
 
 /// What the targets need to be known of runs, each once.
 std::vector<Observable> observables_for(const Calibration& calibration);
+std::vector<Observable> observables_for(const std::vector<Target>& targets, const std::vector<double>& sigma3_Pa);
 
 /// A target's value by the means of the quantities, in the order of observables_for(); not-a-number where they do not make sense.
 double value_of(const Target& target, const std::vector<Observable>& quantities, const std::vector<double>& means);
+
+/// Whether a target's value hangs on that quantity.
+bool needs(const Target& target, const std::vector<Observable>& quantities, std::size_t quantity);
 
 /// Of the first target of that name; not-a-number if there is none.
 double target_value(std::string_view name, const std::vector<Target>& targets);

@@ -19,8 +19,16 @@ std::string with_unit(double value, const std::string& unit) { return unit.empty
 
 // A mean that is less sure than its tolerance may have met it by luck.
 std::string verdict_on(const TargetOutcome& t) {
+    if (t.miss == Miss::not_confirmed) return "not confirmed";
     if (!t.met) return "not met";
     return t.confirmed.half_width() <= t.target.tolerance ? "met" : "met, but the mean is less sure than that";
+}
+
+// "9/1/0", and what else there was.
+std::string grades_text(const TestGrades& grades) {
+    std::string text = fmt::format("{}/{}/{}", grades.A, grades.B, grades.C);
+    if (grades.unfinished > 0) text += fmt::format(", {} unfinished", grades.unfinished);
+    return grades.failed > 0 ? text + fmt::format(", {} failed", grades.failed) : text;
 }
 
 std::string range_text(const Unknown& unknown, double low, double high) {
@@ -50,19 +58,27 @@ std::string calibration_text(const CalibrationResult& result) {
     std::vector<Row> unknowns{{"unknown", "best", "as good (90 %)", "range"}};
     for (const UnknownOutcome& u : result.unknowns)
         unknowns.push_back({u.unknown.name, unknown_text(u.unknown, u.best), range_text(u.unknown, u.low, u.high), range_text(u.unknown, u.unknown.low, u.unknown.high)});
-    std::vector<Row> targets{{"target", "wanted", "tolerance", "predicted", "confirmed", "95 % interval", "packings", ""}};
+    std::vector<Row> targets{{"target", "wanted", "tolerance", "predicted", "confirmed", "95 % interval", "packings", "A/B/C", ""}};
     for (const TargetOutcome& t : result.targets)
         targets.push_back({t.target.label(), target_text(t.target, t.target.value), "± " + target_text(t.target, t.target.tolerance),
-                           target_text(t.target, t.predicted) + " ± " + target_text(t.target, t.deviation), target_text(t.target, t.confirmed.mean),
-                           "± " + target_text(t.target, t.confirmed.half_width()), std::to_string(t.confirmed.count), verdict_on(t)});
+                           target_text(t.target, t.predicted) + " ± " + target_text(t.target, 0.5 * (t.foreseen.high - t.foreseen.low)), target_text(t.target, t.confirmed.mean),
+                           "± " + target_text(t.target, t.confirmed.half_width()), std::to_string(t.confirmed.count), grades_text(t.grades), verdict_on(t)});
     std::string text = aligned(unknowns, 1) + "\n" + aligned(targets, 1);
+    text += "Predicted: what the mean of the confirming packings was to show, 95 %. A/B/C: grades of the tests that confirm; those of grade C are not in the mean.\n";
+    if (std::any_of(result.targets.begin(), result.targets.end(), [](const TargetOutcome& t) { return !t.missed.empty(); })) text += "\n";
+    for (const TargetOutcome& t : result.targets)
+        if (!t.missed.empty()) text += t.missed + "\n";
     if (!result.findings.empty()) text += "\n";
     for (const std::string& finding : result.findings) text += finding + "\n";
-    return text + fmt::format("\n{} runs were used, confirmation included.\n", result.runs);
+    text += fmt::format("\n{} runs were used, confirmation included.", result.runs);
+    if (result.failed > 0) text += fmt::format(" {} tests to learn from failed and are left out.", result.failed);
+    if (result.grade_C > 0) text += fmt::format(" {} have grade C: upper bounds of the strength, or left out.", result.grade_C);
+    return text + "\n";
 }
 
 std::string calibration_json(const Calibration& calibration, const CalibrationResult& result, const Provenance& provenance) {
-    Json json{{"name", calibration.name}, {"complete", result.complete}, {"runs", result.runs}, {"budget", calibration.budget}};
+    Json json{{"name", calibration.name}, {"complete", result.complete}, {"runs", result.runs}, {"budget", calibration.budget}, {"failed", result.failed},
+              {"grade_C", result.grade_C}};
     json["unknowns"] = Json::array();
     for (const UnknownOutcome& u : result.unknowns)
         json["unknowns"].push_back({{"name", u.unknown.name}, {"key", u.unknown.key}, {"times", u.unknown.times}, {"unit", u.unknown.unit}, {"best", number(u.best)},
@@ -75,8 +91,13 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
         for (std::size_t u = 0; u < result.unknowns.size(); ++u) sensitivity[result.unknowns[u].unknown.name] = number(result.sensitivity[t][u]);
         json["targets"].push_back({{"name", outcome.target.label()}, {"wanted", outcome.target.value}, {"tolerance", outcome.target.tolerance},
                                    {"predicted", number(outcome.predicted)}, {"predicted_deviation", number(outcome.deviation)},
+                                   {"foreseen_low", number(outcome.foreseen.low)}, {"foreseen_high", number(outcome.foreseen.high)},
+                                   {"foreseen_probability", number(outcome.foreseen.probability)}, {"deviation_of_scatter", number(outcome.foreseen.scatter)},
+                                   {"deviation_of_grade", number(outcome.foreseen.grade)},
                                    {"confirmed", number(outcome.confirmed.mean)}, {"confirmed_low", number(outcome.confirmed.low)},
                                    {"confirmed_high", number(outcome.confirmed.high)}, {"packings", outcome.confirmed.count}, {"met", outcome.met},
+                                   {"grades", {{"A", outcome.grades.A}, {"B", outcome.grades.B}, {"C", outcome.grades.C}, {"unfinished", outcome.grades.unfinished}, {"failed", outcome.grades.failed}}},
+                                   {"miss", name(outcome.miss)}, {"missed", outcome.missed},
                                    {"reachable_low", number(outcome.lowest)}, {"reachable_high", number(outcome.highest)}, {"sensitivity", sensitivity}});
     }
     json["findings"] = result.findings;
@@ -84,7 +105,7 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
     for (const WayPoint& point : result.way) {
         Json best = Json::object();
         for (std::size_t u = 0; u < point.best.size(); ++u) best[calibration.unknowns[u].name] = number(point.best[u]);
-        json["way"].push_back({{"runs", point.runs}, {"elastic", point.elastic}, {"farthest", number(point.farthest)}, {"target", point.target}, {"doubt", number(point.doubt)}, {"doubtful", point.doubtful}, {"best", best}});
+        json["way"].push_back({{"runs", point.runs}, {"elastic", point.elastic}, {"farthest", number(point.farthest)}, {"target", point.target}, {"doubt", number(point.doubt)}, {"doubtful", point.doubtful}, {"probability", number(point.probability)}, {"unlikely", point.unlikely}, {"best", best}});
     }
     json["seeds"] = calibration.seeds;
     json["confirm_seeds"] = calibration.confirm_seeds;

@@ -22,6 +22,10 @@ Json target_json(const TargetOutcome& outcome) {
             {"tolerance", shown(outcome.target.tolerance)},
             {"predicted", shown(outcome.predicted)},
             {"deviation", shown(outcome.deviation)},
+            {"foreseen", {shown(outcome.foreseen.low), shown(outcome.foreseen.high)}},
+            {"probability", rounded(outcome.foreseen.probability)},
+            {"grades", {{"A", outcome.grades.A}, {"B", outcome.grades.B}, {"C", outcome.grades.C}, {"unfinished", outcome.grades.unfinished}, {"failed", outcome.grades.failed}}},
+            {"missed", outcome.missed},
             {"confirmed", {{"n", outcome.confirmed.count}, {"mean", shown(outcome.confirmed.mean)}, {"low", shown(outcome.confirmed.low)}, {"high", shown(outcome.confirmed.high)}}},
             {"met", outcome.met},
             {"lowest", shown(outcome.lowest)},
@@ -51,7 +55,7 @@ Json unknown_json(const UnknownOutcome& outcome) {
 Json way_json(const WayPoint& point) {
     Json best = Json::array();
     for (const double value : point.best) best.push_back(rounded(value));
-    return {{"runs", point.runs}, {"elastic", point.elastic}, {"farthest", rounded(point.farthest)}, {"target", point.target}, {"doubt", rounded(point.doubt)}, {"doubtful", point.doubtful}, {"best", best}};
+    return {{"runs", point.runs}, {"elastic", point.elastic}, {"farthest", rounded(point.farthest)}, {"target", point.target}, {"doubt", rounded(point.doubt)}, {"doubtful", point.doubtful}, {"probability", rounded(point.probability)}, {"unlikely", point.unlikely}, {"best", best}};
 }
 
 }  // namespace
@@ -60,6 +64,8 @@ void write_calibration_report(const Calibration& calibration, const CalibrationR
     Json json{{"name", calibration.name},
               {"runs", result.runs},
               {"budget", calibration.budget},
+              {"failed", result.failed},
+              {"grade_C", result.grade_C},
               {"seeds", calibration.seeds},
               {"confirm_seeds", calibration.confirm_seeds},
               {"job_file", calibration.base.job().file.string()},

@@ -15,7 +15,8 @@ budget = 300                        # runs at most; one run is one test on one p
 # seeds = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]     # packings to learn from; 1 to 20 unless given
 # confirm_seeds = [1001, 1002, 1003, 1004, 1005]   # fresh ones, which confirm the answer; 1001 to 1010 unless given
 
-[targets]                           # means over packings; leave out what you have not
+[targets]                           # means over packings; leave out what you have not. The search ends when the mean of the confirming packings
+                                    # will lie within each tolerance with 95 %: a tolerance below their scatter takes the whole budget
 E = "25.8 GPa"
 nu = 0.23
 UCS = { value = "122.1 MPa", tolerance = "5 %" }    # met within its tolerance; or standard_deviation = "5 MPa"

@@ -232,30 +232,42 @@ bool find_conflicts(const WeighedSets& sets, const Learner& learner, Calibration
 }  // namespace
 
 MeanInterval confirmed_interval(const Target& target, const std::vector<Observable>& quantities, const std::vector<std::vector<double>>& seen) {
-    std::vector<std::vector<double>> packings;   // with every run that the target needs
-    for (std::size_t p = 0; p < seen.front().size(); ++p) {
-        std::vector<double> one;
-        for (const auto& values : seen) one.push_back(values[p]);
-        if (std::isfinite(value_of(target, quantities, one))) packings.push_back(std::move(one));
-    }
-    const auto value_without = [&](std::size_t left_out) {
-        std::vector<double> means(quantities.size());
-        for (std::size_t q = 0; q < quantities.size(); ++q) {
-            std::vector<double> values;
-            for (std::size_t p = 0; p < packings.size(); ++p)
-                if (p != left_out) values.push_back(packings[p][q]);
-            means[q] = mean(values);
-        }
-        return value_of(target, quantities, means);
+    const std::size_t packings = seen.front().size();
+    const auto mean_without = [&](std::size_t q, std::size_t left_out) {
+        std::vector<double> values;
+        for (std::size_t p = 0; p < packings; ++p)
+            if (p != left_out && std::isfinite(seen[q][p])) values.push_back(seen[q][p]);
+        return values.empty() ? nan : mean(values);
     };
-    if (packings.empty()) return mean_interval({});
-    const double whole = value_without(packings.size());
-    if (packings.size() == 1) return mean_interval(std::span(&whole, 1));
+    const auto means_without = [&](std::size_t left_out) {
+        std::vector<double> means;
+        for (std::size_t q = 0; q < quantities.size(); ++q) means.push_back(mean_without(q, left_out));
+        return means;
+    };
+    std::vector<std::size_t> needed;
+    for (std::size_t q = 0; q < quantities.size(); ++q)
+        if (needs(target, quantities, q)) needed.push_back(q);
+    if (needed.size() == 1) {   // a plain mean
+        std::vector<double> values;
+        for (const double value : seen[needed.front()])
+            if (std::isfinite(value)) values.push_back(value);
+        return mean_interval(values);
+    }
+    std::size_t fewest = packings;   // values of one quantity
+    std::vector<std::size_t> some;   // packings with a value of any
+    for (const std::size_t q : needed)
+        fewest = std::min<std::size_t>(fewest, static_cast<std::size_t>(std::count_if(seen[q].begin(), seen[q].end(), [](double value) { return std::isfinite(value); })));
+    for (std::size_t p = 0; p < packings; ++p)
+        if (std::any_of(needed.begin(), needed.end(), [&](std::size_t q) { return std::isfinite(seen[q][p]); })) some.push_back(p);
+    const double whole = value_of(target, quantities, means_without(packings));
+    if (fewest == 0 || !std::isfinite(whole)) return mean_interval({});
+    if (fewest == 1) return mean_interval(std::span(&whole, 1));
     std::vector<double> pseudo;   // n whole - (n - 1) without: of a plain mean the values themselves
-    const auto n = static_cast<double>(packings.size());
-    for (std::size_t p = 0; p < packings.size(); ++p) pseudo.push_back(n * whole - (n - 1.0) * value_without(p));
+    const auto n = static_cast<double>(some.size());
+    for (const std::size_t p : some) pseudo.push_back(n * whole - (n - 1.0) * value_of(target, quantities, means_without(p)));
     MeanInterval interval = mean_interval(pseudo);
-    const double half = interval.half_width();
+    const double half = student_quantile(static_cast<double>(fewest - 1)) * interval.standard_deviation / std::sqrt(n);
+    interval.count = static_cast<int>(fewest);
     interval.mean = whole;
     interval.low = whole - half;
     interval.high = whole + half;

@@ -9,7 +9,7 @@ namespace feldspar {
 
 /// Mean of a target on fresh packings and its 95 % interval. Of a target that follows from several strengths (a ratio, an envelope) by the jackknife:
 /// leaving out one packing after the other.
-/// @param seen  [quantity][packing]; not-a-number for a run that failed, whose packing is left out
+/// @param seen  [quantity][packing]; not-a-number for a test that is left out: the other tests of that packing count
 MeanInterval confirmed_interval(const Target& target, const std::vector<Observable>& quantities, const std::vector<std::vector<double>>& seen);
 
 /// Fills in sensitivities, ranges and findings for the unknowns of this part.

@@ -38,6 +38,8 @@ const std::vector<TargetKind> target_kinds{
     {"sigma1", Dimension::stress, 0.03},
 };
 
+constexpr double toughest = 300.0;   // N/m: rocks of 200 are to lie inside
+
 double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 // Of a default range: what the rock's numbers say of a contact's.
@@ -200,6 +202,8 @@ private:
         const double energy = first({tension * tension / E * diameter, 8.5});
         const GrainKind kind = rock_.variants.front().model.kind;
         const bool flexible = kind == GrainKind::flexible;
+        // from where contacts are brittle, sigma_nt^2 / (2 Kn) of stiff contacts, to what the toughest rocks have
+        const double brittle = flexible ? 0.03 : 0.4;
         const double body = kind == GrainKind::inner_particles ? diameter / std::sqrt(rock_.specimen.particles_per_grain) : diameter;
         return {{"material.grain.E", 0.8 * E, 1.6 * E, true},
                 {"material.grain.nu", 0.1, 0.4, true, false},
@@ -209,14 +213,14 @@ private:
                 {"material.contact.sigma_nt", 0.5 * tension, 2.5 * tension},
                 {"material.contact.tau", 0.1 * UCS, 0.6 * UCS},
                 {"material.contact.mu", 0.1, 1.0, false, false},
-                {"material.contact.Gfn", 0.1 * energy, 13.0 * energy},
+                {"material.contact.Gfn", brittle * energy, std::max(25.0 * energy, toughest)},
                 {"material.contact.Gfs", 12.0 * energy, 500.0 * energy}};
     }
 
     // What multiplies another key is a ratio.
     static std::optional<std::pair<double, double>> ratio_rule(const std::string& key) {
         if (key == "material.contact.tau") return std::pair{1.5, 6.0};
-        if (key == "material.contact.Gfs") return std::pair{5.0, 100.0};
+        if (key == "material.contact.Gfs") return std::pair{5.0, 300.0};
         return std::nullopt;
     }
 

@@ -7,6 +7,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/lab/properties.hpp"
+#include "feldspar/laws/softening.hpp"
 
 namespace feldspar {
 namespace {
@@ -24,14 +25,51 @@ std::string column_of(const Observable& quantity, bool elastic) {
     return quantity.name == "E" ? "E_initial_Pa" : "nu_initial";
 }
 
-// What is read at some share of the strength says nothing where the strength is only known to be no less.
-Reading reading(const RunRecord& record, const Observable& quantity, bool elastic) {
-    const double value = record.numbers.at(column_of(quantity, elastic));
-    if (elastic || record.numbers.at("peak_reached") == 1.0) return {value};
-    return quantity.column == strength_column ? Reading{value, true} : Reading{};
+constexpr double covers_90 = 1.645;    // standard deviations: the estimated error is to cover the true one in nine tests of ten
+constexpr double too_fast = 0.02;      // estimated error beyond which a test has grade C for its rate (docs/theory/loading.md, L9)
+
+// In a direction: by its law, or because there is less fracture energy than elastic energy at the strength.
+bool breaks_brittly(const ContactMaterial& contact) {
+    const double ks = contact.eta * contact.Kn_Pa_m;
+    return SofteningEnvelope::make(contact.law, contact.sigma_nt_Pa, contact.Kn_Pa_m, contact.Gfn_J_m2).brittle ||
+           (ks > 0.0 && SofteningEnvelope::make(contact.law, contact.tau_Pa, ks, contact.Gfs_J_m2).brittle);
+}
+
+double number_in(const RunRecord& record, const std::string& column) {
+    const auto found = record.numbers.find(column);
+    return found == record.numbers.end() ? std::nan("") : found->second;
 }
 
 }  // namespace
+
+Reading reading_of(const RunRecord& record, const Observable& quantity, bool elastic, bool brittle) {
+    Reading reading;
+    reading.grade = 'x';
+    if (record.state != RunState::done) return reading;
+    const double value = number_in(record, column_of(quantity, elastic));
+    if (elastic) return {value};
+    const auto grade = record.texts.find("grade");
+    reading.grade = grade == record.texts.end() || grade->second.empty() ? 'C' : grade->second.front();
+    const bool strength = quantity.column == strength_column, known = number_in(record, "peak_reached") == 1.0;
+    const double error = number_in(record, "error_estimate");
+    if (reading.grade == 'C') {   // what is read at a share of such a strength, or of one that was not reached, says nothing
+        if (strength && known && !brittle && error > too_fast) {
+            reading.value = value;
+            reading.says = Says::at_most;
+        }
+        return reading;
+    }
+    if (!known) {
+        if (strength) {
+            reading.value = value;
+            reading.says = Says::at_least;
+        }
+        return reading;
+    }
+    reading.value = value;
+    if (quantity.name != "E" && quantity.name != "nu" && std::isfinite(error)) reading.error = error / covers_90;   // E and nu hardly depend on where half of the strength is
+    return reading;
+}
 
 Run RunLaboratory::run_for(const Request& request, const Observable& quantity) const {
     const Job job = calibration_.job_with(request.values);
@@ -72,7 +110,9 @@ std::vector<std::vector<Reading>> RunLaboratory::see(const std::vector<Request>&
         std::vector<Reading>& own = readings.emplace_back();
         for (std::size_t i = 0; i < requests[r].quantities.size(); ++i) {
             const auto record = ledger_.find(runs[run_of[r][i]].id);
-            own.push_back(record && record->state == RunState::done ? reading(*record, quantities[requests[r].quantities[i]], requests[r].elastic) : Reading{});
+            const Run& run = runs[run_of[r][i]];
+            const bool brittle = breaks_brittly(run.job.variants.front().contact);
+            own.push_back(reading_of(record.value_or(RunRecord{}), quantities[requests[r].quantities[i]], requests[r].elastic, brittle));
         }
     }
     return readings;

@@ -10,9 +10,12 @@
 namespace feldspar {
 namespace {
 
-constexpr std::size_t candidates_everywhere = 1024, candidates_nearby = 384;
+constexpr std::size_t candidates_nearby = 384;
 constexpr int samples = 48;               // of what may be true, for the expected improvement
 constexpr double homesickness = 0.12;     // misfit that a parameter pays for a whole range away from home: 0.17 tolerances from the middle to an end
+
+// A few unknowns need fewer to be looked at everywhere.
+std::size_t candidates_everywhere(std::size_t dimensions) { return std::min<std::size_t>(1024, 128 << std::min<std::size_t>(3, dimensions)); }
 
 // What best_point() makes small.
 struct Cost {
@@ -42,7 +45,7 @@ std::vector<double> best_point(const Learner& learner, std::size_t dimensions, s
     if (home.empty()) home.assign(dimensions, 0.5);
     Cost cost{learner, std::move(home)};
     std::vector<std::pair<double, std::vector<double>>> ranked;
-    for (std::vector<double>& x : evenly(dimensions, 2 * candidates_everywhere, 1)) {
+    for (std::vector<double>& x : evenly(dimensions, 2 * candidates_everywhere(dimensions), 1)) {
         const double value = cost(x);
         ranked.emplace_back(value, std::move(x));
     }
@@ -75,11 +78,12 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
     for (auto& draw : draws)
         for (double& value : draw) value = normal(engine);
 
+    const std::size_t everywhere = candidates_everywhere(dimensions);
     std::vector<std::vector<double>> chosen;
+    std::vector<double> best = best_point(learner, dimensions);
     for (std::size_t c = 0; c < count; ++c) {
-        const std::vector<double> best = best_point(learner, dimensions);
         const double least = learner.at(best).misfit;
-        std::vector<std::vector<double>> candidates = evenly(dimensions, candidates_everywhere, 1 + candidates_everywhere * (2 + round + c));
+        std::vector<std::vector<double>> candidates = evenly(dimensions, everywhere, 1 + everywhere * (2 + round + c));
         candidates.push_back(best);
         for (std::size_t i = 0; i < candidates_nearby; ++i) {
             const double reach = i % 2 == 0 ? 0.03 : 0.1;
@@ -90,12 +94,14 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
         double largest = 0.0;
         std::vector<double> next = best;   // where nothing promises anything
         for (const std::vector<double>& x : candidates) {
-            const std::vector<Belief> beliefs = learner.beliefs(x);
+            const Prediction prediction = learner.at(x);
             double improvement = 0.0;
-            for (const auto& draw : draws) {
-                std::vector<double> means;
-                for (std::size_t q = 0; q < beliefs.size(); ++q) means.push_back(beliefs[q].mean + std::sqrt(beliefs[q].variance) * draw[q]);
-                improvement += std::max(0.0, least - learner.misfit(learner.targets_by(means)));
+            std::vector<double> values(prediction.values.size());
+            for (const auto& draw : draws) {   // targets follow the quantities along their slopes
+                values = prediction.values;
+                for (std::size_t q = 0; q < draw.size(); ++q)
+                    for (std::size_t t = 0; t < values.size(); ++t) values[t] += prediction.slopes[q][t] * draw[q];
+                improvement += std::max(0.0, least - learner.misfit(values));
             }
             if (improvement > largest) {
                 largest = improvement;
@@ -104,6 +110,7 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
         }
         chosen.push_back(next);
         learner.believe(next);
+        if (learner.at(next).misfit < learner.at(best).misfit) best = next;   // surer now, and as good
     }
     return chosen;
 }

@@ -40,7 +40,9 @@ EnvelopeFit envelope(const std::vector<Observable>& quantities, const std::vecto
 
 }  // namespace
 
-std::vector<Observable> observables_for(const Calibration& calibration) {
+std::vector<Observable> observables_for(const Calibration& calibration) { return observables_for(calibration.targets, calibration.sigma3_Pa); }
+
+std::vector<Observable> observables_for(const std::vector<Target>& targets, const std::vector<double>& sigma3_of_tests_Pa) {
     std::vector<Observable> all;
     const auto add = [&](const Observable& quantity) {
         if (std::none_of(all.begin(), all.end(), [&](const Observable& q) { return q.name == quantity.name; })) all.push_back(quantity);
@@ -48,7 +50,7 @@ std::vector<Observable> observables_for(const Calibration& calibration) {
     const Observable ucs{"UCS", TestKind::uniaxial_compression, 0.0, strength_column}, dts{"DTS", TestKind::direct_tension, 0.0, strength_column},
         bts{"BTS", TestKind::brazilian, 0.0, strength_column};
     const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), TestKind::biaxial, sigma3_Pa, strength_column}); };
-    for (const Target& target : calibration.targets) {
+    for (const Target& target : targets) {
         if (target.name == "E") add({"E", TestKind::uniaxial_compression, 0.0, "E_Pa"});
         if (target.name == "nu") add({"nu", TestKind::uniaxial_compression, 0.0, "nu", false});
         if (target.name == "sigma_ci") add({"sigma_ci", TestKind::uniaxial_compression, 0.0, "sigma_ci_crack_count_Pa"});
@@ -57,7 +59,7 @@ std::vector<Observable> observables_for(const Calibration& calibration) {
         if (target.name == "BTS" || target.name.find("BTS") != std::string::npos) add(bts);
         if (target.name == "sigma1") confined(target.sigma3_Pa);
         if (of_envelope(target))
-            for (const double sigma3_Pa : calibration.sigma3_Pa) confined(sigma3_Pa);
+            for (const double sigma3_Pa : sigma3_of_tests_Pa) confined(sigma3_Pa);
     }
     return all;
 }
@@ -71,6 +73,14 @@ double value_of(const Target& target, const std::vector<Observable>& quantities,
     if (target.name == "friction_angle") return envelope(quantities, means).friction_angle_deg;
     if (target.name == "hoek_brown_mi") return envelope(quantities, means).hoek_brown_mi;
     return mean(target.label());
+}
+
+bool needs(const Target& target, const std::vector<Observable>& quantities, std::size_t quantity) {
+    std::vector<double> sigma3_Pa;
+    for (const Observable& q : quantities)
+        if (q.test == TestKind::biaxial) sigma3_Pa.push_back(q.sigma3_Pa);
+    const std::vector<Observable> own = observables_for({target}, sigma3_Pa);
+    return std::any_of(own.begin(), own.end(), [&](const Observable& q) { return q.name == quantities[quantity].name; });
 }
 
 double target_value(std::string_view name, const std::vector<Target>& targets) {

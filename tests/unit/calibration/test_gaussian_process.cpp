@@ -97,8 +97,8 @@ TEST(Search, RunsAreMadeOnlyWhereTheyPromiseSomething) {
     Learner learner({strength}, {target});
     std::uint64_t seed = 0;
     for (const auto& x : evenly(2, 60, 1)) {
-        learner.observe(0, x, ++seed % 6, truth(x));
-        learner.observe(0, x, ++seed % 6, 1.02 * truth(x));
+        learner.observe(0, x, ++seed % 6, {truth(x)});
+        learner.observe(0, x, ++seed % 6, {1.02 * truth(x)});
     }
     ASSERT_TRUE(learner.learn());
     for (std::size_t round = 0; round < 4; ++round)
@@ -112,12 +112,12 @@ TEST(Learner, BoundsHoldWhatIsLearnedUpAndNotDown) {
     Learner above({strength}, {Target{"UCS", 0.0, 1e8, 1e6}}), below = above;
     for (int i = 0; i < 8; ++i) {
         const double x = 0.08 * i;
-        above.observe(0, {x}, static_cast<std::uint64_t>(i % 4), truth(x));
-        below.observe(0, {x}, static_cast<std::uint64_t>(i % 4), 1e8);
+        above.observe(0, {x}, static_cast<std::uint64_t>(i % 4), {truth(x)});
+        below.observe(0, {x}, static_cast<std::uint64_t>(i % 4), {1e8});
     }
     for (const double x : {0.8, 0.9, 1.0}) {
-        above.observe(0, {x}, 1, 2e8, true);   // the truth is 5 to 7 e8
-        below.observe(0, {x}, 1, 2e8, true);   // the rest would say 1e8
+        above.observe(0, {x}, 1, {2e8, Says::at_least});   // the truth is 5 to 7 e8
+        below.observe(0, {x}, 1, {2e8, Says::at_least});   // the rest would say 1e8
     }
     ASSERT_TRUE(above.learn());
     ASSERT_TRUE(below.learn());
@@ -126,7 +126,7 @@ TEST(Learner, BoundsHoldWhatIsLearnedUpAndNotDown) {
     EXPECT_NEAR(below.beliefs({0.2})[0].mean, 1e8, 0.05e8);
     Learner bounds_alone({strength}, {Target{"UCS", 0.0, 1e8, 1e6}});
     EXPECT_FALSE(bounds_alone.learn());
-    bounds_alone.observe(0, {0.5}, 1, 2e8, true);
+    bounds_alone.observe(0, {0.5}, 1, {2e8, Says::at_least});
     EXPECT_TRUE(bounds_alone.learn());
 }
 
@@ -139,9 +139,9 @@ TEST(Search, OfEquallyGoodSetsTheBestKnownIsChosen) {
     target.tolerance = 0.02e8;
     Learner learner({strength}, {target});
     const auto truth = [](double x) { return 1e8 * std::exp(8.0 * (x - 0.2) * (x - 0.8)); };   // met at 0.2 and at 0.8
-    for (int i = 0; i < 12; ++i) learner.observe(0, {0.5 * i / 11.0}, static_cast<std::uint64_t>(i % 4), truth(0.5 * i / 11.0) * (1.0 + 0.01 * (i % 3 - 1)));
-    for (int i = 0; i < 12; ++i) learner.observe(0, {0.2}, static_cast<std::uint64_t>(i % 4), truth(0.2) * (1.0 + 0.01 * (i % 3 - 1)));
-    learner.observe(0, {0.95}, 1, truth(0.95));
+    for (int i = 0; i < 12; ++i) learner.observe(0, {0.5 * i / 11.0}, static_cast<std::uint64_t>(i % 4), {truth(0.5 * i / 11.0) * (1.0 + 0.01 * (i % 3 - 1))});
+    for (int i = 0; i < 12; ++i) learner.observe(0, {0.2}, static_cast<std::uint64_t>(i % 4), {truth(0.2) * (1.0 + 0.01 * (i % 3 - 1))});
+    learner.observe(0, {0.95}, 1, {truth(0.95)});
     ASSERT_TRUE(learner.learn());
     EXPECT_NEAR(best_point(learner, 1, {0.8})[0], 0.2, 0.03);
 }

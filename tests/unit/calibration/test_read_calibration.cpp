@@ -51,8 +51,8 @@ TEST_F(ReadCalibration, RangesFollowFromTheRock) {
     EXPECT_FALSE(sigma_nt.elastic);
     EXPECT_DOUBLE_EQ(sigma_nt.low, 4.5);
     const Unknown& Gfn = calibration.unknowns[5];   // (9 MPa)^2 / 25 GPa in a grain of 3 mm: 9.72 N/m
-    EXPECT_DOUBLE_EQ(Gfn.low, 0.972);   // a tenth: rocks wanted 0.2 to 0.4 of the rule
-    EXPECT_DOUBLE_EQ(Gfn.high, 126.36);
+    EXPECT_DOUBLE_EQ(Gfn.low, 0.2916);   // 0.03 of it
+    EXPECT_DOUBLE_EQ(Gfn.high, 300.0);
     EXPECT_EQ(calibration.targets[1].tolerance, 0.04 * 120e6);
     EXPECT_EQ(calibration.targets[2].tolerance, 1.5e6);
     EXPECT_DOUBLE_EQ(calibration.targets[3].value, 50.0);   // degrees
@@ -72,6 +72,27 @@ TEST_F(ReadCalibration, RangesOfStiffnessFitEveryKindOfGrain) {   // Table 1 lie
     for (const auto& [kind, table_1] : {std::pair{"flexible", 18e4}, std::pair{"rigid", 1.08e4}, std::pair{"inner-particles", 4.9e4}}) {
         EXPECT_LT(1.5 * Kn(kind).low, table_1) << kind;
         EXPECT_GT(Kn(kind).high, 1.5 * table_1) << kind;
+    }
+}
+
+// Rocks whose fracture energies are known, hidden or found: E and tensile strength of the specimen, Gfn and sigma_nt^2 / (2 Kn), below which contacts
+// are brittle (docs/calibration.md).
+TEST_F(ReadCalibration, RangesOfFractureEnergyHoldFromBrittleToTough) {
+    struct KnownRock {
+        const char* name;
+        double E_GPa, tension_MPa, Gfn, brittle;
+        bool rigid = false;
+    };
+    for (const KnownRock& rock : {KnownRock{"granite, Table 7", 24.2, 8.30, 20.0, 0.20}, KnownRock{"granite, calibrated", 25.8, 8.8, 3.2, 0.56}, KnownRock{"sandstone, calibrated", 12.5, 2.8, 0.79, 0.222},
+                                  KnownRock{"sandstone, hidden", 12.2, 3.44, 7.0, 0.068}, KnownRock{"marble, hidden", 41.6, 8.13, 40.0, 0.072}, KnownRock{"tough", 24.2, 10.3, 150.0, 0.20},
+                                  KnownRock{"tougher", 24.2, 10.7, 200.0, 0.20}, KnownRock{"hard", 65.0, 14.0, 15.0, 0.28}, KnownRock{"runaway", 43.0, 4.8, 8.0, 0.047},
+                                  KnownRock{"rigid, Table 2", 25.0, 9.2, 66.0, 6.1, true}, KnownRock{"rigid, calibrated", 25.8, 8.8, 34.0, 22.5, true}}) {
+        const std::string kind = rock.rigid ? "[set]\nmodel.kind = \"rigid\"\nmaterial.elastic_preset = \"augig-rigid\"\n" : "";
+        const Unknown Gfn = folder_.read(kind + "[targets]\nE = \"" + std::to_string(rock.E_GPa) + " GPa\"\nDTS = \"" + std::to_string(rock.tension_MPa) +
+                                         " MPa\"\n[[unknown]]\nkey = \"material.contact.Gfn\"\n").unknowns[0];
+        EXPECT_LT(1.5 * Gfn.low, rock.Gfn) << rock.name;
+        EXPECT_GE(Gfn.high, 1.5 * rock.Gfn) << rock.name;
+        EXPECT_LT(Gfn.low, 2.2 * rock.brittle) << rock.name;   // contacts that are all but brittle lie within too: they soften over as little as they stretch
     }
 }
 

@@ -77,7 +77,7 @@ TEST(Targets, IntervalsOfPlainMeansAreThoseOfTheValues) {
     EXPECT_NEAR(plain.mean, direct.mean, 1.0);
     EXPECT_NEAR(plain.half_width(), direct.half_width(), 1.0);
     const MeanInterval ratio = confirmed_interval(calibration.targets[1], observables, seen);
-    EXPECT_NEAR(ratio.mean, 120e6 / 8.05e6, 1e-9);
+    EXPECT_NEAR(ratio.mean, 120e6 / 8.04e6, 1e-9);   // the direct tension of the packing whose uniaxial test failed counts
     EXPECT_GT(ratio.half_width(), 0.0);
 }
 

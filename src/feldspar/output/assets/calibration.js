@@ -24,6 +24,7 @@ function writeAnswer() {
   const words = open.length ? (open.length === data.targets.length ? (open.length > 1 ? "No target is" : "The target is not") : (data.targets.length - open.length) + " of " + data.targets.length + " targets are") + " met on fresh packings" + (open.length < data.targets.length ? "; not met: " + listed(open.map((t) => t.name)) : "") + "."
     : (data.targets.length > 1 ? "All " + data.targets.length + " targets are" : "The target is") + " met on fresh packings.";
   page.append(h("p", {class: "verdict strong", style: "margin-top:18px"}, words));
+  for (const t of open) if (t.missed) page.append(h("p", {class: "verdict"}, t.missed));
   const wide = data.targets.filter((t) => t.confirmed.low !== null && 0.5 * (t.confirmed.high - t.confirmed.low) > t.tolerance);
   if (wide.length) page.append(h("p", {class: "verdict"}, "The mean of " + listed(wide.map((t) => t.name)) + " is known less well than the tolerance asks (95 % interval on " + plural(data.confirm_seeds.length, "packing") + "): more confirm_seeds would tell."));
   page.append(h("p", {class: "verdict"}, h("a", {href: "calibrated.toml"}, "calibrated.toml"), " beside this page is the job with the best set, ready for ", h("code", {}, "feldspar run calibrated.toml"), "."));
@@ -50,10 +51,10 @@ function writeTargetChart() {
   box.append(h("div", {class: "legend targetkey"}, key("band", "within the tolerance"), key("predicted", "predicted"), key("confirmed", "confirmed on fresh packings"), "bars: 95 % intervals"));
   const rows = h("div", {class: "targetchart"});
   for (const t of data.targets) {
-    const c = t.confirmed, half = t.deviation === null ? null : (1.96 * t.deviation) / t.tolerance, p = inTolerances(t, t.predicted);
+    const c = t.confirmed, p = inTolerances(t, t.predicted), [foreseenLow, foreseenHigh] = t.foreseen.map((v) => inTolerances(t, v));
     const plot = h("div", {class: "plot", title: t.name + "\nwanted " + valueText(t.wanted, t.unit) + " \u00b1 " + valueText(t.tolerance, t.unit, 3) + "\npredicted " + valueText(t.predicted, t.unit) + "\nconfirmed " + valueText(c.mean, t.unit)},
       h("i", {class: "band", style: "left:" + at(-1) + ";right:calc(100% - " + at(1) + ")"}), ticks.map((v) => h("i", {class: "line" + (v === 0 ? " zero" : ""), style: "left:" + at(v)})),
-      rowMarks("predicted", p, half === null ? null : p - half, half === null ? null : p + half, edge), rowMarks("confirmed", inTolerances(t, c.mean), inTolerances(t, c.low), inTolerances(t, c.high), edge));
+      rowMarks("predicted", p, foreseenLow, foreseenHigh, edge), rowMarks("confirmed", inTolerances(t, c.mean), inTolerances(t, c.low), inTolerances(t, c.high), edge));
     rows.append(h("div", {class: "name"}, t.name), plot);
   }
   rows.append(h("div", {}), h("div", {class: "ticks"}, ticks.map((v) => h("span", {style: "left:" + at(v)}, v === 0 ? "wanted" : (v > 0 ? "+" : "") + String(v).replace("-", "\u2212")))));
@@ -65,12 +66,15 @@ function writeTargets() {
   page.append(h("h2", {}, "Targets"));
   writeTargetChart();
   const rows = data.targets.map((t) => h("tr", {}, h("td", {class: "kind", title: t.label}, t.name), td([valueText(t.wanted, ""), unitText(t.unit)], true, "strong"), td("\u00b1\u00a0" + valueText(t.tolerance, "", 3), true),
-    td([valueText(t.predicted, ""), t.deviation === null ? "" : h("span", {class: "soft"}, " \u00b1\u00a0" + show(t.deviation, 2))], true), td(valueText(t.confirmed.mean, ""), true, "strong"), td(rangeText(t.confirmed.low, t.confirmed.high, 4), true), td(String(t.confirmed.n), true), td(signed(inTolerances(t, t.confirmed.mean)), true), h("td", {}, metMark(t)),
+    td([valueText(t.predicted, ""), t.foreseen[0] === null ? "" : h("span", {class: "soft"}, " \u00b1\u00a0" + show(0.5 * (t.foreseen[1] - t.foreseen[0]), 2))], true), td(valueText(t.confirmed.mean, ""), true, "strong"), td(rangeText(t.confirmed.low, t.confirmed.high, 4), true), td(String(t.confirmed.n), true), td(gradesText(t.grades), true), td(signed(inTolerances(t, t.confirmed.mean)), true), h("td", {}, metMark(t)),
     td(t.lowest === null ? "the others are never met" : [rangeText(t.lowest, t.highest), unitText(t.unit)], true)));
-  page.append(table("evidence", [th("Target"), th("Wanted", true), th("Tolerance", true), th("Predicted", true), th("Confirmed", true), th("95 % interval", true), th("Packings", true), th(["Off, in", h("br"), "tolerances"], true), th(""), th(["Within reach while", h("br"), "the others are met"], true)], rows));
-  page.append(h("p", {class: "soft small"}, "Predicted: by what was learned from packings " + seedsText(data.seeds) + ", with the standard deviation of that belief. Confirmed: the mean over packings " + seedsText(data.confirm_seeds) + ", from which nothing was learned. A target is met when its confirmed mean lies within the tolerance. " +
+  page.append(table("evidence", [th("Target"), th("Wanted", true), th("Tolerance", true), th("Predicted", true), th("Confirmed", true), th("95 % interval", true), th("Packings", true), th("A/B/C", true, "grades of the tests that confirm"), th(["Off, in", h("br"), "tolerances"], true), th(""), th(["Within reach while", h("br"), "the others are met"], true)], rows));
+  page.append(h("p", {class: "soft small"}, "Predicted: by what was learned from packings " + seedsText(data.seeds) + ", with the 95 % interval of what the mean over the confirming packings was to show. A/B/C: grades of the tests that confirm; those of grade C, failed and unfinished ones are not in the mean. Confirmed: the mean over packings " + seedsText(data.confirm_seeds) + ", from which nothing was learned. A target is met when its confirmed mean lies within the tolerance. " +
     "Within reach: what the given ranges of the unknowns allow, by the prediction."));
 }
+
+/** "9/1/0", and what else there was. */
+function gradesText(g) { return g.A + "/" + g.B + "/" + g.C + (g.unfinished ? ", " + g.unfinished + " unfinished" : "") + (g.failed ? ", " + g.failed + " failed" : ""); }
 
 /** "1 \u2013 10" for seeds in a row, else each. */
 function seedsText(seeds) {
@@ -141,10 +145,10 @@ function writeWay() {
   if (confirmed) series.push({label: "confirmed: " + confirmed[1].name, x: [data.runs], y: [confirmed[0]], color: "ink", mark: "diamond", size: 4.5});
   const top = Math.max(1.25, ...steps.map((w) => Math.max(w.farthest, w.doubt || 0)), confirmed ? confirmed[0] : 0);
   new XYChart(box, {x: "Runs used", y: "In tolerances", height: 280, xRange: [0, xEnd], yRange: [0, 1.08 * top], series});
-  page.append(h("p", {class: "soft small"}, "A prediction may be as wanted long before it can be trusted: the doubt says how far it can. The way ends when every target is predicted well within its tolerance and more runs would not make that much surer, or with the budget; then the set is confirmed."));
+  page.append(h("p", {class: "soft small"}, "A prediction may be as wanted long before it can be trusted: the doubt says how far it can. The way ends when the mean over the confirming packings will lie within the tolerance of each target with 95 %, or with the budget; then the set is confirmed."));
   const best = (w) => w.best.map((v, u) => td(w.elastic && !data.unknowns[u].elastic ? "" : show(v, 4), true));
-  page.append(h("details", {}, h("summary", {}, "The best set each time"), table("evidence points", [th("Runs", true), th("Farthest"), th("off by", true), th("Most doubtful"), th("deviation", true), ...data.unknowns.map((u) => th([u.name, h("br"), u.unit.replace("deg", "\u00b0")], true))],
-    data.way.map((w) => h("tr", {}, td(String(w.runs), true), td(w.target + (w.elastic ? ", before damage" : ""), false, "name"), td(fixed(w.farthest), true), td(w.doubtful, false, "name"), td(fixed(w.doubt), true), best(w))))));
+  page.append(h("details", {}, h("summary", {}, "The best set each time"), table("evidence points", [th("Runs", true), th("Farthest"), th("off by", true), th("Most doubtful"), th("deviation", true), th("Least likely"), th("to be met", true), ...data.unknowns.map((u) => th([u.name, h("br"), u.unit.replace("deg", "\u00b0")], true))],
+    data.way.map((w) => h("tr", {}, td(String(w.runs), true), td(w.target + (w.elastic ? ", before damage" : ""), false, "name"), td(fixed(w.farthest), true), td(w.doubtful, false, "name"), td(fixed(w.doubt), true), td(w.unlikely, false, "name"), td(Math.round(100 * w.probability) + " %", true), best(w))))));
 }
 
 setTheme();
