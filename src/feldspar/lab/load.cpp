@@ -115,7 +115,7 @@ constexpr int kMostPassages = 8;
 constexpr long long kMostSteps = 4;
 // Multiple of those steps after which a passage under way has its limits widened, in proportion to its own steps: a specimen that yields at
 // constant load for ever would never be through. The grade then says how sure the strength is.
-constexpr double kLongPassage = 8.0;
+constexpr double kLongPassage = 20.0;
 constexpr double kUsualPassages = 3.5;   // steps of a whole test over those of the first passage, for the time left
 // How long a body out of balance is waited for at a platen at rest, in travel times of a wave. A crack that runs away has run out by then. What
 // is not at rest fails slowly by itself, and may need a hundred travel times to lose a tenth of its load: the platen goes on, by this multiple
