@@ -76,7 +76,7 @@ double typical_steps(const Experiment& e) {
         return strain * e.height_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
     }
     // In travel times, at the usual accuracy: medians over eight rocks (docs/validation, true strengths).
-    const double usual = kind == TestKind::brazilian ? 250.0 : kind == TestKind::direct_tension ? 28.0 : kind == TestKind::biaxial ? 90.0 : 60.0;
+    const double usual = kind == TestKind::brazilian ? 250.0 : kind == TestKind::direct_tension ? 28.0 : kind == TestKind::biaxial ? 150.0 : 60.0;
     return usual * e.travel_time * std::sqrt(residual_target(NumericsSpec{}, kind) / residual_target(n, kind));
 }
 
