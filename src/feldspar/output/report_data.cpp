@@ -112,6 +112,12 @@ Json test_json(const TestResult& result, std::size_t tests) {
                                                   {"stress", rounded(mark.stress_Pa * MPa)},
                                                   {"crack", mark.crack}});
     }
+    const PostPeak& branch = p.post_peak;
+    test["post_peak"] = {{"modulus", rounded(branch.modulus_Pa * GPa)},
+                         {"brittleness", rounded(branch.brittleness)},
+                         {"fracture", rounded(branch.fracture_share)},
+                         {"friction", rounded(branch.friction_share)},
+                         {"damping", rounded(branch.damping_share)}};
     test["E"] = rounded(p.E_secant_Pa * GPa);
     test["nu"] = rounded(p.nu);
     test["sigma_ci"] = {{"crack count", rounded(p.sigma_ci_crack_count_Pa * MPa)},

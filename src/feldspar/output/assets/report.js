@@ -230,6 +230,9 @@ function testFacts(tests, updates) {
     add("First crack", show(t.first_crack) + " MPa");
     for (const [method, value] of Object.entries(t.sigma_ci)) if (value !== null) add("\u03c3ci, " + method, show(value) + " MPa" + (t.peak ? " (" + show(value / t.peak, 2) + " of the peak)" : ""));
     if (t.sigma_cd !== null) add("\u03c3cd", show(t.sigma_cd) + " MPa" + (t.peak ? " (" + show(t.sigma_cd / t.peak, 2) + " of the peak)" : ""));
+    const branch = t.post_peak;
+    if (branch.brittleness !== null) add("Behind the peak", "modulus " + show(branch.modulus) + " GPa, brittleness k1 " + show(branch.brittleness, 2) + (branch.brittleness < 1 ? " (class II)" : " (class I)"));
+    if (branch.fracture !== null) add("Energy behind the peak", show(100 * branch.fracture, 2) + " % fracture, " + show(100 * branch.friction, 2) + " % friction, " + show(100 * branch.damping, 2) + " % damping");
     add("Cracks at the end", t.tensile + " tensile, " + t.shear + " shear");
     add("Ended because", t.stop_reason || "\u2013");
     add("Quasi-static", h("span", {}, h("span", {class: "grade " + t.grade}, t.grade), " " + t.verdict));
