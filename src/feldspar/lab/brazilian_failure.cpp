@@ -31,8 +31,7 @@ BrazilianFailure brazilian_failure(const TestResult& result, const Peak& peak) {
     const auto disc = loaded_disc(result);
     if (!disc) return failure;
     if (disc->flat_height_m > 0.0) failure.flat_coefficient = flat_coefficient(*result.specimen, result.model, result.grain, result.contact, result.test);
-    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), [](const Crack& a, const Crack& b) { return a.step < b.step; });
-    if (first != result.cracks.end()) {
+    if (const Crack* first = first_crack(result)) {
         failure.first_crack_radius = radius_of(first->place, *disc);
         failure.first_crack_angle_deg = angle_deg_of(first->place, *disc);
         failure.first_crack_share = first->axial_stress_Pa / peak.stress_Pa;
@@ -61,9 +60,7 @@ std::vector<BrazilianMark> brazilian_marks(const TestResult& result) {
     };
     const auto peak = find_peak(result);
     if (!peak || result.test.kind != TestKind::brazilian) return {};
-    const auto before = [](const Crack& a, const Crack& b) { return a.step < b.step; };
-    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), before);
-    if (first != result.cracks.end()) at_crack("first crack", static_cast<std::size_t>(first - result.cracks.begin()));
+    if (const Crack* first = first_crack(result)) at_crack("first crack", static_cast<std::size_t>(first - result.cracks.data()));
     if (const auto dip = first_dip(result)) at_row("first dip", dip->row);
     const auto splitting = splitting_crack(result);
     if (const auto begin = splitting ? splitting->begin() : std::nullopt) {

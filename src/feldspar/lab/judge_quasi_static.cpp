@@ -10,6 +10,7 @@
 
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
@@ -27,9 +28,6 @@ constexpr double kTravelTimesToShow = 0.25;
 constexpr double kInBalance = 0.02;   // part of the unbalanced force in the error, with which a body counts as balanced: grade B
 constexpr double kNearPeak = 0.9;     // share of the peak from which on the evidence decides
 constexpr double kOfTheRepeat = 1.5;  // an error in proportion to the rate loses two thirds of itself in a repeat at a third; the slower of two passages has less
-
-/// The strength of the test is a tensile one.
-bool pulls_apart(TestKind kind) { return kind == TestKind::direct_tension || kind == TestKind::brazilian; }
 
 /// One line of the verdict table: what was seen, and what grades A and B allow.
 struct Criterion {
@@ -92,8 +90,7 @@ std::string advice(const TestResult& result, double slower) {
 
 std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& table, const TestResult& result, bool peak_reached) {
     const std::string until = peak_reached ? "up to the peak" : "up to the largest stress of the record (the peak was not reached)";
-    const bool followed = result.test.control != LoadControl::displacement && result.numerics.kind == NumericsKind::adaptive;
-    const std::string after = peak_reached && !followed ? "; the branch after the peak is dynamic" : "";
+    const std::string after = peak_reached && !branch_is_followed(result) ? "; the branch after the peak is dynamic" : "";
     const std::string repeat = e.confirmed ? fmt::format(", strength changed by {:+.2g} % in a slower repeat", 100.0 * e.peak_change_at_third) : "";
     const double slower = std::max(1.5, excess(table, e.grade != 'C'));
     const std::string grade_a = percent(table.front().limit_a);

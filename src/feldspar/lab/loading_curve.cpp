@@ -35,6 +35,11 @@ std::size_t first_at_or_above(const LoadingCurve& curve, double stress_Pa) {
 
 double loading_sign(TestKind kind) { return kind == TestKind::direct_tension ? -1.0 : 1.0; }
 
+const Crack* first_crack(const TestResult& result) {
+    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), [](const Crack& a, const Crack& b) { return a.step < b.step; });
+    return first == result.cracks.end() ? nullptr : &*first;
+}
+
 double largest_stress(const TestResult& result) {
     const double sign = loading_sign(result.test.kind);
     double largest = 0.0;

@@ -25,6 +25,9 @@ std::optional<Peak> find_peak(const TestResult& result);
 /// The largest stress before the first fall to 0.95 of it (P27): of a Brazilian test often a grain that settles under a plate.
 std::optional<Peak> first_dip(const TestResult& result);
 
+/// The crack with the earliest step, the first of these in the record; null without cracks.
+const Crack* first_crack(const TestResult& result);
+
 /// Largest stress of all rows of the loading, a positive magnitude; 0 without one.
 double largest_stress(const TestResult& result);
 

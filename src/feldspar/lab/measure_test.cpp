@@ -28,10 +28,9 @@ TestProperties nothing() {
     return p;
 }
 
-double first_crack(const TestResult& result) {
-    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(),
-                                        [](const Crack& a, const Crack& b) { return a.step < b.step; });
-    return first == result.cracks.end() ? nan : loading_sign(result.test.kind) * first->axial_stress_Pa;
+double first_crack_stress(const TestResult& result) {
+    const Crack* first = first_crack(result);
+    return first == nullptr ? nan : loading_sign(result.test.kind) * first->axial_stress_Pa;
 }
 
 /// Slope of y over x between two fractions of the peak; x and y are members of a curve point.
@@ -60,7 +59,7 @@ double secant_ratio(const LoadingCurve& curve) {
 
 TestProperties read_record(const TestResult& result) {
     TestProperties p = nothing();
-    p.first_crack_Pa = first_crack(result);
+    p.first_crack_Pa = first_crack_stress(result);
     const auto peak = find_peak(result);
     if (!peak) return p;
     p.peak_stress_Pa = peak->stress_Pa;

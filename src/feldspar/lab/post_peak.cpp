@@ -42,6 +42,10 @@ double compliance(const std::vector<BranchPoint>& branch, double peak_Pa) {
 
 }  // namespace
 
+bool branch_is_followed(const TestResult& result) {
+    return result.test.control != LoadControl::displacement && result.numerics.kind == NumericsKind::adaptive;
+}
+
 PostPeak post_peak(const TestResult& result, const Peak& peak, const LoadingCurve& curve, double E_Pa) {
     PostPeak p;
     if (!peak.reached || curve.points.empty()) return p;
@@ -52,7 +56,7 @@ PostPeak post_peak(const TestResult& result, const Peak& peak, const LoadingCurv
         p.friction_share = friction / all;
         p.damping_share = damping / all;
     }
-    if (result.test.control == LoadControl::displacement || result.numerics.kind != NumericsKind::adaptive) return p;
+    if (!branch_is_followed(result)) return p;
     const double sign = loading_sign(result.test.kind);
     std::vector<BranchPoint> branch;
     for (std::size_t i = peak.row; i < result.history.size(); ++i) {

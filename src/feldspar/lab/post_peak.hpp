@@ -6,6 +6,9 @@
 
 namespace feldspar {
 
+/// Whether a servo led the platens behind the peak: elsewhere the branch is dynamic, whatever the rock is.
+bool branch_is_followed(const TestResult& result);
+
 /// @param curve  up to the peak, from loading_curve() of the same result
 /// @param E_Pa   modulus with which the specimen unloads: the tangent one
 PostPeak post_peak(const TestResult& result, const Peak& peak, const LoadingCurve& curve, double E_Pa);

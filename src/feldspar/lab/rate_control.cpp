@@ -30,9 +30,9 @@ constexpr double kMostMode = 1.5;   // platen travels that a node may move per p
 constexpr double kCompressed = 1.0, kPulled = 3.0;
 constexpr double kGrowth = 60.0, kMostGrowth = 0.6;
 
-bool pulls_apart(TestKind kind) { return kind == TestKind::direct_tension || kind == TestKind::brazilian; }
-
 }  // namespace
+
+bool pulls_apart(TestKind kind) { return kind == TestKind::direct_tension || kind == TestKind::brazilian; }
 
 double residual_share(TestKind kind) { return pulls_apart(kind) ? 1.0 / 3.0 : 2.0; }
 

@@ -9,6 +9,9 @@
 
 namespace feldspar {
 
+/// The strength of the test is a tensile one.
+bool pulls_apart(TestKind kind);
+
 /// Error of the strength over the R* of the typical body: 2 in compression, a third in tension (direct or Brazilian), as measured (docs/validation).
 double residual_share(TestKind kind);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/experiment.hpp"
@@ -104,21 +105,25 @@ double other_damping(double damping) { return damping > 0.6 ? damping - 0.2 : da
 TestResult run_test(const TestSetup& setup, const RunControl& control) {
     TestResult result = run_once(setup, control);
     if (setup.numerics.confirm && !result.interrupted) {
-        const TestResult slower = run_once(at_a_third(setup), control);
-        if (!slower.interrupted && slower.properties.peak_stress_Pa > 0.0) {
+        bool interrupted = false;
+        const auto peak_change = [&](const TestSetup& changed) -> std::optional<double> {   // none if the repeat shows no strength
+            const TestResult repeat = run_once(changed, control);
+            result.wall_s += repeat.wall_s;
+            interrupted = repeat.interrupted;
+            if (repeat.interrupted || !(repeat.properties.peak_stress_Pa > 0.0)) return std::nullopt;
+            return repeat.properties.peak_stress_Pa / result.properties.peak_stress_Pa - 1.0;
+        };
+        if (const auto change = peak_change(at_a_third(setup))) {
             result.evidence.confirmed = true;
-            result.evidence.peak_change_at_third = slower.properties.peak_stress_Pa / result.properties.peak_stress_Pa - 1.0;
+            result.evidence.peak_change_at_third = *change;
         }
-        result.wall_s += slower.wall_s;
-        if (setup.numerics.kind != NumericsKind::dynamic && !slower.interrupted) {
+        if (setup.numerics.kind != NumericsKind::dynamic && !interrupted) {
             TestSetup damped = setup;
             damped.numerics.damping = other_damping(setup.numerics.damping);
-            const TestResult other = run_once(damped, control);
-            if (!other.interrupted && other.properties.peak_stress_Pa > 0.0) {
+            if (const auto change = peak_change(damped)) {
                 result.evidence.other_damping = damped.numerics.damping;
-                result.evidence.peak_change_at_other_damping = other.properties.peak_stress_Pa / result.properties.peak_stress_Pa - 1.0;
+                result.evidence.peak_change_at_other_damping = *change;
             }
-            result.wall_s += other.wall_s;
         }
         result.evidence = judge(result);   // the repeats are part of the evidence
     }

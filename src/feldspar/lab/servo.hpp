@@ -13,7 +13,7 @@ namespace feldspar {
 class Servo {
 public:
     /// @param control      dissipation or lateral strain; with displacement the servo is off
-    /// @param share        growth that is kept, in a travel time of a wave: the wanted accuracy
+    /// @param share        growth that is kept, in a travel time of a wave; > 0
     /// @param travel_time  of a wave over the height, steps
     Servo(LoadControl control, double share, double travel_time) : control_(control), share_(share), travel_time_(travel_time) {}
 

@@ -25,7 +25,7 @@ public:
     /// Whether all steps that the user allows have been made, those of earlier passages too.
     bool steps_are_spent() const;
 
-    /// @param unloading  the platens go back faster than the specimen fails: that the stress is low then is no sign of failure
+    /// @param unloading  the specimen hardly fails (Servo::unloading()): that the stress is low then is no sign of failure
     /// @return why the test ends now, in words; nothing if it goes on
     std::optional<std::string> ended(const HistoryRow& row, bool unloading = false);
 
