@@ -10,6 +10,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
@@ -129,8 +130,8 @@ class Loader {
 public:
     Loader(Experiment& e, Recorder& recorder, TestResult& result)
         : e_(e), recorder_(recorder), result_(result), finder_(e.assembly, 0.1 * mean_body_diameter(e.assembly)), watch_(e.assembly),
-          mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time), servo_(e.setup.test.control, kServoShare * wanted_, e.travel_time),
-          stop_(e, result), progress_(e) {}
+          mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time),
+          servo_(branch_is_followed(result) ? e.setup.test.control : LoadControl::displacement, kServoShare * wanted_, e.travel_time), stop_(e, result), progress_(e) {}
 
     void run() {
         const int block = adaptive_ ? 10 : 50;   // steps between records
