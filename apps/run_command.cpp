@@ -9,11 +9,13 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <optional>
 
 #include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/base/parallel.hpp"
+#include "feldspar/base/printable.hpp"
 #include "feldspar/base/usable_cores.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/job/toml_reader.hpp"
@@ -82,8 +84,7 @@ public:
         directory_->write_text("job-resolved.toml", resolved_toml(job_));
     }
 
-    /// Runs everything. @throws what a test or a write throws, after the results so far have been written; of several tests that
-    /// fail, what the first of them in the job's order threw.
+    /// Runs everything. A test that fails is noted, and the others go on. @throws OutputError when results cannot be written
     void run() {
         RunningTests running(Sharing(job_.at_once, threads_), stop_requested());
         std::size_t next = 0;
@@ -104,14 +105,21 @@ public:
         interrupted_ = results_.size() + failed_.size() < runs_.size() ||
                        std::any_of(results_.begin(), results_.end(), [](const TestResult& result) { return result.interrupted; });
         write_overview(!interrupted_ && failed_.empty(), true);
-        if (!failed_.empty()) rethrow(failed_.begin()->first, failed_.begin()->second);
     }
 
     bool interrupted() const { return interrupted_; }
+    bool has_failed() const { return !failed_.empty(); }
+
+    /// @throws NumericalError that names the first failed test in the job's order, if any failed
+    void throw_if_failed() const {
+        if (failed_.empty()) return;
+        const auto& [i, reason] = *failed_.begin();
+        throw NumericalError(fmt::format("{}: {} ({} of {} tests failed; the results of the others are kept)", label_of(runs_[i]), reason, failed_.size(), runs_.size()));
+    }
 
     void print_results() const {
         const std::string properties = job_.has_variants() ? variant_table(job_, results_) : property_table(job_, properties_);
-        fmt::print("\n{}\n{}\n", properties, test_table(results_));
+        fmt::print("\n{}\n{}\n", properties, test_table(results_, failures()));
         fmt::print("Report: {}\n", (directory_->path() / "report.html").string());
     }
 
@@ -182,15 +190,22 @@ private:
         } catch (const OutputError&) {
             throw;
         } catch (...) {
-            failed_[i] = error;
+            failed_[i] = cause(error);
         }
+    }
+
+    std::vector<FailedTest> failures() const {
+        std::vector<FailedTest> list;
+        for (const auto& [i, reason] : failed_) list.push_back({runs_[i].variant->name, *runs_[i].test, runs_[i].seed, reason});
+        return list;
     }
 
     // Writes what only this thread may write: the HDF5 library is not made for several, and the overview holds all tests.
     void take(RunningTests::Ended test) {
         const std::string label = fmt::format("{}/{} {}", number_of(test.number), runs_.size(), label_of(runs_[test.number]));
         if (failed_.contains(test.number)) {
-            progress_.note(fmt::format("{}: failed: {}", label, cause(failed_.at(test.number))));
+            progress_.note(fmt::format("{}: failed: {}", label, failed_.at(test.number)));
+            if (results_.size() + failed_.size() < runs_.size()) write_overview(false, false);
             return;
         }
         if (!test.result) return;
@@ -206,17 +221,10 @@ private:
     static std::string cause(const std::exception_ptr& error) {
         try {
             std::rethrow_exception(error);
+        } catch (const std::bad_alloc&) {
+            return "there is not enough memory for it";
         } catch (const std::exception& problem) {
             return problem.what();
-        }
-    }
-
-    [[noreturn]] void rethrow(std::size_t i, const std::exception_ptr& error) {
-        try {
-            std::rethrow_exception(error);
-        } catch (const NumericalError& problem) {
-            throw NumericalError(fmt::format("{}: {} ({} of {} tests failed; the results of the others are kept)", label_of(runs_[i]), problem.what(),
-                                             failed_.size(), runs_.size()));
         }
     }
 
@@ -224,10 +232,11 @@ private:
     void write_overview(bool complete, bool last) {
         using Clock = std::chrono::steady_clock;
         if (!job_.has_variants()) properties_ = summarise(results_);  // else each variant has its own
-        write_summary(*directory_, job_, results_, properties_, provenance_, complete);
+        const std::vector<FailedTest> failed = failures();
+        write_summary(*directory_, job_, results_, properties_, provenance_, complete, failed);
         const Clock::time_point start = Clock::now();
         if (!last && start < next_report_) return;
-        write_report(*directory_, job_, results_, properties_, provenance_, complete);
+        write_report(*directory_, job_, results_, properties_, provenance_, complete, failed);
         next_report_ = Clock::now() + 20 * (Clock::now() - start);
     }
 
@@ -247,7 +256,7 @@ private:
     std::deque<RunningTests::Ended> ended_;              // not written yet
     std::vector<TestResult> results_;                    // in the job's order, whatever the order in which they ended
     std::vector<std::size_t> order_;                     // the number of each
-    std::map<std::size_t, std::exception_ptr> failed_;   // by number
+    std::map<std::size_t, std::string> failed_;          // why, by number
     std::chrono::steady_clock::time_point next_report_;
     PropertySummary properties_;
     std::vector<std::string> packings_;  // written already
@@ -320,14 +329,22 @@ ExitCode run_command(const RunOptions& options) {
     Campaign campaign(job, options);
     campaign.prepare();
     campaign.create_directory(options.out);
+    const auto tell_place = [&] {
+        fmt::print(stderr, "the files of {} finished test{} are in {}\n", campaign.finished(), campaign.finished() == 1 ? "" : "s",
+                   printable(campaign.place()->string()));
+    };
     try {
         campaign.run();
     } catch (const std::exception&) {
-        fmt::print(stderr, "the files of {} finished test{} are in {}\n", campaign.finished(),
-                   campaign.finished() == 1 ? "" : "s", campaign.place()->string());
+        tell_place();
         throw;
     }
     campaign.print_results();
+    if (campaign.has_failed()) {
+        std::fflush(stdout);
+        tell_place();
+        campaign.throw_if_failed();
+    }
     if (!campaign.interrupted()) return ExitCode::success;
     fmt::print(stderr, "interrupted; the results so far are in {}\n", campaign.place()->string());
     return ExitCode::interrupted;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <regex>
 #include <string_view>
 #include <vector>
 
@@ -42,6 +43,9 @@ std::string cracks_text(const TestResult& result) {
         std::count_if(result.cracks.begin(), result.cracks.end(), [](const Crack& c) { return c.mode == CrackMode::tensile; });
     return fmt::format("{} + {}", tensile, static_cast<long long>(result.cracks.size()) - tensile);
 }
+
+// What an error says in several lines, as a sentence of a paragraph.
+std::string in_one_line(const std::string& text) { return std::regex_replace(text, std::regex("\\s*\n\\s*"), "; "); }
 
 // What stops a number from being the strength: nothing, or a word behind it.
 std::string peak_text(const TestResult& result) {
@@ -178,17 +182,19 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
     return text;
 }
 
-std::string test_table(std::span<const TestResult> results) {
-    if (results.empty()) return "No test ran.\n";
+std::string test_table(std::span<const TestResult> results, std::span<const FailedTest> failed) {
+    if (results.empty() && failed.empty()) return "No test ran.\n";
     std::vector<Row> rows{{"Test", "seed", "peak MPa", "cracks t + s", "steps", "time", "energy residual", "quasi-static"}};
     for (const TestResult& r : results)
         rows.push_back({title(r.variant, r.test), std::to_string(r.seed), peak_text(r), cracks_text(r), std::to_string(r.steps),
                         duration_text(r.wall_s), fmt::format("{:.3f} %", 100.0 * r.energy_residual),
                         std::string(1, r.evidence.grade)});
+    for (const FailedTest& f : failed) rows.push_back({title(f.variant, f.test), std::to_string(f.seed), "failed", "-", "-", "-", "-", "-"});
     std::string text = aligned(rows, 1);
     text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n";
     text += "quasi-static: A to about 0.5 %, B to about 2 %, C not shown\n";
     text += disc_table(results);
+    for (const FailedTest& f : failed) text += wrapped_text(fmt::format("{}, seed {}: failed: {}", title(f.variant, f.test), f.seed, in_one_line(f.reason)));
     for (const TestResult& r : results) {   // a section other than the whole width is said beside the number
         for (const std::string& remark : r.properties.remarks) text += wrapped_text(fmt::format("{}, seed {}: {}", title(r.variant, r.test), r.seed, remark));
     }

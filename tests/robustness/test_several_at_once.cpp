@@ -1,6 +1,7 @@
 // Several tests side by side: the same results as one after the other, whichever ends first; stopped together; and none that is
 // finished is lost when another fails.
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "program.hpp"
 
@@ -95,10 +96,41 @@ TEST(SeveralAtOnce, AFailureKeepsWhatTheOthersFind) {
             EXPECT_EQ(test.at("interrupted"), false);
             EXPECT_TRUE(fs::exists(place / "results" / test.at("files").at("history").get<std::string>()));
         }
-        EXPECT_TRUE(fs::exists(place / "results/report.html"));
+        ASSERT_EQ(summary.at("failed").size(), 2u);
+        for (const int seed : {1, 2}) {
+            const Json& test = summary.at("failed").at(static_cast<std::size_t>(seed - 1));
+            EXPECT_EQ(test.at("name"), "biaxial-s" + std::to_string(seed) + "-p5000");
+            EXPECT_EQ(test.at("kind"), "biaxial");
+            EXPECT_EQ(test.at("seed"), seed);
+            EXPECT_EQ(test.at("sigma3_MPa"), 5000);
+            const std::string reason = test.at("reason");
+            EXPECT_FALSE(reason.empty());
+            EXPECT_NE(read_text(place / "results/report.html").find("\"seed\":" + std::to_string(seed) + ",\"sigma3\":5000,\"reason\":"), std::string::npos);
+            // a row of the table, and the reason below it
+            EXPECT_TRUE(std::regex_search(outcome.out, std::regex("\nbiaxial at 5000 MPa +" + std::to_string(seed) + " +failed "))) << outcome.out;
+            EXPECT_NE(outcome.out.find("biaxial at 5000 MPa, seed " + std::to_string(seed) + ": failed: " + reason.substr(0, 20)), std::string::npos) << outcome.out;
+        }
+        EXPECT_NE(outcome.out.find("Uniaxial compressive strength"), std::string::npos) << outcome.out;   // of those that did not fail
         expect_no_half_files(place / "results");
         fs::remove_all(place / "results");
     }
+}
+
+// A mistake of the input that only the packing shows: more plates at a side than there are grains.
+TEST(SeveralAtOnce, ATestThatFailsOfItsInputIsListedToo) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = \"4 MPa\"\n"
+                                                      "membrane_plates = 400\n"),
+                                            "[material.grain]\nE = \"25.8 GPa\"\nnu = 0.23\n", "[model]\nkind = \"rigid\"\n"));
+    const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "results"});
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_NE(outcome.err.find("1 of 2 tests failed"), std::string::npos) << outcome.err;
+    const Json summary = summary_of(place / "results");
+    EXPECT_EQ(summary.at("tests").size(), 1u);
+    ASSERT_EQ(summary.at("failed").size(), 1u);
+    EXPECT_EQ(summary.at("failed").at(0).at("name"), "biaxial-s1-p4");
+    EXPECT_NE(summary.at("failed").at(0).at("reason").get<std::string>().find("plates a side are too many"), std::string::npos);
+    EXPECT_TRUE(std::regex_search(outcome.out, std::regex("biaxial at 4 MPa, seed 1: failed: membrane_plates: [^;]+;\\s+allowed: "))) << outcome.out;
 }
 
 }  // namespace

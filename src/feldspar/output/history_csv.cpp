@@ -31,11 +31,13 @@ std::string header(const TestResult& result, const Provenance& provenance) {
 
 }  // namespace
 
-std::string test_stem(const TestResult& result) {
-    std::string stem = fmt::format("{}-s{}", name(result.test.kind), result.seed);
-    if (result.test.kind == TestKind::biaxial) stem += fmt::format("-p{:.6g}", result.test.sigma3_Pa * MPa);
-    return result.variant.empty() ? stem : variant_stem(result.variant) + "-" + stem;
+std::string test_stem(const std::string& variant, const TestSpec& test, std::uint64_t seed) {
+    std::string stem = fmt::format("{}-s{}", name(test.kind), seed);
+    if (test.kind == TestKind::biaxial) stem += fmt::format("-p{:.6g}", test.sigma3_Pa * MPa);
+    return variant.empty() ? stem : variant_stem(variant) + "-" + stem;
 }
+
+std::string test_stem(const TestResult& result) { return test_stem(result.variant, result.test, result.seed); }
 
 void write_history_csv(const RunDirectory& directory, const TestResult& result, const Provenance& provenance) {
     std::string text = header(result, provenance);

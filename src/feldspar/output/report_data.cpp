@@ -284,7 +284,7 @@ Json rounded(double value) {
 }
 
 Json report_data(const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
-                 const Provenance& provenance, bool complete) {
+                 const Provenance& provenance, bool complete, std::span<const FailedTest> failed) {
     Json data;
     data["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}, {"seeds", job.seeds}};
     data["complete"] = complete;
@@ -298,6 +298,10 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     data["envelope"] = envelope_json(job.has_variants() ? PropertySummary{} : properties);
     data["tests"] = Json::array();
     for (const TestResult& result : results) data["tests"].push_back(test_json(result, results.size()));
+    data["failed"] = Json::array();
+    for (const FailedTest& test : failed)
+        data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"seed", test.seed},
+                                  {"sigma3", rounded(test.test.sigma3_Pa * MPa)}, {"reason", test.reason}});
     data["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
                           {"machine", provenance.machine},          {"compiler", provenance.compiler},
                           {"started", provenance.started},          {"threads", provenance.threads},

@@ -11,10 +11,10 @@
 
 namespace feldspar {
 
-/// Everything but the fields: job, properties, envelope, tests with thinned histories, provenance. User units, compression
+/// Everything but the fields: job, properties, envelope, tests with thinned histories, failed tests, provenance. User units, compression
 /// positive, null where a value is not defined.
 nlohmann::ordered_json report_data(const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
-                                   const Provenance& provenance, bool complete);
+                                   const Provenance& provenance, bool complete, std::span<const FailedTest> failed);
 
 /// Fields of one test for the viewer of the failure pattern.
 struct ReportFields {             // NOLINT(bugprone-exception-escape): moving the JSON throws nothing

@@ -2,6 +2,7 @@
 // crash never leaves half a file, and files that were finished stay.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -58,6 +59,17 @@ private:
 /// the variant's own: "rigid-brittle-uniaxial-compression-s3".
 std::string test_stem(const TestResult& result);
 
+/// The same from its parts; `variant` is empty where the job has none.
+std::string test_stem(const std::string& variant, const TestSpec& test, std::uint64_t seed);
+
+/// A test that ended without a result.
+struct FailedTest {
+    std::string variant;   ///< its name; empty where the job has none
+    TestSpec test;
+    std::uint64_t seed = 0;
+    std::string reason;    ///< in words
+};
+
 /// history-<stem>.csv: units and sign convention in the header.
 void write_history_csv(const RunDirectory& directory, const TestResult& result, const Provenance& provenance);
 
@@ -69,11 +81,11 @@ void write_hdf5(const RunDirectory& directory, const TestResult& result, const J
 void write_vtu(const RunDirectory& directory, const TestResult& result, int threads = 1);
 
 /// summary.json: rewritten after each test, so that an interrupted run leaves what it had.
-void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
-                   const PropertySummary& properties, const Provenance& provenance, bool complete);
+void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
+                   const Provenance& provenance, bool complete, std::span<const FailedTest> failed = {});
 
 /// report.html: self-contained, opens from disk with no network.
-void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
-                  const PropertySummary& properties, const Provenance& provenance, bool complete);
+void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
+                  const Provenance& provenance, bool complete, std::span<const FailedTest> failed = {});
 
 }  // namespace feldspar

@@ -149,6 +149,17 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     return test;
 }
 
+Json failed_json(const FailedTest& failed) {
+    Json test;
+    if (!failed.variant.empty()) test["variant"] = failed.variant;
+    test["name"] = test_stem(failed.variant, failed.test, failed.seed);
+    test["kind"] = name(failed.test.kind);
+    test["seed"] = failed.seed;
+    if (failed.test.kind == TestKind::biaxial) test["sigma3_MPa"] = in_MPa(failed.test.sigma3_Pa);
+    test["reason"] = failed.reason;
+    return test;
+}
+
 Json sizes_json(const SizeSummary& sizes) {
     return {{"mean", number(sizes.mean_m * 1e3)}, {"minimum", number(sizes.minimum_m * 1e3)}, {"maximum", number(sizes.maximum_m * 1e3)},
             {"D50", number(sizes.D50_m * 1e3)}};
@@ -257,8 +268,8 @@ Json variants_json(const Job& job, std::span<const TestResult> results) {
 
 }  // namespace
 
-void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
-                   const PropertySummary& properties, const Provenance& provenance, bool complete) {
+void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
+                   const Provenance& provenance, bool complete, std::span<const FailedTest> failed) {
     Json summary;
     summary["version"] = provenance.version;
     summary["commit"] = provenance.commit;
@@ -272,6 +283,7 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
         summary["specimen"] = summary["brazilian_specimen"];
     summary["tests"] = Json::array();
     for (const TestResult& result : results) summary["tests"].push_back(test_json(directory, result));
+    for (const FailedTest& test : failed) summary["failed"].push_back(failed_json(test));
     if (job.has_variants()) summary["variants"] = variants_json(job, results);
     // properties of several variants are not those of one rock
     const PropertySummary whole = job.has_variants() ? PropertySummary{} : properties;

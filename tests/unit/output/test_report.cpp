@@ -86,6 +86,26 @@ TEST_F(Report, MarksTheMomentsOfABrazilianTest) {
     }
 }
 
+TEST_F(Report, ListsTheTestsThatFailedAndWhy) {
+    EXPECT_TRUE(json::parse(between(page(), "id=\"data\">", "</script>"))["failed"].empty());
+    TestSpec biaxial;
+    biaxial.kind = TestKind::biaxial;
+    biaxial.sigma3_Pa = 4e6;
+    const std::vector<FailedTest> failed{{"", biaxial, 7, "a force is not a number </script>"}};
+    write_report(directory, job, results, make_properties(), make_provenance(), false, failed);
+    const std::string html = read_text(directory.path() / "report.html");
+    const json list = json::parse(between(html, "id=\"data\">", "</script>"))["failed"];
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_EQ(list[0]["kind"], "biaxial");
+    EXPECT_EQ(list[0]["sigma3"], 4);
+    EXPECT_EQ(list[0]["seed"], 7);
+    EXPECT_EQ(list[0]["reason"], failed[0].reason);
+    // the page lays the list out before anything else of the results
+    const std::string script = html.substr(html.find("function writeHeader()"));
+    EXPECT_LT(script.find("writeFailed();"), script.find("function writeProperties()"));
+    EXPECT_NE(html.find("\"These tests failed\""), std::string::npos);
+}
+
 TEST_F(Report, EscapesEverythingThatAUserCanWrite) {
     job.name = "</title><script>alert(1)</script> & \"quoted\" {{data}}";
     job.text = "name = '</script><!--<script>'\n";

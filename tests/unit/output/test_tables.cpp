@@ -53,6 +53,20 @@ TEST(TestStem, BeginsWithTheVariant) {
     EXPECT_EQ(test_stem(result), "rigid-brittle-uniaxial-compression-s3");
 }
 
+TEST_F(Tables, SummaryListsTestsThatFailed) {
+    EXPECT_FALSE(summary({make_result()}).contains("failed")) << "of none";
+    TestSpec biaxial;
+    biaxial.kind = TestKind::biaxial;
+    biaxial.sigma3_Pa = 2.5e6;
+    const std::vector<FailedTest> failed{{"", biaxial, 7, "a force is not a number"}, {"rigid, brittle", TestSpec{}, 3, "it did not relax"}};
+    write_summary(directory, make_job(), std::vector{make_result()}, make_properties(), make_provenance(), false, failed);
+    const json list = json::parse(read_text(directory.path() / "summary.json")).at("failed");
+    EXPECT_EQ(list, json::parse(R"([
+        {"name": "biaxial-s7-p2.5", "kind": "biaxial", "seed": 7, "sigma3_MPa": 2.5, "reason": "a force is not a number"},
+        {"variant": "rigid, brittle", "name": "rigid-brittle-uniaxial-compression-s3", "kind": "uniaxial-compression", "seed": 3,
+         "reason": "it did not relax"}])"));
+}
+
 TEST_F(Tables, SummaryKeepsVariantsApart) {
     Job job = make_job();
     job.variants = make_variants();

@@ -32,6 +32,14 @@ function modelFacts(m) {
     ...(m.grains === "flexible" ? ["plane " + m.plane] : []), m.numerics + " numerics"];
 }
 
+/** The tests that ended without a result, and why. */
+function writeFailed() {
+  if (!data.failed.length) return;
+  page.append(h("section", {id: "failed"}, h("h2", {}, "These tests failed"),
+    table("evidence", [th("Test"), th("Packing (seed)", true), th("Reason")],
+      data.failed.map((f) => h("tr", {}, td(fullTitle(f), false, "kind"), td(String(f.seed), true), td(f.reason.replace(/\s*\n\s*/g, "; ")))))));
+}
+
 function writeHeader() {
   const m = data.model, seeds = new Set(data.tests.map((t) => t.seed));
   page.append(h("header", {},
@@ -42,9 +50,11 @@ function writeHeader() {
       modelFacts(m).map((fact) => h("li", {}, fact)),
       h("li", {}, data.provenance.started.slice(0, 10)))));
   if (!data.complete) {
-    page.append(h("p", {class: "notice"}, "This run is not complete: it is still going, or it ended early. The report holds the tests that were finished" +
+    page.append(h("p", {class: "notice"}, "This run is not complete: " +
+      (data.failed.length ? plural(data.failed.length, "test") + " failed" : "it is still going, or it ended early") + ". The report holds the tests that were finished" +
       (data.tests.some((t) => t.interrupted) ? " and one that was interrupted." : ".")));
   }
+  writeFailed();
   page.append(h("p", {class: "soft small", style: "margin-top:16px"}, "Signs: " + data.signs + "."));
 }
 
