@@ -7,6 +7,7 @@
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "running_study.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {
@@ -39,7 +40,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     if (options.results) calibration.results = *options.results;
     if (options.budget) calibration.budget = *options.budget;
     const std::vector<std::string> contradicting = contradictions(calibration.targets);
-    for (const std::string& sentence : contradicting) fmt::print(stderr, "{}\n", sentence);
+    for (const std::string& sentence : contradicting) say(stderr, "{}\n", sentence);
     if (!contradicting.empty() && !options.insist)
         throw InputError({options.calibration, 0, 0, "targets"}, "the targets contradict each other, so no run was made", "targets of one rock, or --insist to see how near one can come");
 
@@ -65,14 +66,14 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     const CalibrationResult result = calibrate(calibration, laboratory, [&](const std::string& line) { progress.note(line); });
     progress.clear();
     if (!result.complete) {
-        fmt::print(stderr, "interrupted after {} runs, which are kept; the same command goes on\n", result.runs);
+        say(stderr, "interrupted after {} runs, which are kept; the same command goes on\n", result.runs);
         return ExitCode::interrupted;
     }
     const RunDirectory directory = RunDirectory::open(calibration.results);
     directory.write_text("calibration.json", calibration_json(calibration, result, control.provenance));
     directory.write_text("calibrated.toml", calibrated_job(calibration, result));
     write_calibration_report(calibration, result, control.provenance, calibration_page(calibration));
-    fmt::print("\n{}\nJob with the best set: {}\nReport: {}\n", calibration_text(result), (calibration.results / "calibrated.toml").string(), calibration_page(calibration).string());
+    say("\n{}\nJob with the best set: {}\nReport: {}\n", calibration_text(result), (calibration.results / "calibrated.toml").string(), calibration_page(calibration).string());
     return ExitCode::success;
 }
 

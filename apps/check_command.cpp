@@ -14,6 +14,7 @@
 #include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {
@@ -25,23 +26,23 @@ std::string sizes_text(const SizeSummary& sizes) {
 
 void print_specimen(const char* what, const Specimen& specimen) {
     const SpecimenQuality& q = specimen.quality;
-    fmt::print("{} (seed {})\n", what, specimen.seed);
-    fmt::print("  grains                {}\n", q.grains);
-    fmt::print("  contacts              {}\n", q.contacts);
-    fmt::print("  nodes, triangles      {}, {}\n", q.nodes, q.triangles);
-    fmt::print("  vertices per grain    {:.2f}\n", q.vertices_per_grain);
-    fmt::print("  merged edges          {}\n", q.merged_edges);
-    fmt::print("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
-    fmt::print("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2,
-               1e3 * q.smallest_triangle_height_m);
-    fmt::print("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
-               100.0 * q.overlap_max);
-    fmt::print("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
-    fmt::print("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
-    fmt::print("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
-    fmt::print("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
-    fmt::print("  area error            {:.1e}\n", q.area_error);
-    for (const std::string& warning : q.warnings) fmt::print("  warning: {}\n", warning);
+    say("{} (seed {})\n", what, specimen.seed);
+    say("  grains                {}\n", q.grains);
+    say("  contacts              {}\n", q.contacts);
+    say("  nodes, triangles      {}, {}\n", q.nodes, q.triangles);
+    say("  vertices per grain    {:.2f}\n", q.vertices_per_grain);
+    say("  merged edges          {}\n", q.merged_edges);
+    say("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
+    say("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2,
+        1e3 * q.smallest_triangle_height_m);
+    say("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
+        100.0 * q.overlap_max);
+    say("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
+    say("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
+    say("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
+    say("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
+    say("  area error            {:.1e}\n", q.area_error);
+    for (const std::string& warning : q.warnings) say("  warning: {}\n", warning);
 }
 
 // What presses on the flats decides how much of 2P / (pi D t) counts.
@@ -104,8 +105,8 @@ public:
             if (stop_requested()) throw Interrupted();
             add(group);
         }
-        fmt::print("\n{}\nExpected time of the whole job: about {}. Nothing was run, no file was written.\n", text_,
-                   duration_text(total_s_));
+        say("\n{}\nExpected time of the whole job: about {}. Nothing was run, no file was written.\n", text_,
+            duration_text(total_s_));
     }
 
 private:
@@ -162,9 +163,9 @@ ExitCode check_command(const JobOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
     const int threads = thread_count(job.threads);
-    fmt::print("Job {} is sound: {} runs of {} tests{}, {} thread{}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
-               job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", threads, threads == 1 ? "" : "s");
-    for (const std::string& warning : warnings(job)) fmt::print("warning: {}\n\n", warning);
+    say("Job {} is sound: {} runs of {} tests{}, {} thread{}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
+        job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", threads, threads == 1 ? "" : "s");
+    for (const std::string& warning : warnings(job)) say("warning: {}\n\n", warning);
     Check(job, threads).run();
     return ExitCode::success;
 }

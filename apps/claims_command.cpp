@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "commands.hpp"
+#include "say.hpp"
 #include "feldspar/findings/claims.hpp"
 #include "feldspar/study/report_json.hpp"
 
@@ -31,7 +32,7 @@ ExitCode claims_command(const ClaimsOptions& options) {
     add_results(studies);
     std::vector<ClaimResult> results;
     for (const Claim& claim : claims) results.push_back(evaluate(claim, studies));
-    fmt::print("{}", claims_text(results));
+    say("{}", claims_text(results));
     if (options.csv) write_beside(*options.csv, claims_csv(results));
     if (options.markdown) write_beside(*options.markdown, claims_markdown(list, results));
     return ExitCode::success;

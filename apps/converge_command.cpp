@@ -5,6 +5,7 @@
 #include "feldspar/findings/converge.hpp"
 #include "interrupt.hpp"
 #include "running_study.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {
@@ -28,16 +29,16 @@ ExitCode converge_command(const ConvergeCommandOptions& options) {
     whole.tests.clear();   // the plan chooses
     const Job job = job_with_options(whole);
     const ConvergePlan plan = plan_convergence(job, {options.packings, options.tests, limit(options.within), options.results});
-    for (const std::string& remark : plan.remarks) fmt::print(stderr, "{}\n", remark);
+    for (const std::string& remark : plan.remarks) say(stderr, "{}\n", remark);
     Ledger ledger(plan.study.results, Ledger::Access::write);
     const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.retry_failed};
     const Execution execution = run_study(plan.study, ledger, running);
 
     const std::vector<PointResults> points = point_results(plan.study, ledger);
     write_convergence(plan.study.results, plan, points, collect_provenance(options.command_line, running.threads));
-    fmt::print("\n{}\n", convergence_text(plan, points));
+    say("\n{}\n", convergence_text(plan, points));
     print_execution(plan.study, execution);
-    fmt::print("Page: {}\n", (plan.study.results / "converge.html").string());
+    say("Page: {}\n", (plan.study.results / "converge.html").string());
     return outcome(execution);
 }
 

@@ -5,6 +5,7 @@
 #include "feldspar/findings/envelope.hpp"
 #include "interrupt.hpp"
 #include "running_study.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {
@@ -30,16 +31,16 @@ ExitCode envelope_command(const EnvelopeCommandOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
     const EnvelopePlan plan = plan_envelope(job, {options.packings, stresses(options.sigma3), options.with_tension, options.results});
-    for (const std::string& remark : plan.remarks) fmt::print(stderr, "{}\n", remark);
+    for (const std::string& remark : plan.remarks) say(stderr, "{}\n", remark);
     Ledger ledger(plan.study.results, Ledger::Access::write);
     const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.retry_failed};
     const Execution execution = run_study(plan.study, ledger, running);
 
     const std::vector<PointResults> points = point_results(plan.study, ledger);
     write_envelope(plan.study.results, plan.study, points, options.with_tension, collect_provenance(options.command_line, running.threads));
-    fmt::print("\n{}\n", envelope_text(plan.study, points, options.with_tension));
+    say("\n{}\n", envelope_text(plan.study, points, options.with_tension));
     print_execution(plan.study, execution);
-    fmt::print("Page: {}\n", (plan.study.results / "envelope.html").string());
+    say("Page: {}\n", (plan.study.results / "envelope.html").string());
     return outcome(execution);
 }
 

@@ -151,7 +151,7 @@ public:
         app_.require_subcommand(1);
         app_.set_version_flag("--version", version_text);
         app_.failure_message([](const CLI::App*, const CLI::Error& error) {
-            return fmt::format("feldspar: {}\n  'feldspar --help' shows the commands with examples\n", error.what());
+            return fmt::format("feldspar: {}\n  'feldspar --help' shows the commands with examples\n", printable(error.what()));
         });
     }
 

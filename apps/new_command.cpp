@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "commands.hpp"
+#include "say.hpp"
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/job/presets.hpp"
@@ -61,7 +62,7 @@ ExitCode new_command(const std::string& kind, const std::optional<std::string>& 
         std::remove(out->c_str());
         throw OutputError(fmt::format("'{}' could not be written to its end", *out));
     }
-    fmt::print(stderr, "wrote {}; next: {}\n", *out, next_step(kind, *out));
+    say(stderr, "wrote {}; next: {}\n", *out, next_step(kind, *out));
     return ExitCode::success;
 }
 

@@ -15,13 +15,13 @@
 #include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/base/parallel.hpp"
-#include "feldspar/base/printable.hpp"
 #include "feldspar/base/usable_cores.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/study/running_tests.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "say.hpp"
 #include "tables.hpp"
 
 namespace feldspar {
@@ -119,8 +119,8 @@ public:
 
     void print_results() const {
         const std::string properties = job_.has_variants() ? variant_table(job_, results_) : property_table(job_, properties_);
-        fmt::print("\n{}\n{}\n", properties, test_table(results_, failures()));
-        fmt::print("Report: {}\n", (directory_->path() / "report.html").string());
+        say("\n{}\n{}\n", properties, test_table(results_, failures()));
+        say("Report: {}\n", (directory_->path() / "report.html").string());
     }
 
     /// Where the results are, once there is a place.
@@ -319,7 +319,7 @@ int thread_count(int wanted) {
     const int cores = usable_cores();
     if (wanted == 0) return cores;
     if (wanted > cores)
-        fmt::print(stderr, "warning: {} threads on {} core{} will wait for each other\n", wanted, cores, cores == 1 ? "" : "s");
+        say(stderr, "warning: {} threads on {} core{} will wait for each other\n", wanted, cores, cores == 1 ? "" : "s");
     return wanted;
 }
 
@@ -330,8 +330,8 @@ ExitCode run_command(const RunOptions& options) {
     campaign.prepare();
     campaign.create_directory(options.out);
     const auto tell_place = [&] {
-        fmt::print(stderr, "the files of {} finished test{} are in {}\n", campaign.finished(), campaign.finished() == 1 ? "" : "s",
-                   printable(campaign.place()->string()));
+        say(stderr, "the files of {} finished test{} are in {}\n", campaign.finished(), campaign.finished() == 1 ? "" : "s",
+            campaign.place()->string());
     };
     try {
         campaign.run();
@@ -346,7 +346,7 @@ ExitCode run_command(const RunOptions& options) {
         campaign.throw_if_failed();
     }
     if (!campaign.interrupted()) return ExitCode::success;
-    fmt::print(stderr, "interrupted; the results so far are in {}\n", campaign.place()->string());
+    say(stderr, "interrupted; the results so far are in {}\n", campaign.place()->string());
     return ExitCode::interrupted;
 }
 

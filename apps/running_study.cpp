@@ -8,6 +8,7 @@
 #include "campaign.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {
@@ -100,11 +101,11 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
 }
 
 void print_execution(const Study& study, const Execution& execution) {
-    fmt::print("{} runs done now, {} before, {} failed; {} of runs in {}\n", execution.done, execution.found_done, execution.failed,
+    say("{} runs done now, {} before, {} failed; {} of runs in {}\n", execution.done, execution.found_done, execution.failed,
                duration_text(execution.run_s), duration_text(execution.wall_s));
-    if (execution.found_failed > 0) fmt::print("{} failed before and were not repeated; --retry-failed runs them again\n", execution.found_failed);
-    fmt::print("Ledger: {}\n", (study.results / "ledger.sqlite").string());
-    if (execution.left > 0) fmt::print(stderr, "interrupted with {} runs left; the same command goes on with them\n", execution.left);
+    if (execution.found_failed > 0) say("{} failed before and were not repeated; --retry-failed runs them again\n", execution.found_failed);
+    say("Ledger: {}\n", (study.results / "ledger.sqlite").string());
+    if (execution.left > 0) say(stderr, "interrupted with {} runs left; the same command goes on with them\n", execution.left);
 }
 
 ExitCode outcome(const Execution& execution) {

@@ -10,6 +10,7 @@
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "running_study.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 Study study_with_options(const StudyOptions& options) {
@@ -27,9 +28,9 @@ ExitCode study_command(const StudyOptions& options) {
 
     const std::vector<PointResults> points = point_results(study, ledger);
     write_study_report(study, points, study_page(study));
-    fmt::print("\n{}\n", study_text(study, points));
+    say("\n{}\n", study_text(study, points));
     print_execution(study, execution);
-    fmt::print("Page: {}\n", study_page(study).string());
+    say("Page: {}\n", study_page(study).string());
     return outcome(execution);
 }
 
@@ -43,18 +44,18 @@ ExitCode study_status_command(const StudyOptions& options) {
     if (std::filesystem::exists(study.results / "ledger.sqlite"))
         for (RunRecord& record : Ledger(study.results, Ledger::Access::read).find(ids)) by_state[record.state].push_back(std::move(record));
     const auto count = [&](RunState state) { return by_state[state].size(); };
-    fmt::print("{}: {} points, {} runs: {} done, {} running, {} failed, {} to do\n", study.name, study.points.size(), ids.size(),
+    say("{}: {} points, {} runs: {} done, {} running, {} failed, {} to do\n", study.name, study.points.size(), ids.size(),
                count(RunState::done), count(RunState::running), count(RunState::failed),
                ids.size() - count(RunState::done) - count(RunState::running) - count(RunState::failed));
     double spent_s = 0.0;
     for (const RunRecord& record : by_state[RunState::done]) spent_s += record.numbers.at("wall_s");
-    fmt::print("Time of the runs that are done: {}\n", duration_text(spent_s));
-    for (const RunRecord& record : by_state[RunState::failed]) fmt::print("failed: {}: {}\n", label_of(study, *runs.at(record.id)), record.reason);
+    say("Time of the runs that are done: {}\n", duration_text(spent_s));
+    for (const RunRecord& record : by_state[RunState::failed]) say("failed: {}: {}\n", label_of(study, *runs.at(record.id)), record.reason);
     const Provenance here = collect_provenance({}, 1);
     const auto& failed = by_state[RunState::failed];
     const auto kept = std::count_if(failed.begin(), failed.end(), [&](const RunRecord& record) { return failed_for_good(record, here); });
-    if (kept > 0) fmt::print("{} of the failed runs will not be repeated, but by --retry-failed\n", kept);
-    for (const RunRecord& record : by_state[RunState::running]) fmt::print("running, or left behind: {}\n", label_of(study, *runs.at(record.id)));
+    if (kept > 0) say("{} of the failed runs will not be repeated, but by --retry-failed\n", kept);
+    for (const RunRecord& record : by_state[RunState::running]) say("running, or left behind: {}\n", label_of(study, *runs.at(record.id)));
     print_slurm_status(study.results);
     return ExitCode::success;
 }
@@ -63,7 +64,7 @@ ExitCode study_table_command(const StudyOptions& options) {
     const Study study = study_with_options(options);
     const Ledger ledger(study.results, Ledger::Access::read);
     const std::string text = options.runs ? runs_csv(study, ledger) : points_csv(study, point_results(study, ledger));
-    fmt::print("{}", text);
+    say("{}", text);
     return ExitCode::success;
 }
 

@@ -11,6 +11,7 @@
 #include "feldspar/study/study_table.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {
@@ -25,11 +26,11 @@ std::string what_runs(const RunRecord& record) {
 }
 
 void print_gathering(const Gathering& gathering) {
-    for (const RunRecord& record : gathering.failed) fmt::print("failed: {}: {}\n", what_runs(record), record.reason);
+    for (const RunRecord& record : gathering.failed) say("failed: {}: {}\n", what_runs(record), record.reason);
     for (const LostElement& lost : gathering.lost)
-        fmt::print("not done: {} of element {}: {}\n  its output: {}\n", counted(lost.runs.size(), "run"), lost.job, lost.reason, lost.output.string());
-    fmt::print("{} taken into the ledger, {} in the queue, {} failed, {} not done\n", counted(static_cast<std::size_t>(gathering.taken), "run"),
-               gathering.queued, gathering.failed.size(), gathering.missing());
+        say("not done: {} of element {}: {}\n  its output: {}\n", counted(lost.runs.size(), "run"), lost.job, lost.reason, lost.output.string());
+    say("{} taken into the ledger, {} in the queue, {} failed, {} not done\n", counted(static_cast<std::size_t>(gathering.taken), "run"),
+        gathering.queued, gathering.failed.size(), gathering.missing());
 }
 
 ExitCode outcome(const Gathering& gathering) {
@@ -37,21 +38,21 @@ ExitCode outcome(const Gathering& gathering) {
 }
 
 void print_submission(const Submission& submission, const std::string& study) {
-    if (submission.queued > 0) fmt::print("{} already in Slurm's queue\n", counted(static_cast<std::size_t>(submission.queued), "run"));
-    if (submission.elsewhere > 0) fmt::print("{} left to another process of this machine\n", counted(static_cast<std::size_t>(submission.elsewhere), "run"));
+    if (submission.queued > 0) say("{} already in Slurm's queue\n", counted(static_cast<std::size_t>(submission.queued), "run"));
+    if (submission.elsewhere > 0) say("{} left to another process of this machine\n", counted(static_cast<std::size_t>(submission.elsewhere), "run"));
     if (submission.failed > 0)
-        fmt::print("{} failed before and not repeated; --retry-failed submits them again\n", counted(static_cast<std::size_t>(submission.failed), "run"));
+        say("{} failed before and not repeated; --retry-failed submits them again\n", counted(static_cast<std::size_t>(submission.failed), "run"));
     if (!submission.plan) {
-        fmt::print("Nothing to submit: {} done\n", counted(static_cast<std::size_t>(submission.done), "run"));
+        say("Nothing to submit: {} done\n", counted(static_cast<std::size_t>(submission.done), "run"));
         return;
     }
     const SlurmPlan& plan = *submission.plan;
-    fmt::print("Submitted {} (about {} on one thread) as {} of job {}; job {} takes the results in\n",
-               counted(static_cast<std::size_t>(submission.submitted), "run"), duration_text(submission.expected_s),
-               counted(plan.groups.size(), "element"), plan.array_job, plan.gather_job);
-    fmt::print("Plan, scripts and output: {}\n", plan.directory.string());
-    fmt::print("To follow: feldspar study status {}   or   squeue --jobs={},{}\nTo stop:   scancel {}\n", study, plan.array_job, plan.gather_job,
-               plan.array_job);
+    say("Submitted {} (about {} on one thread) as {} of job {}; job {} takes the results in\n",
+        counted(static_cast<std::size_t>(submission.submitted), "run"), duration_text(submission.expected_s),
+        counted(plan.groups.size(), "element"), plan.array_job, plan.gather_job);
+    say("Plan, scripts and output: {}\n", plan.directory.string());
+    say("To follow: feldspar study status {}   or   squeue --jobs={},{}\nTo stop:   scancel {}\n", study, plan.array_job, plan.gather_job,
+        plan.array_job);
 }
 
 // Waits so long, or until the user interrupts.
@@ -114,11 +115,11 @@ ExitCode study_on_slurm(const Study& study, const StudyOptions& options) {
     std::fflush(stdout);
     wait_for(plans_in_queue(study.results));
     if (stop_requested()) {
-        fmt::print(stderr, "no longer waiting; the runs stay in the queue\n");
+        say(stderr, "no longer waiting; the runs stay in the queue\n");
         return ExitCode::interrupted;
     }
     const Gathering gathering = gather(ledger);   // again, should the gathering job have failed
-    fmt::print("\n{}\n", study_text(study, point_results(study, ledger)));
+    say("\n{}\n", study_text(study, point_results(study, ledger)));
     print_gathering(gathering);
     return outcome(gathering);
 }
@@ -156,9 +157,9 @@ void print_slurm_status(const fs::path& results) {
     try {
         const std::vector<SlurmPlan> plans = plans_in_queue(results);
         const std::vector<ArrayState> states = plans.empty() ? std::vector<ArrayState>{} : array_states(plans);
-        for (std::size_t i = 0; i < plans.size(); ++i) fmt::print("Slurm job {}: {}\n", plans[i].array_job, progress_text({states[i]}));
+        for (std::size_t i = 0; i < plans.size(); ++i) say("Slurm job {}: {}\n", plans[i].array_job, progress_text({states[i]}));
     } catch (const InputError& problem) {
-        fmt::print("{}\n", problem.what());
+        say("{}\n", problem.what());
     }
 }
 

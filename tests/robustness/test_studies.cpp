@@ -1,4 +1,7 @@
 // Studies run by the program: killed, interrupted, and two at once on one ledger.
+#include <pty.h>
+#include <sys/ioctl.h>
+
 #include <nlohmann/json.hpp>
 
 #include <map>
@@ -170,6 +173,41 @@ TEST(Studies, AMistakeLeavesNoFile) {
     EXPECT_NE(outcome.err.find("study.toml:10"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("did you mean"), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(place / "results"));
+}
+
+// What a terminal would obey in a name is shown by it: in the lines that are rewritten, in those that stay, and in what is printed.
+TEST(Studies, NamesDoNotCommandTheTerminal) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    write_text(place / "study.toml", "job = \"job.toml\"\nseeds = [1]\n[[axis]]\nname = \"mu\"\n[[axis.value]]\nlabel = \"re\\u001b[31md\\nline\"\n");
+    int master = -1, slave = -1;
+    const winsize size{50, 400, 0, 0};
+    ASSERT_EQ(openpty(&master, &slave, nullptr, nullptr, &size), 0);
+    fcntl(master, F_SETFL, O_NONBLOCK);
+    std::string shown;
+    const auto read_terminal = [&] {
+        char bytes[4096];
+        for (ssize_t count = 0; (count = read(master, bytes, sizeof bytes)) > 0;) shown.append(bytes, static_cast<std::size_t>(count));
+        return false;
+    };
+    Program program(place.path(), {"study", "study.toml"}, [&] { dup2(slave, STDERR_FILENO); });
+    program.wait_until(read_terminal);
+    const Outcome outcome = program.finish();
+    read_terminal();
+    close(master);
+    close(slave);
+    EXPECT_EQ(outcome.code, 0) << shown;
+    EXPECT_NE(shown.find("[re\\x1b[31md\\x0aline: uniaxial-compression, seed 1]"), std::string::npos) << shown;   // rewritten
+    EXPECT_NE(shown.find("1/1 re\\x1b[31md"), std::string::npos) << shown;                                       // stays
+    EXPECT_NE(outcome.out.find("re\\x1b[31md\\x0aline"), std::string::npos) << outcome.out;
+    EXPECT_EQ(shown.find("\x1b[31m"), std::string::npos) << shown;
+    EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << outcome.out;
+    const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
+    EXPECT_EQ(status.out.find('\x1b'), std::string::npos) << status.out;
+    const Outcome mistyped = run_program(place.path(), {"study", "study.toml", "\x1b[31m"});
+    EXPECT_EQ(mistyped.code, 2);
+    EXPECT_NE(mistyped.err.find("\\x1b[31m"), std::string::npos) << mistyped.err;
+    EXPECT_EQ(mistyped.err.find('\x1b'), std::string::npos) << mistyped.err;
 }
 
 }  // namespace

@@ -6,9 +6,14 @@
 #include <cmath>
 #include <sstream>
 
+#include "feldspar/base/printable.hpp"
+
 namespace feldspar {
 
-std::string aligned(const std::vector<Row>& rows, std::size_t left) {
+std::string aligned(const std::vector<Row>& given, std::size_t left) {
+    std::vector<Row> rows = given;
+    for (Row& row : rows)
+        for (std::string& cell : row) cell = printable(cell, LineEnds::escaped);
     std::vector<std::size_t> width(rows.front().size(), 0);
     for (const Row& row : rows)
         for (std::size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
@@ -39,7 +44,7 @@ std::string table_number(double value) {
 std::string wrapped_text(const std::string& text, const std::string& indent) {
     constexpr std::size_t longest = 110;
     std::string result, line;
-    std::istringstream words(text);
+    std::istringstream words(printable(text));
     for (std::string word; words >> word;) {
         if (!line.empty() && indent.size() + line.size() + 1 + word.size() > longest) {
             result += indent + line + "\n";

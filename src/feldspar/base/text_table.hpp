@@ -1,4 +1,4 @@
-// Tables, numbers and paragraphs for a terminal.
+// Tables, numbers and paragraphs for a terminal. Control characters in them stand as escapes (printable.hpp).
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@ namespace feldspar {
 using Row = std::vector<std::string>;
 
 /// Columns as wide as their widest cell, a line under the first row; `left` columns from the first on are flush left, the others
-/// flush right. @param rows  at least one, all equally long
+/// flush right. Line ends in a cell stand as escapes, too. @param rows  at least one, all equally long
 std::string aligned(const std::vector<Row>& rows, std::size_t left);
 
 /// Four digits or so; "-" for not-a-number.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/base/text_table.hpp"
 #include "feldspar/output/html_page.hpp"
 #include "feldspar/output/report_assets.hpp"
@@ -107,7 +108,7 @@ std::string csv(const ConvergePlan& plan, const Convergence& result, const Prove
         "# {}: means over packings with 95 % intervals, and changes against the job as it is\n# strengths are positive magnitudes\n# feldspar {}, commit {}\n# columns: "
         "axis; value; property with its unit; packings; mean, low, high in that unit; change, change_low, change_high [%]; by_packing 1: changes formed on each packing, "
         "0: between means\naxis,value,property,packings,mean,low,high,change_percent,change_low_percent,change_high_percent,by_packing\n",
-        plan.study.title, provenance.version, provenance.commit);
+        printable(plan.study.title, LineEnds::escaped), provenance.version, provenance.commit);
     for (const AxisResult& axis : result.axes)
         for (const PropertyAlong& along : axis.properties)
             for (std::size_t v = 0; v < along.values.size(); ++v) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/base/text_table.hpp"
 #include "feldspar/output/html_page.hpp"
 #include "feldspar/output/report_assets.hpp"
@@ -160,7 +161,7 @@ std::string csv(const Study& study, std::span<const PointResults> points, const 
         "of an elastic disc\n# feldspar {}, commit {}\n# columns: variant; test; seed of the packing; sigma3 [MPa]; sigma1 [MPa]; strength [MPa], a positive "
         "magnitude; peak_reached 1 or 0 (then the strength is a lower bound and is in no fit); grade of the quasi-static evidence\n"
         "variant,test,seed,sigma3_MPa,sigma1_MPa,strength_MPa,peak_reached,grade\n",
-        study.title, provenance.version, provenance.commit);
+        printable(study.title, LineEnds::escaped), provenance.version, provenance.commit);
     for (const PointResults& point : points)
         for (const TestResult& r : point.results) {
             const StressState state = state_of(r);

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -18,7 +19,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     auto line = std::back_inserter(text);
     fmt::format_to(line, "# history of {}, seed {}", name(result.test.kind), result.seed);
     if (result.test.kind == TestKind::biaxial) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
-    if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", result.variant);
+    if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", printable(result.variant, LineEnds::escaped));
     fmt::format_to(line, "\n# signs: {}\n", sign_convention);
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
                    name(result.model.contact), name(result.contact.law), name(result.numerics.kind), name(result.model.plane));

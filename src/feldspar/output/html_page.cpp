@@ -1,12 +1,13 @@
 #include "feldspar/output/html_page.hpp"
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/output/report_assets.hpp"
 
 namespace feldspar {
 
 std::string escaped(const std::string& text) {
     std::string html;
-    for (const char letter : text) {
+    for (const char letter : printable(text)) {
         switch (letter) {
             case '&':
                 html += "&amp;";
@@ -30,8 +31,24 @@ std::string escaped(const std::string& text) {
     return html;
 }
 
+namespace {
+
+nlohmann::ordered_json printable_json(const nlohmann::ordered_json& json) {
+    if (json.is_string()) return printable(json.get_ref<const std::string&>());
+    nlohmann::ordered_json shown = json;
+    if (json.is_array())
+        for (auto& value : shown) value = printable_json(value);
+    if (json.is_object()) {
+        shown = nlohmann::ordered_json::object();
+        for (const auto& [key, value] : json.items()) shown[printable(key)] = printable_json(value);
+    }
+    return shown;
+}
+
+}  // namespace
+
 std::string script_json(const nlohmann::ordered_json& json) {
-    const std::string text = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    const std::string text = printable_json(json).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     std::string safe;
     safe.reserve(text.size());
     for (const char letter : text) {

@@ -6,10 +6,11 @@
 
 namespace feldspar {
 
-/// Text as it may stand between tags or in an attribute.
+/// Text as it may stand between tags or in an attribute; control characters as escapes that can be read.
 std::string escaped(const std::string& text);
 
-/// JSON that may stand inside a script element: a '<' can only be in a string there, and as \u003c it ends no element.
+/// JSON that may stand inside a script element: a '<' can only be in a string there, and as \u003c it ends no element. Control
+/// characters in its texts are escapes that can be read.
 std::string script_json(const nlohmann::ordered_json& json);
 
 /// Replaces each {{mark}} of the page once, in the order of the page, so that nothing inserted is searched for marks.

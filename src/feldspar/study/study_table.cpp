@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/base/text_table.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/output/history_columns.hpp"
@@ -36,7 +37,8 @@ std::string number_cell(double value) { return std::isfinite(value) ? format_exa
 
 }  // namespace
 
-std::string csv_cell(const std::string& text) {
+std::string csv_cell(const std::string& given) {
+    const std::string text = printable(given);
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
@@ -75,7 +77,7 @@ std::string study_text(const Study& study, std::span<const PointResults> points)
 
 std::string points_csv(const Study& study, std::span<const PointResults> points) {
     const std::vector<std::string> properties = properties_of(points);
-    std::string text = fmt::format("# {}: means over packings with their 95 % intervals; {}\n", study.title, sign_convention);
+    std::string text = fmt::format("# {}: means over packings with their 95 % intervals; {}\n", printable(study.title, LineEnds::escaped), sign_convention);
     for (const std::string& axis : study.axes) text += csv_cell(axis) + ",";
     for (const std::string& property : properties) {
         const std::string name = user_quantity(property).name;
@@ -101,7 +103,7 @@ std::string runs_csv(const Study& study, const Ledger& ledger) {
     std::map<std::string, RunRecord> records;
     for (RunRecord& record : ledger.find(ids)) records[record.id] = std::move(record);
 
-    std::string text = fmt::format("# {}: runs, in SI units; {}\n", study.title, sign_convention);
+    std::string text = fmt::format("# {}: runs, in SI units; {}\n", printable(study.title, LineEnds::escaped), sign_convention);
     for (const std::string& axis : study.axes) text += csv_cell(axis) + ",";
     text += "seed,test,sigma3_Pa,state,grade";
     for (const std::string& column : number_columns()) text += "," + column;

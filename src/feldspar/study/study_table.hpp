@@ -21,7 +21,8 @@ std::string points_csv(const Study& study, std::span<const PointResults> points)
 /// CSV: a row a run; the axes, seed, test and state, then the ledger's numbers in its units (SI).
 std::string runs_csv(const Study& study, const Ledger& ledger);
 
-/// "UCS_MPa" and "12.3 GPa" as cells of a CSV: quoted where a comma, a quote or a line end asks for it.
+/// "UCS_MPa" and "12.3 GPa" as cells of a CSV: quoted where a comma, a quote or a line end asks for it; control characters as
+/// escapes such as \x1b.
 std::string csv_cell(const std::string& text);
 
 }  // namespace feldspar

@@ -205,6 +205,8 @@ TEST(Printable, ShowsControlCharactersEscaped) {
     EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\x9b" "31m");
     EXPECT_EQ(printable("Größe, σ\n\tµm"), "Größe, σ\n\tµm");
     EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
+    EXPECT_EQ(printable("one\r\ntwo\rthree"), "one\r\ntwo\\x0dthree");
+    EXPECT_EQ(printable("one\r\n\ttwo", LineEnds::escaped), "one\\x0d\\x0a\\x09two");
 }
 
 }  // namespace

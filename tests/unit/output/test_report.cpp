@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -120,6 +121,17 @@ TEST_F(Report, EscapesEverythingThatAUserCanWrite) {
     const json data = json::parse(between(html, "id=\"data\">", "</script>"));
     EXPECT_EQ(data["job"]["name"], job.name);
     EXPECT_EQ(data["job"]["resolved"], resolved_toml(job));
+}
+
+TEST_F(Report, ShowsControlCharactersAsText) {
+    job.name = "gra\x1b[31mnite\r\a";
+    results[0].evidence.verdict = "one\ntwo\x7f\xc2\x9b";
+    const std::string html = page();
+    EXPECT_NE(html.find("<title>gra\\x1b[31mnite\\x0d\\x07 - Feldspar"), std::string::npos);
+    for (const char* character : {"\x1b", "\r", "\a", "\x7f", "\xc2\x9b"}) EXPECT_EQ(html.find(character), std::string::npos) << printable(character);
+    const json data = json::parse(between(html, "id=\"data\">", "</script>"));
+    EXPECT_EQ(data["job"]["name"], "gra\\x1b[31mnite\\x0d\\x07");
+    EXPECT_EQ(data["tests"][0]["verdict"], "one\ntwo\\x7f\\x9b");
 }
 
 TEST_F(Report, ANameThatIsNoUnicodeDoesNotLoseTheReport) {

@@ -53,6 +53,13 @@ TEST(TestStem, BeginsWithTheVariant) {
     EXPECT_EQ(test_stem(result), "rigid-brittle-uniaxial-compression-s3");
 }
 
+TEST_F(Tables, AVariantStaysInItsLineOfTheHistory) {
+    TestResult result = make_result();
+    result.variant = "rigid\n\x1b[31m1,2";
+    write_history_csv(directory, result, make_provenance());
+    EXPECT_NE(read_text(directory.path() / ("history-" + test_stem(result) + ".csv")).find("\n# variant: rigid\\x0a\\x1b[31m1,2\n"), std::string::npos);
+}
+
 TEST_F(Tables, SummaryListsTestsThatFailed) {
     EXPECT_FALSE(summary({make_result()}).contains("failed")) << "of none";
     TestSpec biaxial;

@@ -58,6 +58,31 @@ TEST_F(ExecuteStudy, DoesEveryRunOnceAndLeavesItsFiles) {
     EXPECT_NE(runs_csv(study, ledger).find(study.runs[0].id), std::string::npos);
 }
 
+TEST_F(ExecuteStudy, TablesShowControlCharactersEscaped) {
+    Study study = read("title = \"two\\nlines\"\nseeds = [1]\n[[axis]]\nname = \"m\\u001bu\"\n[[axis.value]]\nlabel = \"a\\u001b[31m, \\\"b\\\"\"\n");
+    Ledger ledger(place_, Ledger::Access::write);
+    ledger.record(failed_record(study.runs[0], "a\rforce\nis not a number", Failure::numerical, collect_provenance("test", 1)));
+    const auto points = point_results(study, ledger);
+    const std::string of_points = points_csv(study, points), of_runs = runs_csv(study, ledger);
+    for (const std::string& text : {of_points, of_runs}) {
+        EXPECT_TRUE(text.starts_with("# two\\x0alines: ")) << text;
+        EXPECT_NE(text.find("\nm\\x1bu,"), std::string::npos) << text;
+        EXPECT_NE(text.find("\n\"a\\x1b[31m, \"\"b\"\"\","), std::string::npos) << text;
+        EXPECT_EQ(text.find_first_of("\x1b\r"), std::string::npos) << text;
+    }
+    EXPECT_NE(of_runs.find(",\"a\\x0dforce\nis not a number\","), std::string::npos) << of_runs;   // a line end may stand between quotes
+    EXPECT_NE(study_text(study, points).find("a\\x1b[31m"), std::string::npos);
+    EXPECT_EQ(study_text(study, points).find('\x1b'), std::string::npos);
+}
+
+TEST(CsvCell, IsQuotedWhereItMustBe) {
+    EXPECT_EQ(csv_cell("12.3 GPa"), "12.3 GPa");
+    EXPECT_EQ(csv_cell("a, b"), "\"a, b\"");
+    EXPECT_EQ(csv_cell("\"a\""), "\"\"\"a\"\"\"");
+    EXPECT_EQ(csv_cell("a\nb"), "\"a\nb\"");
+    EXPECT_EQ(csv_cell("a\x1b\a"), "a\\x1b\\x07");
+}
+
 TEST_F(ExecuteStudy, GivesTheSameBitsSideBySide) {
     const Study study = read(two_frictions);
     Ledger alone(folder_ / "alone", Ledger::Access::write), together(folder_ / "together", Ledger::Access::write);
