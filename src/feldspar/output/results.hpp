@@ -38,13 +38,14 @@ public:
     /// Only checks what create() would do; makes nothing. @throws InputError as create().
     static void check(const std::optional<std::filesystem::path>& wanted, const std::string& job_name);
 
-    /// A directory that create() has made before.
-    static RunDirectory open(std::filesystem::path path) { return RunDirectory(std::move(path)); }
+    /// A directory that is there. What programs that were killed have left of files that they wrote aside is removed.
+    static RunDirectory open(std::filesystem::path path);
 
     const std::filesystem::path& path() const { return path_; }
 
     /// Writes `name` through `fill(temporary path)`, then renames it into place. @throws OutputError; on failure the
-    /// temporary file is gone and an earlier version of `name` is untouched.
+    /// temporary file is gone and an earlier version of `name` is untouched. Several programs may write the same file at once: each
+    /// version is whole, and the last one stays.
     void write(const std::string& name, const std::function<void(const std::filesystem::path&)>& fill) const;
 
     /// The same for text that is already in memory.

@@ -5,11 +5,15 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <regex>
 #include <string_view>
 #include <system_error>
 
@@ -30,12 +34,49 @@ std::string reason(int error) { return std::strerror(error); }
     throw InputError({.file = "", .line = 0, .column = 0, .key = "--out"}, problem, allowed);
 }
 
-/// Where a file is written before it is renamed to `path`.
-fs::path aside_of(const fs::path& path) { return path.parent_path() / fmt::format(".{}.part", path.filename().string()); }
+/// This machine's name without dots and the like.
+std::string machine() {
+    char name[256] = {};
+    if (::gethostname(name, sizeof name - 1) != 0 || name[0] == '\0') return "unknown";
+    std::string plain = name;
+    for (char& letter : plain)
+        if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-') letter = '_';
+    return plain;
+}
+
+/// Where a file is written before it is renamed to `path`: ".summary.json.4711-2-machine.part". Process, counter and machine keep programs and
+/// threads that write the same file at once apart; the last one to rename its own wins.
+fs::path aside_of(const fs::path& path) {
+    static std::atomic<unsigned> counter{0};
+    return path.parent_path() / fmt::format(".{}.{}-{}-{}.part", path.filename().string(), ::getpid(), ++counter, machine());
+}
+
+/// What the name of a file that is written aside says.
+struct Aside {
+    std::string file;   ///< its final name
+    pid_t process = 0;
+    std::string machine;
+};
+
+std::optional<Aside> read_aside(const std::string& name) {
+    static const std::regex form(R"(\.(.+)\.([0-9]{1,9})-[0-9]+-([^.]+)\.part)");
+    std::smatch match;
+    if (!std::regex_match(name, match, form)) return std::nullopt;
+    return Aside{match[1], static_cast<pid_t>(std::stol(match[2])), match[3]};
+}
+
+/// Whether nobody writes it any more: its process is gone. One of another machine cannot be asked for: there it has not grown for a day.
+bool left_behind(const fs::path& path) {
+    const std::optional<Aside> aside = read_aside(path.filename().string());
+    if (!aside) return false;
+    if (aside->machine == machine()) return ::kill(aside->process, 0) != 0 && errno == ESRCH;
+    std::error_code error;
+    const auto written = fs::last_write_time(path, error);
+    return !error && fs::file_time_type::clock::now() - written > std::chrono::hours(24);
+}
 
 [[noreturn]] void lost(fs::path path, const std::string& why) {
-    const std::string file = path.filename().string();  // the user knows the file by its final name
-    if (file.starts_with('.') && file.ends_with(".part")) path = path.parent_path() / file.substr(1, file.size() - 6);
+    if (const auto aside = read_aside(path.filename().string())) path = path.parent_path() / aside->file;   // the user knows the file by its final name
     throw OutputError(fmt::format("cannot write '{}': {}", path.string(), why));
 }
 
@@ -181,6 +222,13 @@ RunDirectory RunDirectory::create(const std::optional<fs::path>& wanted, const s
         if (errno != EEXIST) refuse(fmt::format("cannot make the directory '{}': {}", path.string(), reason(errno)));
         if (wanted) refuse_existing(path);
     }
+}
+
+RunDirectory RunDirectory::open(fs::path path) {
+    std::error_code error, ignored;
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+        if (left_behind(entry->path())) fs::remove(entry->path(), ignored);
+    return RunDirectory(std::move(path));
 }
 
 void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const {

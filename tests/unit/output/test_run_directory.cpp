@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 
@@ -122,6 +123,65 @@ TEST(RunDirectory, AFailedWriteKeepsTheEarlierFileAndLeavesNothingAside) {
     EXPECT_THROW(directory.write("other.json", [](const fs::path&) {}), OutputError);  // nothing was written at all
     EXPECT_EQ(read_text(directory.path() / "summary.json"), "whole");
     EXPECT_EQ(count_entries(directory.path()), 1);
+}
+
+// Two programs on one study write its page at the same time.
+TEST(RunDirectory, TwoProgramsMayWriteTheSameFileAtOnce) {
+    const TemporaryFolder scratch;
+    const auto directory = RunDirectory::create(scratch.path() / "run", "job");
+    directory.write("page.html", [&](const fs::path& aside) {
+        std::ofstream file(aside);
+        file << "first " << std::flush;
+        const int other = in_child([&] {
+            try {
+                RunDirectory::open(directory.path()).write_text("page.html", "other, whole");
+            } catch (const std::exception&) {
+                return 1;
+            }
+            return 0;
+        });
+        EXPECT_EQ(other, 0);
+        EXPECT_EQ(read_text(directory.path() / "page.html"), "other, whole");
+        file << "whole";
+    });
+    EXPECT_EQ(read_text(directory.path() / "page.html"), "first whole");
+    EXPECT_EQ(count_entries(directory.path()), 1);
+}
+
+TEST(RunDirectory, WhatAKilledProgramLeftAsideGoesWhenTheDirectoryIsOpened) {
+    const TemporaryFolder scratch;
+    const auto directory = RunDirectory::create(scratch.path() / "run", "job");
+    directory.write_text("page.html", "whole");
+    const int code = in_child([&] {
+        directory.write("page.html", [](const fs::path& aside) {
+            std::ofstream(aside) << "ha";
+            raise(SIGKILL);
+        });
+        return 0;
+    });
+    EXPECT_EQ(code, 128 + SIGKILL);
+    EXPECT_EQ(count_entries(directory.path()), 2);
+    EXPECT_EQ(read_text(directory.path() / "page.html"), "whole");
+    (void)RunDirectory::open(directory.path());
+    EXPECT_EQ(count_entries(directory.path()), 1);
+}
+
+TEST(RunDirectory, WhatOthersStillWriteStays) {
+    const TemporaryFolder scratch;
+    const auto directory = RunDirectory::create(scratch.path() / "run", "job");
+    const fs::path elsewhere = directory.path() / ".page.html.1-1-another_machine.part";
+    std::ofstream(elsewhere) << "ha";
+    std::ofstream(directory.path() / ".notes.part") << "a file of the user's";
+    directory.write("page.html", [&](const fs::path& aside) {
+        std::ofstream(aside) << "whole";
+        (void)RunDirectory::open(directory.path());
+    });
+    EXPECT_EQ(read_text(directory.path() / "page.html"), "whole");
+    EXPECT_TRUE(fs::exists(elsewhere));
+    fs::last_write_time(elsewhere, fs::file_time_type::clock::now() - std::chrono::hours(25));
+    (void)RunDirectory::open(directory.path());
+    EXPECT_FALSE(fs::exists(elsewhere));
+    EXPECT_TRUE(fs::exists(directory.path() / ".notes.part"));
 }
 
 TEST(RunDirectory, AFullDiskLeavesNoTruncatedFile) {
