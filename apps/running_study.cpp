@@ -24,10 +24,9 @@ public:
         int number = 0;
         for (const Run& run : study.runs)
             if (numbers_[run.id] == 0) numbers_[run.id] = ++number;
-        for (const RunRecord& record : ledger.find(ids)) {
-            done_ += record.state == RunState::done;
-            failed_ += program != nullptr && failed_for_good(record, *program);
-        }
+        const SettledRuns settled = settled_runs(ledger.find(ids), program);
+        done_ = static_cast<int>(settled.done.size());
+        failed_ = static_cast<int>(settled.failed.size());
         first_ = ended_ = done_ + failed_;
         progress_.keep_log_short();
     }
@@ -102,7 +101,7 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
 
 void print_execution(const Study& study, const Execution& execution) {
     say("{} runs done now, {} before, {} failed; {} of runs in {}\n", execution.done, execution.found_done, execution.failed,
-               duration_text(execution.run_s), duration_text(execution.wall_s));
+        duration_text(execution.run_s), duration_text(execution.wall_s));
     if (execution.found_failed > 0) say("{} failed before and were not repeated; --retry-failed runs them again\n", execution.found_failed);
     say("Ledger: {}\n", (study.results / "ledger.sqlite").string());
     if (execution.left > 0) say(stderr, "interrupted with {} runs left; the same command goes on with them\n", execution.left);

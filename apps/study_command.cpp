@@ -45,15 +45,14 @@ ExitCode study_status_command(const StudyOptions& options) {
         for (RunRecord& record : Ledger(study.results, Ledger::Access::read).find(ids)) by_state[record.state].push_back(std::move(record));
     const auto count = [&](RunState state) { return by_state[state].size(); };
     say("{}: {} points, {} runs: {} done, {} running, {} failed, {} to do\n", study.name, study.points.size(), ids.size(),
-               count(RunState::done), count(RunState::running), count(RunState::failed),
-               ids.size() - count(RunState::done) - count(RunState::running) - count(RunState::failed));
+        count(RunState::done), count(RunState::running), count(RunState::failed),
+        ids.size() - count(RunState::done) - count(RunState::running) - count(RunState::failed));
     double spent_s = 0.0;
     for (const RunRecord& record : by_state[RunState::done]) spent_s += record.numbers.at("wall_s");
     say("Time of the runs that are done: {}\n", duration_text(spent_s));
     for (const RunRecord& record : by_state[RunState::failed]) say("failed: {}: {}\n", label_of(study, *runs.at(record.id)), record.reason);
     const Provenance here = collect_provenance({}, 1);
-    const auto& failed = by_state[RunState::failed];
-    const auto kept = std::count_if(failed.begin(), failed.end(), [&](const RunRecord& record) { return failed_for_good(record, here); });
+    const std::size_t kept = settled_runs(by_state[RunState::failed], &here).failed.size();
     if (kept > 0) say("{} of the failed runs will not be repeated, but by --retry-failed\n", kept);
     for (const RunRecord& record : by_state[RunState::running]) say("running, or left behind: {}\n", label_of(study, *runs.at(record.id)));
     print_slurm_status(study.results);

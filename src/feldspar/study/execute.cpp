@@ -35,7 +35,11 @@ public:
         std::set<std::string> seen;
         for (const Run& run : runs)   // points may share runs
             if (seen.insert(run.id).second) runs_.push_back(&run);
-        for (std::size_t i = 0; i < runs_.size(); ++i) waiting_.push_back(i);
+        const SettledRuns settled = settled_runs(ledger_.find(std::vector<std::string>(seen.begin(), seen.end())), whose_failures_count());
+        execution_.found_done = static_cast<int>(settled.done.size());
+        execution_.found_failed = static_cast<int>(settled.failed.size());
+        for (std::size_t i = 0; i < runs_.size(); ++i)
+            if (!settled.done.contains(runs_[i]->id) && !settled.failed.contains(runs_[i]->id)) waiting_.push_back(i);
     }
 
     Execution operator()() {
@@ -58,6 +62,9 @@ public:
     }
 
 private:
+    // None if failed runs are to be repeated.
+    const Provenance* whose_failures_count() const { return control_.retry_failed ? nullptr : &control_.provenance; }
+
     bool stopped() const { return *control_.stop || lost_ != nullptr; }
 
     bool may_start() const { return !stopped() && !waiting_.empty() && running_.has_room_for(expected_bodies(*runs_[waiting_.front()])); }
@@ -66,7 +73,7 @@ private:
         const std::size_t i = waiting_.front();
         waiting_.pop_front();
         const Run& run = *runs_[i];
-        switch (ledger_.claim(run, control_.retry_failed ? nullptr : &control_.provenance)) {
+        switch (ledger_.claim(run, whose_failures_count())) {   // another process may have ended it by now
             case Ledger::Claim::done: ++execution_.found_done; return;
             case Ledger::Claim::failed: ++execution_.found_failed; return;
             case Ledger::Claim::others: others_.push_back(i); return;
@@ -77,8 +84,8 @@ private:
             ++execution_.found_done;
             return;
         }
-        if (const auto record = control_.retry_failed ? std::nullopt : failure_left(ledger_.run_directory(run.id), run);
-            record && failed_for_good(*record, control_.provenance)) {
+        if (const auto record = failure_left(ledger_.run_directory(run.id), run);
+            record && !settled_runs(std::span(&*record, 1), whose_failures_count()).failed.empty()) {
             ledger_.record(*record);
             ++execution_.found_failed;
             return;

@@ -218,6 +218,15 @@ bool failed_for_good(const RunRecord& record, const Provenance& program) {
            is("version", program.version) && is("commit_id", program.commit);
 }
 
+SettledRuns settled_runs(std::span<const RunRecord> records, const Provenance* program) {
+    SettledRuns settled;
+    for (const RunRecord& record : records) {
+        if (record.state == RunState::done) settled.done.insert(record.id);
+        else if (program != nullptr && failed_for_good(record, *program)) settled.failed.insert(record.id);
+    }
+    return settled;
+}
+
 TestResult result_of(const RunRecord& record) {
     TestResult result;
     for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian})

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <span>
 #include <string>
 
 #include "feldspar/lab/result.hpp"
@@ -45,6 +47,15 @@ RunRecord failed_record(const Run& run, const std::string& reason, Failure failu
 
 /// The run failed for good: of its input or numerically, with this very version and commit of the program.
 bool failed_for_good(const RunRecord& record, const Provenance& program);
+
+/// The runs that are not run again, by their ids.
+struct SettledRuns {
+    std::set<std::string> done;
+    std::set<std::string> failed;   ///< for good
+};
+
+/// Picks them from what a ledger knows of the runs. @param program  whose failures count; none if failed runs are repeated
+SettledRuns settled_runs(std::span<const RunRecord> records, const Provenance* program);
 
 /// As much of a result as summarise() reads.
 TestResult result_of(const RunRecord& record);

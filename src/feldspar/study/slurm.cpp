@@ -246,21 +246,19 @@ std::vector<const Run*> open_runs(const Study& study, Ledger& ledger, const std:
     std::vector<std::string> ids;
     for (const Run& run : study.runs) ids.push_back(run.id);
     const Provenance here = collect_provenance({}, 1);
-    std::map<std::string, RunState> states;
-    std::set<std::string> failed;   // for good
-    for (const RunRecord& record : ledger.find(ids)) {
-        states[record.id] = record.state;
-        if (!retry_failed && failed_for_good(record, here)) failed.insert(record.id);
-    }
+    const std::vector<RunRecord> records = ledger.find(ids);
+    const SettledRuns settled = settled_runs(records, retry_failed ? nullptr : &here);
+    std::set<std::string> running;
+    for (const RunRecord& record : records)
+        if (record.state == RunState::running) running.insert(record.id);
     std::vector<const Run*> open;
     std::set<std::string> seen;
     for (const Run& run : study.runs) {
         if (!seen.insert(run.id).second) continue;
-        const auto state = states.find(run.id);
-        if (state != states.end() && state->second == RunState::done) ++submission.done;
+        if (settled.done.contains(run.id)) ++submission.done;
         else if (queued.contains(run.id)) ++submission.queued;
-        else if (failed.contains(run.id)) ++submission.failed;
-        else if (state != states.end() && state->second == RunState::running && taken_elsewhere(ledger, run)) ++submission.elsewhere;
+        else if (settled.failed.contains(run.id)) ++submission.failed;
+        else if (running.contains(run.id) && taken_elsewhere(ledger, run)) ++submission.elsewhere;
         else open.push_back(&run);
     }
     return open;

@@ -124,6 +124,31 @@ TEST_F(ExecuteStudy, AFailureIsRecordedAndDoesNotStopTheOthers) {
     EXPECT_EQ(run(study, later).found_failed, 1);   // but not twice on one ledger
 }
 
+TEST_F(ExecuteStudy, WhatIsSettledIsCountedOnceForEveryRun) {
+    const Study study = read(two_frictions);
+    const Provenance here = collect_provenance("test", 1);
+    Provenance other = here;
+    other.commit += "-other";
+    std::vector<RunRecord> records{failed_record(study.runs[0], "a force is not a number", Failure::numerical, here), failed_record(study.runs[1], "no memory", Failure::other, here),
+                                   failed_record(study.runs[2], "a force is not a number", Failure::numerical, other), failed_record(study.runs[3], "", Failure::input, here)};
+    records[3].state = RunState::done;
+    const std::set<std::string> first{study.runs[0].id}, last{study.runs[3].id};
+    EXPECT_EQ(settled_runs(records, &here).failed, first);
+    EXPECT_EQ(settled_runs(records, &here).done, last);
+    EXPECT_TRUE(settled_runs(records, nullptr).failed.empty());
+    EXPECT_EQ(settled_runs(records, nullptr).done, last);
+
+    {
+        Ledger ledger(place_, Ledger::Access::write);
+        for (const RunRecord& record : records) ledger.record(record);
+    }
+    Ledger ledger(place_, Ledger::Access::write);
+    const Execution execution = run(study, ledger);
+    EXPECT_EQ(execution.found_failed, 1);
+    EXPECT_EQ(execution.found_done, 1);
+    EXPECT_EQ(execution.done, 2);
+}
+
 TEST_F(ExecuteStudy, AFailureThatAnElementHasLeftIsTakenForWhatItIs) {
     const Study study = read("seeds = [1]\n");
     Ledger ledger(place_, Ledger::Access::write);
