@@ -21,7 +21,7 @@ E = "25.8 GPa"
 nu = 0.23
 UCS = { value = "122.1 MPa", tolerance = "5 %" }    # met within its tolerance; or standard_deviation = "5 MPa"
 # DTS = "8 MPa"
-BTS = "8.8 MPa"                     # scatters from packing to packing: bearing strips (docs/job.md, plate_Kn) calm it
+BTS = "8.8 MPa"                     # scatters from packing to packing, and least between the usual curved jaws (docs/job.md, plates)
 # cohesion = "21 MPa"               # of a straight envelope through the uniaxial and all biaxial tests of the job
 friction_angle = "53 deg"
 # sigma1 = [{ sigma3 = "10 MPa", value = "210 MPa" }]

@@ -25,8 +25,7 @@ std::string column_of(const Observable& quantity, bool elastic) {
     return quantity.name == "E" ? "E_initial_Pa" : "nu_initial";
 }
 
-constexpr double covers_90 = 1.645;    // standard deviations: the estimated error is to cover the true one in nine tests of ten
-constexpr double too_fast = 0.02;      // estimated error beyond which a test has grade C for its rate (docs/theory/loading.md, L9)
+constexpr double within_90 = 1.645;   // standard deviations of a normal error in which nine of ten lie
 
 // In a direction: by its law, or because there is less fracture energy than elastic energy at the strength.
 bool breaks_brittly(const ContactMaterial& contact) {
@@ -53,7 +52,7 @@ Reading reading_of(const RunRecord& record, const Observable& quantity, bool ela
     const bool strength = quantity.column == strength_column, known = number_in(record, "peak_reached") == 1.0;
     const double error = number_in(record, "error_estimate");
     if (reading.grade == 'C') {   // what is read at a share of such a strength, or of one that was not reached, says nothing
-        if (strength && known && !brittle && error > too_fast) {
+        if (strength && known && !brittle && error > grade_b_error) {
             reading.value = value;
             reading.says = Says::at_most;
         }
@@ -67,7 +66,7 @@ Reading reading_of(const RunRecord& record, const Observable& quantity, bool ela
         return reading;
     }
     reading.value = value;
-    if (quantity.name != "E" && quantity.name != "nu" && std::isfinite(error)) reading.error = error / covers_90;   // E and nu hardly depend on where half of the strength is
+    if (quantity.name != "E" && quantity.name != "nu" && std::isfinite(error)) reading.error = error_bound(error) / within_90;   // E and nu hardly depend on where half of the strength is
     return reading;
 }
 

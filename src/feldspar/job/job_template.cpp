@@ -120,11 +120,11 @@ sigma3 = ["4 MPa", "10 MPa"]        # one test for each; with a uniaxial test th
 std::string brazilian_test() {
     return std::string(R"(
 [[test]]
-kind = "brazilian"                  # a disc pressed between two plates: gives the indirect tensile strength BTS
+kind = "brazilian"                  # a disc pressed between two jaws: gives the indirect tensile strength BTS
 # diameter = "80 mm"                # of the disc; the specimen's width unless given
-# plate_stiffness_factor = 1.0      # stiffness of the plates, as a multiple of the contacts' Kn; bearing strips: docs/job.md, plate_Kn
-# disc = "whole"                    # or "flattened": two flats, each of flat_angle = "20 deg" seen from the centre (10 to 40 deg)
-# plates = "flat"                   # or "curved": jaws of 1.5 times the disc's radius (jaw_radius), as ISRM suggests
+# plates = "curved"                 # jaws of 1.5 times the disc's radius (jaw_radius), as ISRM suggests; or "flat"
+# plate_Kn = "1600 GPa/m"           # of what lies between jaw and disc: a layer of masking tape. Flat plates are as hard as the contacts unless it is given
+# disc = "whole"                    # or "flattened": two flats, each of flat_angle = "20 deg" seen from the centre (10 to 40 deg), between flat plates
 # plate_mu = 0.4                    # friction between plates and disc
 )") + other_control + common_test;
 }

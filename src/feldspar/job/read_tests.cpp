@@ -68,11 +68,14 @@ double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen
 const Range flat_angle_range{10.0 * std::numbers::pi / 180.0, 40.0 * std::numbers::pi / 180.0, true, true, "from 10 to 40 degrees (20 to 30 are usual)"};
 constexpr double usual_flat_angle_rad = 20.0 * std::numbers::pi / 180.0;
 
-// The disc may have two flats, on which flat plates press. 0 = a whole disc.
-double read_flats(const TableReader& table, const SpecimenSpec& specimen, double diameter_m, const Known& known, const TestSpec& test) {
-    enum class Disc { whole, flattened };
-    const Disc disc = table.has("disc") ? table.choice<Disc>("disc", {{"whole", Disc::whole}, {"flattened", Disc::flattened}}) : Disc::whole;
-    if (disc == Disc::whole) {
+// The disc may be whole, or have two flats, on which flat plates press.
+bool is_flattened(const TableReader& table) {
+    return table.has("disc") && table.choice<bool>("disc", {{"whole", false}, {"flattened", true}});
+}
+
+// Angle over which a flat is seen from the centre; 0: of a whole disc.
+double read_flats(const TableReader& table, bool flattened, const SpecimenSpec& specimen, double diameter_m, const Known& known, const TestSpec& test) {
+    if (!flattened) {
         if (table.sound({"disc"})) table.refuse({"flat_angle"}, "a whole disc", "disc = \"flattened\"");
         return 0.0;
     }
@@ -125,8 +128,11 @@ LoadControl read_control(const TableReader& table, TestKind kind, const std::vec
     return control;
 }
 
+// A laboratory wraps the disc in a layer of masking tape, about 0.25 mm of a modulus near 0.4 GPa (docs/decisions, fixture of the Brazilian test).
+constexpr double tape_Kn_Pa_m = 1.6e12;
+
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
-void read_plates(const TableReader& table, bool particles, const Known& known, TestSpec& test) {
+void read_plates(const TableReader& table, bool particles, bool flattened, const Known& known, TestSpec& test) {
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
     const bool brazilian = test.kind == TestKind::brazilian, tension = test.kind == TestKind::direct_tension;
     if (!brazilian && !particles && known.kinds)
@@ -140,13 +146,16 @@ void read_plates(const TableReader& table, bool particles, const Known& known, T
     if (!brazilian) table.refuse({"plates", "jaw_radius"}, setting, "only with kind = \"brazilian\"");
     if (!brazilian && !particles) return;
     if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
+    else if (brazilian) test.plates = flattened ? PlateShape::flat : PlateShape::curved;
     if (table.has("jaw_radius")) {
-        if (test.plates != PlateShape::curved) table.check({"plates"}, [&] { table.fail("jaw_radius", "given for flat plates", "plates = \"curved\""); });
+        if (test.plates != PlateShape::curved)
+            table.check({"plates", "disc"}, [&] { table.fail("jaw_radius", "given for flat plates", "plates = \"curved\", which is for a whole disc"); });
         test.jaw_radius = table.number("jaw_radius", {1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}, test.jaw_radius);
     }
     if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
         table.check({}, [&] { table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them"); });
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn", Dimension::stiffness_gradient, positive);
+    else if (test.plates == PlateShape::curved && !table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m = tape_Kn_Pa_m;
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
     if (!tension) test.plate_mu = table.number("plate_mu", not_negative, brazilian ? 0.4 : 0.0);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates", 1, 1000, test.membrane_plates));
@@ -183,12 +192,13 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
         if (table.has("sigma3")) (void)confining_stresses(table);
         return {};
     }
-    read_plates(table, has_particles(test.kind, variants), known, test);
+    const bool flattened = brazilian && is_flattened(table);
+    read_plates(table, has_particles(test.kind, variants), flattened, known, test);
 
     ReadTest result;
     if (brazilian) {
         result.diameter_m = brazilian_diameter(table, specimen, known);
-        result.flat_angle_rad = read_flats(table, specimen, *result.diameter_m, known, test);
+        result.flat_angle_rad = read_flats(table, flattened, specimen, *result.diameter_m, known, test);
     }
     if (test.kind != TestKind::biaxial) {
         result.tests.push_back(test);

@@ -159,10 +159,8 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
         return variant.runs(test.kind) && variant.model.kind != GrainKind::flexible;
     });
     if (!particles && test.kind != TestKind::brazilian) return;
-    if (test.plates == PlateShape::curved) {   // flat plates are left unwritten: identities of their runs stay as they were
-        out.word("plates", name(test.plates));
-        out.number("jaw_radius", test.jaw_radius);
-    }
+    if (test.kind == TestKind::brazilian) out.word("plates", name(test.plates));
+    if (test.plates == PlateShape::curved) out.number("jaw_radius", test.jaw_radius);
     if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m, Dimension::stiffness_gradient);
     else out.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (test.plate_mu) out.number("plate_mu", *test.plate_mu);

@@ -44,7 +44,7 @@ std::string percent(double value) { return fmt::format("{:.2g} %", 100.0 * value
 
 std::vector<Criterion> criteria(const QuasiStaticEvidence& e, TestKind kind) {
     const bool brazilian = kind == TestKind::brazilian;
-    return {{e.error_estimate, pulls_apart(kind) ? 1e-2 : 5e-3, 2e-2,
+    return {{e.error_estimate, pulls_apart(kind) ? 1e-2 : 5e-3, grade_b_error,
              e.confirmed ? "one and a half times the change of the strength in a slower repeat" : "the estimated error of the strength"},
             {e.imbalance_mean, brazilian ? 3e-2 : 1e-2, brazilian ? 5e-2 : 2e-2, "the mean difference between the two platens' loads"}};
 }

@@ -21,6 +21,13 @@ TestProperties measure(const TestResult& result);
 /// Evidence from half the peak to the peak, the grade and the sentence that a user reads.
 QuasiStaticEvidence judge(const TestResult& result);
 
+/// Estimated error of a strength (L8) with which a test still has grade B.
+inline constexpr double grade_b_error = 0.02;
+
+/// What the true error of a strength exceeds in one test of ten, from its estimated error (L8); 0 or more, relative. On 64 strengths of eight rocks
+/// twice the estimate covered 59 errors (docs/validation, true strengths).
+inline double error_bound(double error_estimate) { return 2.0 * error_estimate; }
+
 /// Median and range over packings.
 struct PropertyStatistics {
     double median = 0.0;   ///< SI (angles in degrees)

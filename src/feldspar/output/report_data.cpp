@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "feldspar/lab/brazilian_failure.hpp"
+#include "feldspar/lab/properties.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -129,6 +130,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["steps"] = result.steps;
     test["wall_s"] = rounded(result.wall_s);
     test["error_estimate"] = rounded(e.error_estimate);
+    test["error_bound"] = rounded(error_bound(e.error_estimate));
     test["residual_median"] = rounded(e.residual_median);
     test["load_per_travel_time"] = rounded(e.load_per_travel_time);
     test["imbalance_mean"] = rounded(e.imbalance_mean);

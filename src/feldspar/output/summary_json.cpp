@@ -7,6 +7,7 @@
 #include <numbers>
 #include <system_error>
 
+#include "feldspar/lab/properties.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -118,6 +119,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["ms_per_step"] = number(result.ms_per_step);
     test["threads"] = result.threads;
     test["error_estimate"] = number(e.error_estimate);
+    test["error_bound"] = number(error_bound(e.error_estimate));
     test["residual_median"] = number(e.residual_median);
     test["load_per_travel_time"] = number(e.load_per_travel_time);
     test["imbalance_mean"] = number(e.imbalance_mean);

@@ -436,4 +436,24 @@ TEST(FlattenedDiscs, WithNarrowFlatsAreWarnedOf) {
 }
 
 }  // namespace
+// ISRM's jaws and tape unless said; what is said counts, and a resolved job says it all.
+TEST(BrazilianPlates, AreCurvedJawsOnTapeUnlessTheJobSaysOtherwise) {
+    const auto plates_of = [](const std::string& keys) {
+        const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"" + keys), "job.toml");
+        return job.tests.front();
+    };
+    const TestSpec usual = plates_of("");
+    EXPECT_EQ(usual.plates, PlateShape::curved);
+    EXPECT_EQ(usual.jaw_radius, 1.5);
+    EXPECT_EQ(usual.plate_Kn_Pa_m, 1.6e12);
+    EXPECT_EQ(plates_of("\nplate_Kn = \"900 GPa/m\"").plate_Kn_Pa_m, 9e11);
+    EXPECT_EQ(plates_of("\nplate_stiffness_factor = 0.5").plate_Kn_Pa_m, std::nullopt);
+    for (const std::string flat : {"\nplates = \"flat\"", "\ndisc = \"flattened\""}) {
+        const TestSpec test = plates_of(flat);
+        EXPECT_EQ(test.plates, PlateShape::flat) << flat;
+        EXPECT_EQ(test.plate_Kn_Pa_m, std::nullopt) << flat;
+        EXPECT_EQ(test.plate_stiffness_factor, 1.0) << flat;
+    }
+}
+
 }  // namespace feldspar

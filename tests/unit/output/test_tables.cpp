@@ -200,6 +200,7 @@ TEST_F(Tables, SummaryHasEveryPromisedName) {
                              "ms_per_step",
                              "threads",
                              "error_estimate",
+                             "error_bound",
                              "residual_median",
                              "load_per_travel_time",
                              "imbalance_mean",
