@@ -6,6 +6,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/parallel.hpp"
+#include "feldspar/methods/method.hpp"
 #include "interrupt.hpp"
 
 namespace feldspar {
@@ -32,7 +33,7 @@ std::vector<PlannedRun> planned_runs(const Job& job) {
 
 std::string title(const TestSpec& test) {
     std::string text = name(test.kind);
-    if (test.kind == TestKind::biaxial) text += fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6);
+    if (method_of(test).specimen.confined) text += fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6);
     return text;
 }
 
@@ -75,7 +76,7 @@ std::shared_ptr<const Specimen> Specimens::get(const PlannedRun& run, int thread
 
 std::string Specimens::packing_stem(bool disc, std::uint64_t seed) { return fmt::format("packing-{}s{}", disc ? "disc-" : "", seed); }
 
-std::string Specimens::packing_stem(const PlannedRun& run) { return packing_stem(run.test->kind == TestKind::brazilian, run.seed); }
+std::string Specimens::packing_stem(const PlannedRun& run) { return packing_stem(method_of(*run.test).specimen.own_disc, run.seed); }
 
 int body_count(const PlannedRun& run, const Specimen& specimen) {
     const bool inner = run.variant->model.kind == GrainKind::inner_particles;

@@ -12,6 +12,7 @@
 
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -55,7 +56,7 @@ public:
 
 private:
     using Key = std::pair<bool, std::uint64_t>;  // (disc of the Brazilian test?, seed)
-    static Key key_of(const PlannedRun& run) { return {run.test->kind == TestKind::brazilian, run.seed}; }
+    static Key key_of(const PlannedRun& run) { return {method_of(*run.test).specimen.own_disc, run.seed}; }
     std::vector<Key> missing_keys(std::span<const PlannedRun> runs) const;
 
     const Job* job_;

@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "feldspar/base/thread_shares.hpp"
 #include "feldspar/lab/flattened_disc.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
@@ -47,7 +48,7 @@ void print_specimen(const char* what, const Specimen& specimen) {
 
 // What presses on the flats decides how much of 2P / (pi D t) counts.
 std::string flats_text(const PlannedRun& run, const Specimen& specimen) {
-    if (run.test->kind != TestKind::brazilian || !specimen.outline.flattened()) return {};
+    if (!method_of(*run.test).specimen.own_disc || !specimen.outline.flattened()) return {};
     const double angle = specimen.spec.outline.flat_angle_rad, R = specimen.outline.radius_m;
     const Variant& v = *run.variant;
     return fmt::format("  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n", angle * 180.0 / std::numbers::pi,
@@ -139,7 +140,7 @@ private:
     }
 
     void show_specimen(const TestSpec& test, const Specimen& specimen) {
-        const bool disc = test.kind == TestKind::brazilian;
+        const bool disc = method_of(test).specimen.own_disc;
         bool& shown = disc ? disc_shown_ : rectangle_shown_;
         if (!shown) print_specimen(disc ? "Disc of the Brazilian test" : "Specimen", specimen);
         shown = true;

@@ -14,6 +14,7 @@
 #include "campaign.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/base/text_table.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
 #include "progress.hpp"
@@ -121,11 +122,11 @@ std::string cost_table(const std::vector<VariantSummary>& summaries) {
 std::string disc_table(std::span<const TestResult> results) {
     std::vector<Row> rows{{"Brazilian test", "seed", "BTS MPa", "first dip", "largest", "valid (ISRM)", "arc top", "bottom", "first crack r/R", "at share"}};
     bool flattened = false;
-    for (const TestResult& r : results) flattened = flattened || (r.specimen && r.specimen->outline.flattened() && r.test.kind == TestKind::brazilian);
+    for (const TestResult& r : results) flattened = flattened || (r.specimen && r.specimen->outline.flattened() && method_of(r.test).specimen.own_disc);
     if (flattened) rows.front().emplace_back("k");
     const auto degrees = [](double value) { return std::isfinite(value) ? fmt::format("{:.1f} deg", value) : "-"; };
     for (const TestResult& r : results) {
-        if (r.test.kind != TestKind::brazilian) continue;
+        if (!method_of(r.test).specimen.own_disc) continue;
         const BrazilianFailure& b = r.properties.brazilian;
         rows.push_back({title(r.variant, r.test), std::to_string(r.seed), peak_text(r), table_number(b.first_dip_Pa / 1e6), table_number(b.largest_Pa / 1e6),
                         validity_in_words(b), degrees(b.contact_arc_top_deg), degrees(b.contact_arc_bottom_deg), table_number(b.first_crack_radius),

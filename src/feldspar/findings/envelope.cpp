@@ -11,6 +11,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/findings/choose_seeds.hpp"
 
@@ -28,14 +29,12 @@ bool has(const Job& job, TestKind kind) {
 TestSpec pattern_of(const Job& job, TestKind kind) {
     const auto found = std::find_if(job.tests.begin(), job.tests.end(), [kind](const TestSpec& test) { return test.kind == kind; });
     if (found != job.tests.end()) return *found;
-    TestSpec test;
-    test.kind = kind;
-    test.stop_fraction = kind == TestKind::biaxial ? enough_fall : test.stop_fraction;
-    const bool plates = std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.model.kind != GrainKind::flexible; });
-    if (kind == TestKind::brazilian)
-        test.plate_mu = 0.4;
-    else if (plates && kind != TestKind::direct_tension)
-        test.plate_mu = 0.0;
+    const MethodSpecimen& method = method_of(kind).specimen;
+    TestSpec test = usual_test(kind, job.brazilian_specimen.outline.flat_angle_rad > 0.0);
+    if (method.confined) test.stop_fraction = enough_fall;
+    test.control = usual_control(kind, std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.numerics.kind == NumericsKind::adaptive; }));
+    const bool particles = std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.model.kind != GrainKind::flexible; });
+    if (method.own_disc || (particles && !method.glued)) test.plate_mu = method.plate_mu;
     return test;
 }
 
@@ -43,7 +42,7 @@ std::vector<double> stresses_of(const Job& job, const EnvelopeOptions& options, 
     std::vector<double> stresses = options.sigma3_Pa;
     if (stresses.empty())
         for (const TestSpec& test : job.tests)
-            if (test.kind == TestKind::biaxial) stresses.push_back(test.sigma3_Pa);
+            if (method_of(test).specimen.confined) stresses.push_back(test.sigma3_Pa);
     if (stresses.empty()) {
         const double expected = expected_UCS_Pa(job);
         stresses = default_series(expected);

@@ -9,6 +9,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/findings/converge.hpp"
 #include "feldspar/findings/choose_seeds.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -65,7 +66,7 @@ double width_m(const OutlineSpec& outline) {
 }
 
 bool needs(const Job& job, bool disc) {
-    return std::any_of(job.tests.begin(), job.tests.end(), [disc](const TestSpec& test) { return (test.kind == TestKind::brazilian) == disc; });
+    return std::any_of(job.tests.begin(), job.tests.end(), [disc](const TestSpec& test) { return method_of(test).specimen.own_disc == disc; });
 }
 
 /// Width of the narrowest specimen over its largest grain.
@@ -168,7 +169,7 @@ Draft draft_of_rate(const Job& job) {
 
 void keep_tests(Job& job, const std::vector<std::string>& wanted) {
     const auto is_wanted = [&](const TestSpec& test) {
-        if (wanted.empty()) return test.kind != TestKind::biaxial;
+        if (wanted.empty()) return !method_of(test).specimen.confined;
         return std::find(wanted.begin(), wanted.end(), name(test.kind)) != wanted.end();
     };
     const std::string has = [&] {

@@ -2,10 +2,12 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
@@ -30,13 +32,13 @@ struct Known {
 
 // Platens need a flat top and bottom.
 void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& outline) {
-    if (kind == TestKind::brazilian || outline.shape == Shape::rectangle) return;
+    if (method_of(kind).specimen.own_disc || outline.shape == Shape::rectangle) return;
     if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) {
         const SectionWidths widths = section_widths(make_outline(outline));
-        if (kind == TestKind::biaxial && widths.widest > (1.0 + most_confined_taper) * widths.narrowest)
+        if (method_of(kind).specimen.confined && widths.widest > (1.0 + most_confined_taper) * widths.narrowest)
             table.fail("kind",
-                       fmt::format("'biaxial' presses on the sides too, which would load a specimen whose width varies from {:.4g} to {:.4g} mm along "
-                                   "its axis as well", 1000.0 * widths.narrowest, 1000.0 * widths.widest),
+                       fmt::format("'{}' presses on the sides too, which would load a specimen whose width varies from {:.4g} to {:.4g} mm along "
+                                   "its axis as well", name(kind), 1000.0 * widths.narrowest, 1000.0 * widths.widest),
                        "a rectangle, or a polygon whose width varies by a tenth at most");
         return;
     }
@@ -115,10 +117,10 @@ LoadControl read_control(const TableReader& table, TestKind kind, const std::vec
     const bool adaptive = std::any_of(variants.begin(), variants.end(), [&](const Variant& variant) {
         return variant.runs(kind) && variant.numerics.kind == NumericsKind::adaptive;
     });
-    if (!table.has("control")) return adaptive ? usual_control(kind) : LoadControl::displacement;
+    if (!table.has("control")) return usual_control(kind, adaptive);
     const LoadControl control = table.choice("control", load_controls);
     table.check({"control", "kind"}, [&] {
-        if (control == LoadControl::lateral_strain && (kind == TestKind::direct_tension || kind == TestKind::brazilian))
+        if (control == LoadControl::lateral_strain && !method_of(kind).loading.widens)
             table.fail("control", fmt::format("'lateral-strain' is meant for specimens that widen as they fail, which kind = \"{}\" does not measure", name(kind)),
                        "control = \"displacement\" or \"dissipation\"");
         if (control != LoadControl::displacement && !adaptive)
@@ -128,25 +130,22 @@ LoadControl read_control(const TableReader& table, TestKind kind, const std::vec
     return control;
 }
 
-// A laboratory wraps the disc in a layer of masking tape, about 0.25 mm of a modulus near 0.4 GPa (docs/decisions, fixture of the Brazilian test).
-constexpr double tape_Kn_Pa_m = 1.6e12;
-
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
-void read_plates(const TableReader& table, bool particles, bool flattened, const Known& known, TestSpec& test) {
+void read_plates(const TableReader& table, bool particles, const Known& known, TestSpec& test) {
     const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
-    const bool brazilian = test.kind == TestKind::brazilian, tension = test.kind == TestKind::direct_tension;
-    if (!brazilian && !particles && known.kinds)
+    const MethodSpecimen& method = method_of(test).specimen;
+    if (!method.own_disc && !particles && known.kinds)
         table.refuse({"plate_stiffness_factor", "plate_Kn", "plate_mu", "membrane_plates"}, setting + " of flexible grains",
                      "only with kind = \"brazilian\", or with rigid grains or inner particles, which are loaded by plates");
-    if (tension)
+    if (method.glued)
         table.refuse({"plate_mu"}, setting + ": its plates are glued on and hold in the normal direction only",
                      "plate_stiffness_factor");
-    if (test.kind != TestKind::biaxial)
+    if (!method.confined)
         table.refuse({"membrane_plates"}, setting, "only with kind = \"biaxial\", which has a membrane");
-    if (!brazilian) table.refuse({"plates", "jaw_radius"}, setting, "only with kind = \"brazilian\"");
-    if (!brazilian && !particles) return;
-    if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
-    else if (brazilian) test.plates = flattened ? PlateShape::flat : PlateShape::curved;
+    if (!method.own_disc) table.refuse({"plates", "jaw_radius"}, setting, "only with kind = \"brazilian\"");
+    if (!method.own_disc && !particles) return;
+    const std::optional<double> usual_Kn = std::exchange(test.plate_Kn_Pa_m, std::nullopt);   // of the usual plates
+    const PlateShape usual = std::exchange(test.plates, table.has("plates") ? table.choice("plates", plate_shapes) : test.plates);
     if (table.has("jaw_radius")) {
         if (test.plates != PlateShape::curved)
             table.check({"plates", "disc"}, [&] { table.fail("jaw_radius", "given for flat plates", "plates = \"curved\", which is for a whole disc"); });
@@ -155,9 +154,9 @@ void read_plates(const TableReader& table, bool particles, bool flattened, const
     if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
         table.check({}, [&] { table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them"); });
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn", Dimension::stiffness_gradient, positive);
-    else if (test.plates == PlateShape::curved && !table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m = tape_Kn_Pa_m;
+    else if (test.plates == usual && !table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m = usual_Kn;
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
-    if (!tension) test.plate_mu = table.number("plate_mu", not_negative, brazilian ? 0.4 : 0.0);
+    if (!method.glued) test.plate_mu = table.number("plate_mu", not_negative, method.plate_mu);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates", 1, 1000, test.membrane_plates));
 }
 
@@ -168,13 +167,13 @@ struct ReadTest {
 };
 
 ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants, const Known& known) {
-    TestSpec test;
-    test.kind = table.choice("kind", test_kinds);
-    const bool kind_known = table.sound({"kind"});
-    const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
-    const bool brazilian = test.kind == TestKind::brazilian;
-    if (kind_known && !brazilian) table.refuse({"diameter", "disc", "flat_angle"}, setting, "only with kind = \"brazilian\"");
-    if (kind_known && test.kind != TestKind::biaxial) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
+    const TestMethod& method = method_of(table.choice("kind", test_kinds));
+    const bool kind_known = table.sound({"kind"}), own_disc = method.specimen.own_disc;
+    const std::string setting = "kind = \"" + std::string(name(method.kind)) + "\"";
+    if (kind_known && !own_disc) table.refuse({"diameter", "disc", "flat_angle"}, setting, "only with kind = \"brazilian\"");
+    if (kind_known && !method.specimen.confined) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
+    const bool flattened = kind_known && own_disc && is_flattened(table);
+    TestSpec test = usual_test(method.kind, flattened);
     if (known.outline) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
 
     test.stop_fraction =
@@ -192,15 +191,14 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
         if (table.has("sigma3")) (void)confining_stresses(table);
         return {};
     }
-    const bool flattened = brazilian && is_flattened(table);
-    read_plates(table, has_particles(test.kind, variants), flattened, known, test);
+    read_plates(table, has_particles(test.kind, variants), known, test);
 
     ReadTest result;
-    if (brazilian) {
+    if (own_disc) {
         result.diameter_m = brazilian_diameter(table, specimen, known);
         result.flat_angle_rad = read_flats(table, flattened, specimen, *result.diameter_m, known, test);
     }
-    if (test.kind != TestKind::biaxial) {
+    if (!method.specimen.confined) {
         result.tests.push_back(test);
         return result;
     }
@@ -263,7 +261,7 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
                 const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
                 const std::string key =
                     std::string(name(test.kind)) +
-                    (test.kind == TestKind::biaxial ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
+                    (method_of(test).specimen.confined ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
                 const bool again = !taken.insert(key + " s" + std::to_string(seed)).second;
                 if (again && root.sound({"run"}))
                     table.check({"kind", "sigma3", "seeds"}, [&] {

@@ -6,6 +6,7 @@
 
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -158,26 +159,26 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
     const bool particles = std::any_of(job.variants.begin(), job.variants.end(), [&](const Variant& variant) {
         return variant.runs(test.kind) && variant.model.kind != GrainKind::flexible;
     });
-    if (!particles && test.kind != TestKind::brazilian) return;
-    if (test.kind == TestKind::brazilian) out.word("plates", name(test.plates));
+    if (!particles && !method_of(test).specimen.own_disc) return;
+    if (method_of(test).specimen.own_disc) out.word("plates", name(test.plates));
     if (test.plates == PlateShape::curved) out.number("jaw_radius", test.jaw_radius);
     if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m, Dimension::stiffness_gradient);
     else out.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (test.plate_mu) out.number("plate_mu", *test.plate_mu);
-    if (test.kind == TestKind::biaxial) out.raw("membrane_plates", std::to_string(test.membrane_plates));
+    if (method_of(test).specimen.confined) out.raw("membrane_plates", std::to_string(test.membrane_plates));
 }
 
 void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.head("[[test]]");
     out.word("kind", name(test.kind));
-    if (test.kind == TestKind::biaxial) out.quantity("sigma3", test.sigma3_Pa, Dimension::stress);
+    if (method_of(test).specimen.confined) out.quantity("sigma3", test.sigma3_Pa, Dimension::stress);
     out.number("stop_fraction", test.stop_fraction);
     out.word("control", name(test.control));
     out.number("maximum_strain", test.maximum_strain);
     if (test.maximum_stress_Pa) out.quantity("maximum_stress", *test.maximum_stress_Pa, Dimension::stress);
-    if (test.kind == TestKind::brazilian) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
+    if (method_of(test).specimen.own_disc) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
     // whole discs are left unwritten: identities of their runs stay as they were
-    if (test.kind == TestKind::brazilian && job.brazilian_specimen.outline.flat_angle_rad > 0.0) {
+    if (method_of(test).specimen.own_disc && job.brazilian_specimen.outline.flat_angle_rad > 0.0) {
         out.word("disc", "flattened");
         out.quantity("flat_angle", job.brazilian_specimen.outline.flat_angle_rad, Dimension::angle);
     }

@@ -7,6 +7,7 @@
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/laws/softening.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
@@ -67,7 +68,7 @@ void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
         const double E = known(job, "E", own_E);
         const double root_N = contact.mu + std::sqrt(1.0 + contact.mu * contact.mu), UCS = known(job, "UCS", 2.0 * contact.tau_Pa * root_N);
         const bool pressed = std::any_of(job.tests.begin(), job.tests.end(), [&](const TestSpec& test) {
-            return variant.runs(test.kind) && (test.kind == TestKind::uniaxial_compression || test.kind == TestKind::biaxial);
+            return variant.runs(test.kind) && method_of(test).loading.bends;
         });
         const double limit = slenderest(E, UCS);
         if (!pressed || height / width <= kCaution * limit) continue;
@@ -82,7 +83,7 @@ void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
 // Narrow flats spare the disc's ends less: it may break there before its centre does.
 void look_at_flats(const Job& job, std::vector<std::string>& sentences) {
     constexpr double kDegrees = std::numbers::pi / 180.0, kEnough = 20.0 * kDegrees;
-    const bool brazilian = std::any_of(job.tests.begin(), job.tests.end(), [](const TestSpec& test) { return test.kind == TestKind::brazilian; });
+    const bool brazilian = std::any_of(job.tests.begin(), job.tests.end(), [](const TestSpec& test) { return method_of(test).specimen.own_disc; });
     const double angle = job.brazilian_specimen.outline.flat_angle_rad;
     if (!brazilian || !(angle > 0.0) || angle >= kEnough * (1.0 - 1e-9)) return;
     sentences.push_back(fmt::format("the flats of the Brazilian disc have {:.3g} degrees: from 20 degrees on cracks start in the centre (Wang and others 2004); with less they "

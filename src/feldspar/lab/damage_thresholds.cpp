@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "feldspar/lab/regression.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -93,7 +94,7 @@ double crack_count_threshold(const TestResult& result, const Peak& peak) {
     if (cracks.empty()) return nan;
     std::stable_sort(cracks.begin(), cracks.end(), [](const Crack* a, const Crack* b) { return a->step < b->step; });
     const auto counted = static_cast<std::size_t>(std::ceil(counted_fraction * static_cast<double>(cracks.size()) - 1e-9));
-    return loading_sign(result.test.kind) * cracks[counted - 1]->axial_stress_Pa;
+    return method_of(result.test).loading.sign * cracks[counted - 1]->axial_stress_Pa;
 }
 
 }  // namespace feldspar

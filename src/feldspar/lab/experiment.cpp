@@ -10,6 +10,7 @@
 #include "feldspar/lab/flattened_disc.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/lab/stability.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/platens.hpp"
@@ -46,25 +47,26 @@ ElasticGuess guess(const TestSetup& setup, const Assembly& assembly) {
 
 PlateContact plate_contact(const TestSetup& setup) {
     const TestSpec& test = setup.test;
+    const TestMethod& method = method_of(test);
     PlateContact contact;
     contact.Kn_Pa_m = test.plate_Kn_Pa_m.value_or(test.plate_stiffness_factor * setup.contact.Kn_Pa_m);
     contact.eta = setup.contact.eta;
-    contact.mu = test.plate_mu.value_or(test.kind == TestKind::brazilian ? 0.4 : 0.0);
-    if (test.kind == TestKind::brazilian && test.plates == PlateShape::curved) contact.jaw_radius_m = test.jaw_radius * setup.specimen->outline.radius_m;
-    contact.glued = test.kind == TestKind::direct_tension;
+    contact.mu = test.plate_mu.value_or(method.specimen.plate_mu);
+    if (method.specimen.own_disc && test.plates == PlateShape::curved) contact.jaw_radius_m = test.jaw_radius * setup.specimen->outline.radius_m;
+    contact.glued = method.specimen.glued;
     return contact;
 }
 
 void attach_platens(Assembly& assembly, const TestSetup& setup) {
     const Specimen& specimen = *setup.specimen;
     const PlateContact contact = plate_contact(setup);
-    if (setup.test.kind == TestKind::brazilian) {
+    if (method_of(setup.test).specimen.own_disc) {
         attach_brazilian_plates(assembly, specimen, contact);
     } else if (setup.model.kind == GrainKind::flexible) {
         attach_platen_rows(assembly, specimen);
     } else {
         attach_end_plates(assembly, specimen, contact);
-        if (setup.test.kind == TestKind::biaxial && setup.test.sigma3_Pa > 0.0)
+        if (is_confined(setup.test))
             attach_membranes(assembly, specimen, {setup.contact.Kn_Pa_m, setup.contact.eta, 0.0, false}, setup.test.membrane_plates);
     }
 }
@@ -84,16 +86,17 @@ double mean_body_diameter(const Assembly& assembly) {
 
 Experiment::Experiment(const TestSetup& s, const RunControl& c)
     : setup(s),
+      method(method_of(s.test)),
       control(c),
       assembly(assemble(*s.specimen, s.model, s.grain, s.contact)),
       team(c.threads),
       gauge(assembly, *s.specimen),
-      direction(s.test.kind == TestKind::direct_tension ? -1.0 : 1.0),
+      direction(method.loading.sign),
       elastic_guess(guess(s, assembly)) {
     const Box box = bounding_box(s.specimen->mesh.nodes);
-    if (brazilian() && !s.specimen->outline.is_disc) throw InputError({}, "a Brazilian test needs a disc");
+    if (method.specimen.own_disc && !s.specimen->outline.is_disc) throw InputError({}, "a Brazilian test needs a disc");
     attach_platens(assembly, s);
-    if (brazilian()) {
+    if (method.specimen.own_disc) {
         const Outline& disc = s.specimen->outline;
         height_m = 2.0 * (disc.flattened() ? disc.flat_height_m : disc.radius_m);
         section_m2 = 0.5 * std::numbers::pi * 2.0 * disc.radius_m * assembly.thickness_m;

@@ -7,6 +7,7 @@
 #include "feldspar/lab/elastic_start.hpp"
 #include "feldspar/lab/gauges.hpp"
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/model/assembly.hpp"
 #include "feldspar/step/step.hpp"
 
@@ -26,6 +27,7 @@ struct Experiment {
     Experiment(const TestSetup& setup, const RunControl& control);
 
     const TestSetup& setup;
+    const TestMethod& method;
     const RunControl& control;
     Assembly assembly;
     Team team;
@@ -52,7 +54,7 @@ struct Experiment {
     HistoryRow isotropic;         ///< biaxial: the state when shearing starts
 
     bool stopped() const { return control.stop != nullptr && control.stop->load(); }
-    bool brazilian() const { return setup.test.kind == TestKind::brazilian; }
+    bool confined() const { return is_confined(setup.test); }   ///< a pressure acts on the sides
     double stress(double platen_force_N) const { return platen_force_N / section_m2; }
 
     /// Runs `count` steps with the present settings.

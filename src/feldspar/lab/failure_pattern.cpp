@@ -12,6 +12,7 @@
 
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -58,7 +59,7 @@ double localisation(const TestResult& result, double total) {
 double post_peak_strain(const TestResult& result) {
     const auto peak = find_peak(result);
     if (!peak || !peak->reached) return nan;
-    const double sign = loading_sign(result.test.kind);
+    const double sign = method_of(result.test).loading.sign;
     const auto strain = [&](std::size_t row) { return sign * result.history[row].axial_strain; };
     if (!(strain(peak->row) > 0.0)) return nan;
     std::size_t row = peak->row;

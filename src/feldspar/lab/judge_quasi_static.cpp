@@ -14,6 +14,7 @@
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -22,7 +23,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // The error of a strength that is estimated from the test alone has two parts (L8): what the typical body leaves unbalanced is carried by
-// inertia and damping instead of the rock (residual_share()), and the load rises on while an unstable crack
+// inertia and damping instead of the rock (MethodRate::residual_share), and the load rises on while an unstable crack
 // takes a quarter of a travel time to show.
 constexpr double kTravelTimesToShow = 0.25;
 constexpr double kInBalance = 0.02;   // part of the unbalanced force in the error, with which a body counts as balanced: grade B
@@ -43,10 +44,10 @@ struct Criterion {
 std::string percent(double value) { return fmt::format("{:.2g} %", 100.0 * value); }
 
 std::vector<Criterion> criteria(const QuasiStaticEvidence& e, TestKind kind) {
-    const bool brazilian = kind == TestKind::brazilian;
-    return {{e.error_estimate, pulls_apart(kind) ? 1e-2 : 5e-3, grade_b_error,
+    const MethodVerdict& allowed = method_of(kind).verdict;
+    return {{e.error_estimate, allowed.error_a, grade_b_error,
              e.confirmed ? "one and a half times the change of the strength in a slower repeat" : "the estimated error of the strength"},
-            {e.imbalance_mean, brazilian ? 3e-2 : 1e-2, brazilian ? 5e-2 : 2e-2, "the mean difference between the two platens' loads"}};
+            {e.imbalance_mean, allowed.imbalance_a, allowed.imbalance_b, "the mean difference between the two platens' loads"}};
 }
 
 /// "the mean ... is 2.1 % (0.7 % allowed) and ..." for the criteria that fail.
@@ -146,7 +147,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
         e.verdict = "Not judged: the record has no loaded row.";
         return e;
     }
-    const double sign = loading_sign(result.test.kind);
+    const double sign = method_of(result.test).loading.sign;
     double residuals = 0.0, imbalance = 0.0, kinetic = 0.0;
     double medians_near = 0.0, speeds_near = 0.0, imbalances_near = 0.0;
     int rows = 0, rows_near = 0;
@@ -159,7 +160,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
         if (!above_half || !(stress > 0.0)) continue;
         ++rows;
         residuals += row.residual;
-        if (residual_share(result.test.kind) * row.residual_median <= kInBalance && !(stress <= e.balanced_stress_Pa)) e.balanced_stress_Pa = stress;
+        if (method_of(result.test).rate.residual_share * row.residual_median <= kInBalance && !(stress <= e.balanced_stress_Pa)) e.balanced_stress_Pa = stress;
         const double difference = std::abs(row.stress_top_Pa - row.stress_bottom_Pa) / stress;
         const double strain_energy = row.energy.elastic_grains + row.energy.elastic_contacts;
         const double motion = strain_energy > 0.0 ? row.kinetic_deviation / strain_energy : nan;
@@ -181,7 +182,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
         e.residual_median = medians_near / rows_near;
         e.load_per_travel_time = result.travel_time > 0.0 ? speeds_near / rows_near * result.travel_time : nan;
         e.imbalance_mean = imbalances_near / rows_near;
-        e.error_estimate = residual_share(result.test.kind) * e.residual_median + kTravelTimesToShow * e.load_per_travel_time;
+        e.error_estimate = method_of(result.test).rate.residual_share * e.residual_median + kTravelTimesToShow * e.load_per_travel_time;
     }
     if (e.confirmed) e.error_estimate = kOfTheRepeat * std::abs(e.peak_change_at_third);   // measured instead of estimated
     e.residual_mean = residuals / rows;

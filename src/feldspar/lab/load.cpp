@@ -73,12 +73,10 @@ double typical_steps(const Experiment& e) {
     const NumericsSpec& n = e.setup.numerics;
     const TestKind kind = e.setup.test.kind;
     if (n.kind != NumericsKind::adaptive) {
-        const double strain = kind == TestKind::direct_tension ? 5e-4 : 6e-3;
-        return strain * e.height_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
+        return e.method.rate.fixed_speed_strain * e.height_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
     }
     // In travel times, at the usual accuracy: medians over eight rocks (docs/validation, true strengths).
-    const double usual = kind == TestKind::brazilian ? 250.0 : kind == TestKind::direct_tension ? 28.0 : kind == TestKind::biaxial ? 150.0 : 60.0;
-    return usual * e.travel_time * std::sqrt(residual_target(NumericsSpec{}, kind) / residual_target(n, kind));
+    return e.method.rate.travel_times * e.travel_time * std::sqrt(residual_target(NumericsSpec{}, kind) / residual_target(n, kind));
 }
 
 namespace {
@@ -162,7 +160,7 @@ public:
             }
             const double load = e_.direction * row.axial_stress_Pa;
             const bool past_peak = stop_.past_peak(load);
-            if (adaptive_ && !stop_.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && !e_.brazilian())) && passed_too_fast()) continue;
+            if (adaptive_ && !stop_.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && !e_.method.specimen.own_disc)) && passed_too_fast()) continue;
             if (reason) {
                 result_.stop_reason = *reason;
                 break;
@@ -202,7 +200,7 @@ private:
         if (first_steps_ == 0) return strict_;
         const double wider = std::max(1.0, static_cast<double>(result_.steps - passage_start_) / (kLongPassage * static_cast<double>(first_steps_)));
         const double below = confined() && settled() ? std::max(0.0, 1.0 - load_Pa_ / stop_.peak()) : 0.0;
-        return {std::min(first_.residual, wider * strict_.residual + below / residual_share(e_.setup.test.kind)),
+        return {std::min(first_.residual, wider * strict_.residual + below / e_.method.rate.residual_share),
                 std::min(first_.growth, wider * strict_.growth + below)};
     }
 
@@ -211,11 +209,11 @@ private:
     // the limits stricter than that, and the wait for them would be without end.
     double slowest_growth() const {
         const double slow = kGrowthFailing * wanted_;
-        if (confined() && residual_share(e_.setup.test.kind) * control_.residual() < kAim * wanted_) return slow;
+        if (confined() && e_.method.rate.residual_share * control_.residual() < kAim * wanted_) return slow;
         return control_.residual() > kFailsByItself && unrest() > kRunOut ? slow * std::max(1.0, unrest() / kPatience) : 0.0;
     }
 
-    bool confined() const { return e_.setup.test.sigma3_Pa > 0.0; }
+    bool confined() const { return e_.confined(); }
 
     // How long the typical body has been out of balance, in travel times of a wave.
     double unrest() const { return static_cast<double>(e_.step - balanced_step_) / e_.travel_time; }
@@ -238,7 +236,7 @@ private:
         if (result_.passages >= kMostPassages || result_.steps > kMostSteps * first_steps_) return false;
         passed_Pa_ = stop_.peak();
         passed_with_ = strict_;
-        const double of_residual = residual_share(e_.setup.test.kind) * seen.residual_median, of_growth = seen.error_estimate - of_residual;
+        const double of_residual = e_.method.rate.residual_share * seen.residual_median, of_growth = seen.error_estimate - of_residual;
         strict_.residual = std::max(kStrictest * first_.residual, strict_.residual * std::clamp(kAim * wanted_ / of_residual, kMostStricter, 1.0));
         strict_.growth = std::max(kStrictest * first_.growth, strict_.growth * std::clamp(kAim * wanted_ / of_growth, kMostStricter, 1.0));
         pass_again();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "feldspar/lab/disc_splitting.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -33,15 +34,13 @@ std::size_t first_at_or_above(const LoadingCurve& curve, double stress_Pa) {
 
 }  // namespace
 
-double loading_sign(TestKind kind) { return kind == TestKind::direct_tension ? -1.0 : 1.0; }
-
 const Crack* first_crack(const TestResult& result) {
     const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), [](const Crack& a, const Crack& b) { return a.step < b.step; });
     return first == result.cracks.end() ? nullptr : &*first;
 }
 
 double largest_stress(const TestResult& result) {
-    const double sign = loading_sign(result.test.kind);
+    const double sign = method_of(result.test).loading.sign;
     double largest = 0.0;
     for (const HistoryRow& row : result.history) {
         if (is_loading(row) && is_finite(row)) largest = std::max(largest, sign * row.axial_stress_Pa);
@@ -53,7 +52,7 @@ namespace {
 
 /// @param first_only  end at the first fall to drop_fraction, unless that is the settling of the plates
 std::optional<Peak> peak_before_a_fall(const TestResult& result, bool first_only) {
-    const double sign = loading_sign(result.test.kind);
+    const double sign = method_of(result.test).loading.sign;
     const auto& history = result.history;
     const double overall = largest_stress(result);
     if (!(overall > 0.0)) return std::nullopt;
@@ -90,20 +89,20 @@ std::optional<Peak> peak_until_split(const TestResult& result) {
 }  // namespace
 
 std::optional<Peak> find_peak(const TestResult& result) {
-    return result.test.kind == TestKind::brazilian ? peak_until_split(result) : peak_before_a_fall(result, false);
+    return method_of(result.test).specimen.own_disc ? peak_until_split(result) : peak_before_a_fall(result, false);
 }
 
 std::optional<Peak> first_dip(const TestResult& result) { return peak_before_a_fall(result, true); }
 
 LoadingCurve loading_curve(const TestResult& result, const Peak& peak) {
-    const double sign = loading_sign(result.test.kind);
+    const double sign = method_of(result.test).loading.sign;
     const auto& history = result.history;
     LoadingCurve curve;
-    const bool biaxial = result.test.kind == TestKind::biaxial;
-    if (biaxial) curve.stress_offset_Pa = result.test.sigma3_Pa;
+    const bool confined = method_of(result.test).specimen.confined;
+    if (confined) curve.stress_offset_Pa = result.test.sigma3_Pa;
 
     HistoryRow origin;   // unloaded
-    if (biaxial) {
+    if (confined) {
         std::size_t first = history.size();
         for (std::size_t i = 0; i < history.size(); ++i) {
             if (!is_finite(history[i])) continue;

@@ -16,9 +16,6 @@ struct Peak {
     bool reached = false;      ///< the stress fell to 0.95 of it or below afterwards; Brazilian: the disc was split
 };
 
-/// +1 for tests that press, -1 for direct tension: histories are compression positive, strengths are magnitudes.
-double loading_sign(TestKind kind);
-
 /// The strength of a history; for a Brazilian test the largest stress until the disc is split. Empty without a single loaded row.
 std::optional<Peak> find_peak(const TestResult& result);
 

@@ -12,6 +12,7 @@
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/regression.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -30,7 +31,7 @@ TestProperties nothing() {
 
 double first_crack_stress(const TestResult& result) {
     const Crack* first = first_crack(result);
-    return first == nullptr ? nan : loading_sign(result.test.kind) * first->axial_stress_Pa;
+    return first == nullptr ? nan : method_of(result.test).loading.sign * first->axial_stress_Pa;
 }
 
 /// Slope of y over x between two fractions of the peak; x and y are members of a curve point.
@@ -64,7 +65,7 @@ TestProperties read_record(const TestResult& result) {
     if (!peak) return p;
     p.peak_stress_Pa = peak->stress_Pa;
     p.peak_reached = peak->reached;
-    if (result.test.kind == TestKind::brazilian) {
+    if (method_of(result.test).specimen.own_disc) {
         p.brazilian = brazilian_failure(result, *peak);
         return p;
     }
@@ -83,7 +84,7 @@ TestProperties read_record(const TestResult& result) {
     if (!peak->reached) return p;   // the thresholds mean nothing before the peak is known
 
     p.sigma_ci_crack_count_Pa = crack_count_threshold(result, *peak);
-    if (result.test.kind == TestKind::direct_tension) return p;   // a pulled specimen has no volumetric reversal
+    if (!method_of(result.test).loading.widens) return p;   // a pulled specimen has no volumetric reversal
     const DamageThresholds thresholds = damage_thresholds(curve, p.first_crack_Pa);
     p.sigma_ci_crack_volume_Pa = thresholds.crack_volume_Pa;
     p.sigma_ci_lateral_strain_Pa = thresholds.lateral_strain_Pa;

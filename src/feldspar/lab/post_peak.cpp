@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "feldspar/lab/regression.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -57,7 +58,7 @@ PostPeak post_peak(const TestResult& result, const Peak& peak, const LoadingCurv
         p.damping_share = damping / all;
     }
     if (!branch_is_followed(result)) return p;
-    const double sign = loading_sign(result.test.kind);
+    const double sign = method_of(result.test).loading.sign;
     std::vector<BranchPoint> branch;
     for (std::size_t i = peak.row; i < result.history.size(); ++i) {
         const HistoryRow& row = result.history[i];

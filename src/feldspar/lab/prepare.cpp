@@ -73,7 +73,7 @@ double platen_force(const Experiment& e) { return platen_reactions(e.assembly).l
 
 // Stiffness, travel time and damping as the relaxed body shows them.
 void learn_from(Experiment& e, double force_change, double travel_change) {
-    if (e.brazilian() || travel_change == 0.0) return;
+    if (e.method.specimen.own_disc || travel_change == 0.0) return;
     const double stiffness = std::abs(force_change / travel_change);
     e.travel_time *= std::sqrt(e.axial_stiffness / stiffness);
     e.axial_stiffness = stiffness;
@@ -230,12 +230,12 @@ void forget_relaxation_work(Experiment& e) {
 }
 
 void prepare_adaptive(Experiment& e) {
-    if (e.brazilian()) {
+    if (e.method.specimen.own_disc) {
         elastic_plates(e);
     } else {
         const BodyState unloaded = capture(e.assembly, 0.0);
         bool elastic = true;
-        if (e.setup.test.kind == TestKind::biaxial && e.setup.test.sigma3_Pa > 0.0) {
+        if (e.confined()) {
             consolidate_elastically(e);
             elastic = isotropic_is_elastic(e, unloaded);
             if (!elastic) {   // go as far as it is elastic, then ramp with the real law
@@ -271,10 +271,10 @@ void prepare_adaptive(Experiment& e) {
 
 // The paper's own way, and that of real masses: no computed start; rows of nodes begin with an affine velocity field.
 void prepare_plainly(Experiment& e) {
-    if (e.setup.test.kind == TestKind::biaxial && e.setup.test.sigma3_Pa > 0.0) consolidate_by_ramp(e);
+    if (e.confined()) consolidate_by_ramp(e);
     note_isotropic(e);
     const double speed = e.setup.numerics.speed_m.value_or(kPaperSpeed);
-    if (e.brazilian()) {
+    if (e.method.specimen.own_disc) {
         e.change_speed(speed);
         return;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "feldspar/lab/body_energy.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -25,22 +26,17 @@ constexpr double kTeaches = 1e-4;   // growth of the travel in a window that sho
 constexpr double kBlend = 0.5;   // of the newly observed loading mode
 constexpr double kMostMode = 1.5;   // platen travels that a node may move per platen travel, as the loading mode counts it
 
-// As multiples of the wanted accuracy: R* (compression, tension) and the load's growth in a travel time with which the strength is first
-// looked for. What that misses is found by the passages after the first (load.cpp), which cost a tenth of the load; so the first one is quick.
-constexpr double kCompressed = 1.0, kPulled = 3.0;
+// The load's growth in a travel time with which the strength is first looked for, over the wanted accuracy. What that misses is found by the
+// passages after the first (load.cpp), which cost a tenth of the load; so the first one is quick.
 constexpr double kGrowth = 60.0, kMostGrowth = 0.6;
 
 }  // namespace
 
-bool pulls_apart(TestKind kind) { return kind == TestKind::direct_tension || kind == TestKind::brazilian; }
-
-double residual_share(TestKind kind) { return pulls_apart(kind) ? 1.0 / 3.0 : 2.0; }
-
 double residual_target(const NumericsSpec& numerics, TestKind kind) {
-    return numerics.residual_target.value_or((pulls_apart(kind) ? kPulled : kCompressed) * numerics.accuracy);
+    return numerics.residual_target.value_or(method_of(kind).rate.residual_target * numerics.accuracy);
 }
 
-double accuracy_of(double residual_target, TestKind kind) { return residual_target / (pulls_apart(kind) ? kPulled : kCompressed); }
+double accuracy_of(double residual_target, TestKind kind) { return residual_target / method_of(kind).rate.residual_target; }
 
 PassageLimits first_passage(const NumericsSpec& numerics, TestKind kind) {
     const double target = residual_target(numerics, kind);

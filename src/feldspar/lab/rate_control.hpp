@@ -9,12 +9,6 @@
 
 namespace feldspar {
 
-/// The strength of the test is a tensile one.
-bool pulls_apart(TestKind kind);
-
-/// Error of the strength over the R* of the typical body: 2 in compression, a third in tension (direct or Brazilian), as measured (docs/validation).
-double residual_share(TestKind kind);
-
 /// Target of R* with which a strength is first looked for, from the wanted relative accuracy; or what the user gives in its place.
 double residual_target(const NumericsSpec& numerics, TestKind kind);
 

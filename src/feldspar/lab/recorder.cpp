@@ -67,7 +67,7 @@ HistoryRow Recorder::present(Phase phase) {
     row.residual = force > 0.0 ? now_.unbalanced.total_N / force : 0.0;
     row.residual_median = force > 0.0 ? now_.unbalanced.typical_N / force : 0.0;
     row.platen_speed = e_.settings.speed;
-    if (e_.brazilian()) {
+    if (e_.method.specimen.own_disc) {
         row.contact_arc_top_deg = contact_arc_deg(e_, 0);
         row.contact_arc_bottom_deg = contact_arc_deg(e_, 1);
     }

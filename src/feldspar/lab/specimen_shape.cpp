@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
@@ -34,7 +35,7 @@ double euler_stress_Pa(double E_Pa, double width_m, double height_m) {
 double slenderest(double E_Pa, double strength_Pa) { return std::numbers::pi * std::sqrt(E_Pa / (12.0 * strength_Pa)); }
 
 void note_section(const TestResult& result, TestProperties& p) {
-    if (!result.specimen || result.specimen->outline.is_disc || result.test.kind == TestKind::brazilian) return;
+    if (!result.specimen || result.specimen->outline.is_disc || method_of(result.test).specimen.own_disc) return;
     const SectionWidths widths = section_widths(result.specimen->outline);
     if (!(widths.narrowest > 0.0)) return;
     p.section_width_m = widths.narrowest;
@@ -54,7 +55,7 @@ void note_section(const TestResult& result, TestProperties& p) {
 }
 
 void look_at_buckling(const TestResult& result, QuasiStaticEvidence& evidence) {
-    if (!result.specimen || (result.test.kind != TestKind::uniaxial_compression && result.test.kind != TestKind::biaxial)) return;
+    if (!result.specimen || !method_of(result.test).loading.bends) return;
     const TestProperties& p = result.properties;
     const SectionWidths widths = section_widths(result.specimen->outline);
     const double strength = p.peak_stress_Pa - result.test.sigma3_Pa;

@@ -69,7 +69,7 @@ struct TestSpec {
     TestKind kind = TestKind::uniaxial_compression;
     double sigma3_Pa = 0.0;              ///< biaxial only
     double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
-    LoadControl control = LoadControl::displacement;   ///< behind the strength; jobs: usual_control() unless said; lateral strain: compression only
+    LoadControl control = LoadControl::displacement;   ///< behind the strength; jobs: that of the method unless said; lateral strain: compression only
     double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
     std::optional<double> maximum_stress_Pa; ///< ... or when the stress has reached this, a positive magnitude (biaxial: sigma1)
     PlateShape plates = PlateShape::flat;    ///< Brazilian only
@@ -81,11 +81,6 @@ struct TestSpec {
     int snapshots = 8;                   ///< fields kept between the first crack and the end, besides start, peak and end
     std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
 };
-
-/// The control of a job that says none: compressed rock fails by itself and is followed; a body that is pulled apart or split has no branch to follow.
-inline LoadControl usual_control(TestKind kind) {
-    return kind == TestKind::uniaxial_compression || kind == TestKind::biaxial ? LoadControl::dissipation : LoadControl::displacement;
-}
 
 // All values of each, in the order in which users are told; name() is how files call them.
 inline constexpr std::array grain_kinds{GrainKind::flexible, GrainKind::rigid, GrainKind::inner_particles};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "feldspar/base/printable.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -18,7 +19,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     std::string text;
     auto line = std::back_inserter(text);
     fmt::format_to(line, "# history of {}, seed {}", name(result.test.kind), result.seed);
-    if (result.test.kind == TestKind::biaxial) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
+    if (method_of(result.test).specimen.confined) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
     if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", printable(result.variant, LineEnds::escaped));
     fmt::format_to(line, "\n# signs: {}\n", sign_convention);
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
@@ -34,7 +35,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
 
 std::string test_stem(const std::string& variant, const TestSpec& test, std::uint64_t seed) {
     std::string stem = fmt::format("{}-s{}", name(test.kind), seed);
-    if (test.kind == TestKind::biaxial) stem += fmt::format("-p{:.6g}", test.sigma3_Pa * MPa);
+    if (method_of(test).specimen.confined) stem += fmt::format("-p{:.6g}", test.sigma3_Pa * MPa);
     return variant.empty() ? stem : variant_stem(variant) + "-" + stem;
 }
 

@@ -4,12 +4,13 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
 
 const SpecimenSpec& specimen_of(const Run& run) {
-    return run.test().kind == TestKind::brazilian ? run.job.brazilian_specimen : run.job.specimen;
+    return method_of(run.test()).specimen.own_disc ? run.job.brazilian_specimen : run.job.specimen;
 }
 
 // What the specimen follows from: the part of the resolved job that is about it, and the seed.

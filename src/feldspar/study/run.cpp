@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "feldspar/job/toml_reader.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/study/study.hpp"
 
 namespace feldspar {
@@ -22,7 +23,7 @@ std::string identity(Job job) {
     job.laboratory.clear();
     job.laboratory_confined.clear();
     job.tests.front().snapshots = 0;
-    if (job.tests.front().kind == TestKind::brazilian) job.specimen = job.brazilian_specimen;   // the rectangle is not used
+    if (method_of(job.tests.front()).specimen.own_disc) job.specimen = job.brazilian_specimen;   // the rectangle is not used
     std::string text = kind_of_run;
     if (!job.specimen.packing_file.empty()) text += read_toml_file(job.specimen.packing_file, "packing");
     job.specimen.packing_file.clear();
@@ -48,7 +49,7 @@ Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::
     run.job.tests = {test};
     run.job.tests.front().seeds.clear();
     run.job.seeds = {seed};
-    if (test.kind != TestKind::brazilian) run.job.brazilian_specimen = {};
+    if (!method_of(test).specimen.own_disc) run.job.brazilian_specimen = {};
     if (variant.model.kind != GrainKind::inner_particles) run.job.specimen.particles_per_grain = run.job.brazilian_specimen.particles_per_grain = 0.0;
     run.id = hash(identity(run.job));
     return run;

@@ -10,6 +10,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/median.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -24,17 +25,6 @@ constexpr int format_version = 1;
 // MaxArraySize of Slurm is 1001 unless the cluster's owner has set it.
 constexpr std::size_t most_elements = 1000;
 
-// Seconds for 1000 flexible grains at the default accuracy, packing included, on a slow core: the groups need to be right within a factor.
-double default_seconds(TestKind kind) {
-    switch (kind) {
-        case TestKind::uniaxial_compression: return 4.0;
-        case TestKind::direct_tension: return 3.0;
-        case TestKind::biaxial: return 10.0;
-        case TestKind::brazilian: return 8.0;
-    }
-    return 10.0;
-}
-
 double default_factor(GrainKind kind) {
     switch (kind) {
         case GrainKind::flexible: return 1.0;
@@ -48,7 +38,7 @@ double default_factor(NumericsKind kind) { return kind == NumericsKind::adaptive
 
 // Time of a run of so many grains as a multiple of that of 1000; the share that does not shrink is that of the least number of steps.
 double size_factor(const Run& run) {
-    const SpecimenSpec& specimen = run.test().kind == TestKind::brazilian ? run.job.brazilian_specimen : run.job.specimen;
+    const SpecimenSpec& specimen = method_of(run.test()).specimen.own_disc ? run.job.brazilian_specimen : run.job.specimen;
     return 0.1 + grain_count(specimen) / 1000.0;
 }
 
@@ -176,7 +166,7 @@ double TimeEstimate::seconds(const Run& run) const {
     const auto known = per_thousand_.find(like(run));
     const Variant& variant = run.job.variants.front();
     const double thousand = known != per_thousand_.end() ? known->second
-                                                         : default_seconds(run.test().kind) * default_factor(variant.model.kind) *
+                                                         : method_of(run.test()).rate.seconds * default_factor(variant.model.kind) *
                                                                default_factor(variant.numerics.kind);
     return thousand * size_factor(run);
 }

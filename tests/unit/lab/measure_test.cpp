@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/methods/method.hpp"
 #include "synthetic_records.hpp"
 
 using namespace feldspar;
@@ -177,7 +178,7 @@ TEST(Measure, DegenerateRecordsGiveNotANumberAndNeverCrash) {
     for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian}) {
         TestResult r = record(kind);
         r.test.sigma3_Pa = kind == TestKind::biaxial ? 4e6 : 0.0;
-        const double sign = loading_sign(kind);
+        const double sign = method_of(kind).loading.sign;
         EXPECT_TRUE(std::isnan(measure(r).peak_stress_Pa)) << name(kind) << ": empty";
         EXPECT_FALSE(measure(r).peak_reached);
 

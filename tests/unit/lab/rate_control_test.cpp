@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "feldspar/lab/rate_control.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/model/assemble.hpp"
 
 using namespace feldspar;
@@ -35,7 +36,7 @@ TEST(RateControl, AccuracyAndTargetAreInverse) {
         numerics.residual_target = 2e-3;
         EXPECT_DOUBLE_EQ(residual_target(numerics, kind), 2e-3);
     }
-    EXPECT_DOUBLE_EQ(residual_share(TestKind::biaxial), 2.0);
+    EXPECT_DOUBLE_EQ(method_of(TestKind::biaxial).rate.residual_share, 2.0);
     EXPECT_NEAR(residual_target(NumericsSpec{}, TestKind::direct_tension), 3.0 * residual_target(NumericsSpec{}, TestKind::biaxial), 1e-15);
 }
 

@@ -1,0 +1,16 @@
+// Biaxial compression, the plane form of the triaxial test: strength at a confining pressure, and with others cohesion, friction angle and
+// Hoek-Brown's mi (ISRM 1983; ASTM D7012).
+#include "feldspar/methods/method.hpp"
+
+namespace feldspar::methods {
+
+const TestMethod biaxial{
+    .kind = TestKind::biaxial,
+    .purpose = "isotropic consolidation, then axial loading at a constant pressure on the sides",
+    .specimen = {.confined = true},
+    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true},
+    .rate = {.travel_times = 150.0, .seconds = 10.0},
+    .verdict = {},
+};
+
+}  // namespace feldspar::methods

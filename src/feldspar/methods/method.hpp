@@ -1,0 +1,69 @@
+// A test method: everything that makes a uniaxial compression test what it is, and not a Brazilian one, as data. One file a method; the rest
+// of the program reads these facts and asks for no method by name.
+#pragma once
+
+#include "feldspar/model/spec.hpp"
+
+namespace feldspar {
+
+/// What the specimen is, and what touches it.
+struct MethodSpecimen {
+    bool own_disc = false;     ///< a disc that the test cuts itself and presses between two plates; else the job's specimen, between platens at its ends
+    bool confined = false;     ///< a pressure sigma3 on the sides (and first on all sides), which the job gives
+    bool glued = false;        ///< the ends are glued to the platens; else they may slide and come off
+    double plate_mu = 0.0;     ///< friction of plates, unless the job gives another
+};
+
+/// How it is loaded, and what is then known of it.
+struct MethodLoading {
+    double sign = 1.0;         ///< of the axial stress that loads: 1 compression, -1 tension
+    LoadControl control = LoadControl::displacement;   ///< behind the strength, unless the job gives another
+    bool widens = false;       ///< the specimen widens as it fails: the lateral strain can control the test, and tells of damage
+    bool bends = false;        ///< a column that may bend aside before it breaks (Euler)
+    bool tensile = false;      ///< the strength is a tensile one
+};
+
+/// Constants of the adaptive numerics, measured (docs/validation, true strengths).
+struct MethodRate {
+    double residual_target = 1.0;   ///< R* with which the strength is first looked for, over the wanted accuracy
+    double residual_share = 2.0;    ///< error of the strength over R* of the typical body, w of (L8)
+    double travel_times = 60.0;     ///< that a test usually takes at the usual accuracy, in times of a wave
+    double seconds = 4.0;           ///< that it takes with 1000 flexible grains, on a slow core
+    double fixed_speed_strain = 6e-3;   ///< to which a test at a fixed speed usually goes
+};
+
+/// What the verdict allows (L9), relative.
+struct MethodVerdict {
+    double error_a = 5e-3;                          ///< estimated error of the strength, grade A; grade B: grade_b_error
+    double imbalance_a = 1e-2, imbalance_b = 2e-2;  ///< mean difference of the platens over their mean
+};
+
+struct TestMethod {
+    TestKind kind;
+    const char* purpose;   ///< one sentence
+    MethodSpecimen specimen;
+    MethodLoading loading;
+    MethodRate rate;
+    MethodVerdict verdict;
+};
+
+/// One definition a file, named as jobs name the method.
+namespace methods {
+extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian;
+}
+
+/// The facts of a method.
+const TestMethod& method_of(TestKind kind);
+inline const TestMethod& method_of(const TestSpec& test) { return method_of(test.kind); }
+
+/// Whether a pressure acts on the sides of the specimen.
+inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }
+
+/// What the platens do behind the strength unless the job says otherwise. @param adaptive  the numerics can change the speed at all
+inline LoadControl usual_control(TestKind kind, bool adaptive) { return adaptive ? method_of(kind).loading.control : LoadControl::displacement; }
+
+/// A test of this kind as a job has it that says nothing more, but for the control, which depends on the numerics (usual_control()).
+/// @param flattened  the disc has flats, on which flat plates press
+TestSpec usual_test(TestKind kind, bool flattened = false);
+
+}  // namespace feldspar
