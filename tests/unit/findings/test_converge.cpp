@@ -9,6 +9,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/findings/converge.hpp"
 #include "feldspar/findings/envelope.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/study/study_report.hpp"
 #include "../../small_study.hpp"
 #include "synthetic_points.hpp"
@@ -175,6 +176,9 @@ TEST_F(PlannedConvergence, AnEnvelopeTakesWhatTheJobLacks) {
     EXPECT_NEAR(planned.tests[4].sigma3_Pa, 20e6, 1.0);
     EXPECT_EQ(planned.seeds, (std::vector<std::uint64_t>{1, 2, 3}));
     EXPECT_EQ(planned.brazilian_specimen.outline.diameter_m, planned.specimen.outline.width_m);
+    EXPECT_EQ(planned.tests[6].plates, PlateShape::curved);   // as a job has it that says nothing
+    EXPECT_EQ(planned.tests[6].plate_Kn_Pa_m, usual_test(TestKind::brazilian).plate_Kn_Pa_m);
+    EXPECT_EQ(planned.tests[1].control, LoadControl::dissipation);
     EXPECT_EQ(plan.study.runs.size(), 21u);
     EXPECT_EQ(plan.remarks.size(), 2u);
     EXPECT_EQ(plan_envelope(job(), {1, {5e6, 2e6}, false, {}}).study.runs.size(), 5u);
