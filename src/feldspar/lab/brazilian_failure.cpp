@@ -80,6 +80,11 @@ std::vector<BrazilianMark> brazilian_marks(const TestResult& result) {
     return marks;
 }
 
+double tension_under_arcs(double arc_deg) {
+    const double arc = arc_deg * std::numbers::pi / 180.0;
+    return arc > 0.0 ? 2.0 * std::sin(arc) / arc - 1.0 : 1.0;
+}
+
 std::string validity_in_words(const BrazilianFailure& failure) {
     if (failure.valid) return "yes";
     if (!failure.split) return "no: not split";

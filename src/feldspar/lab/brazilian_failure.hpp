@@ -15,6 +15,10 @@ inline constexpr double central_part = 0.6;
 /// @param peak  from find_peak() of the same result
 BrazilianFailure brazilian_failure(const TestResult& result, const Peak& peak);
 
+/// Tension in the centre of a whole elastic disc over 2P / (pi D t), if the load is a uniform pressure on an arc at either end (P35): 1 for a point,
+/// 0.96 for 20 degrees. What touches presses most in the middle of its arc, so that the true one is nearer to 1. @param arc_deg  of contact, 0 to 180
+double tension_under_arcs(double arc_deg);
+
 /// A moment of a Brazilian test that a reader looks for on its curve, and on its picture if it is a crack.
 struct BrazilianMark {
     std::string name;              ///< "first crack", "first dip", "start of the splitting crack", "strength", "largest stress"

@@ -7,6 +7,7 @@
 
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
+#include "feldspar/lab/disc_splitting.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
@@ -102,12 +103,24 @@ void note_widening(TestProperties& p) {
     p.remarks.push_back(remark);
 }
 
+// The wider the arcs on which a disc is loaded, the less tension there is in its centre.
+void note_arcs(const TestResult& result, TestProperties& p) {
+    constexpr double kEnough = 0.95;   // a strength that is 5 % too high is worth a word
+    const BrazilianFailure& b = p.brazilian;
+    const double arc_deg = 0.5 * (b.contact_arc_top_deg + b.contact_arc_bottom_deg), share = tension_under_arcs(arc_deg);
+    const auto disc = loaded_disc(result);
+    if (!disc || disc->flat_height_m > 0.0 || !(share < kEnough)) return;
+    p.remarks.push_back(fmt::format("The disc was loaded on arcs of {:.0f} degrees: the tension in its centre was down to {:.2g} of 2P / (pi D t), and BTS is too high by as much. "
+                                    "A larger disc, or a stiffer layer on the jaws (plate_Kn), has smaller arcs.", arc_deg, share));
+}
+
 }  // namespace
 
 TestProperties measure(const TestResult& result) {
     TestProperties p = read_record(result);
     note_section(result, p);
     note_widening(p);
+    note_arcs(result, p);
     return p;
 }
 

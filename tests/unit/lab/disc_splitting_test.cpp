@@ -187,5 +187,22 @@ TEST(BrazilianStrength, KeepsTheArcsOfContactOfTheRowOfTheStrength) {
     EXPECT_DOUBLE_EQ(measure(r).brazilian.contact_arc_bottom_deg, 14.0);
 }
 
+// sin(2a)/a - 1 = 1 - 4/3 a^2 + ...; at a right angle of load on either side nothing is left of it but 2/pi * 2 - 1.
+TEST(Arcs, TakeTensionFromTheCentre) {
+    EXPECT_EQ(tension_under_arcs(0.0), 1.0);
+    const double a = 0.5 * 4.0 * std::acos(-1.0) / 180.0;
+    EXPECT_NEAR(tension_under_arcs(4.0), 1.0 - 4.0 / 3.0 * a * a, 1e-6);   // the next term is 4/15 a^4 = 4e-7
+    EXPECT_NEAR(tension_under_arcs(90.0), 4.0 / std::acos(-1.0) - 1.0, 1e-12);
+
+    TestResult r = disc_record({2e6, 4e6, 6e6, 8e6, 3e6});
+    const auto remarks_at = [&](double arc_deg) {
+        for (HistoryRow& row : r.history) row.contact_arc_top_deg = row.contact_arc_bottom_deg = arc_deg;
+        return measure(r).remarks;
+    };
+    EXPECT_TRUE(remarks_at(20.0).empty());
+    ASSERT_EQ(remarks_at(30.0).size(), 1u);
+    EXPECT_NE(remarks_at(30.0).front().find("arcs of 30 degrees: the tension in its centre was down to 0.91"), std::string::npos) << remarks_at(30.0).front();
+}
+
 }  // namespace
 }  // namespace feldspar
