@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "feldspar/lab/quantities.hpp"
+
 namespace feldspar {
 
 /// A quantity in user units: its name in summary.json, the factor from SI, the unit and the words of a table.
@@ -24,8 +26,5 @@ std::string property_of_laboratory(const std::string& name);
 
 /// A value of Job::laboratory (SI, radians) in user units.
 double laboratory_in_user_units(const std::string& name, double value);
-
-inline constexpr double MPa = 1e-6;  ///< times Pa
-inline constexpr double GPa = 1e-9;  ///< times Pa
 
 }  // namespace feldspar
