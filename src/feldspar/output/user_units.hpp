@@ -24,6 +24,9 @@ UserQuantity user_quantity(const std::string& property);
 /// ("E_Pa", "UCS_Pa", "friction_angle_deg").
 std::string property_of_laboratory(const std::string& name);
 
+/// A value of Job::laboratory (SI, radians) as PropertySummary has it (SI, degrees).
+double laboratory_as_kept(const std::string& name, double value);
+
 /// A value of Job::laboratory (SI, radians) in user units.
 double laboratory_in_user_units(const std::string& name, double value);
 

@@ -1,11 +1,11 @@
-// The table of a test's numbers: names that can be told apart, numbers that are given back, tests that define them.
+// The tables of a test's numbers and of a rock's properties: names that can be told apart, numbers that are given back, tests that define them.
 #include <cmath>
 #include <set>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "feldspar/lab/quantities.hpp"
+#include "feldspar/lab/rock_properties.hpp"
 #include "synthetic_records.hpp"
 
 using namespace feldspar;
@@ -77,4 +77,51 @@ TEST(Quantities, AreNumbersOnlyOfTestsThatDefineThem) {
     EXPECT_EQ(test_quantity("BTS_split").value(broken(TestKind::brazilian)), 1.0);
     const TestResult compressed = broken(TestKind::uniaxial_compression);
     EXPECT_EQ(test_quantity("cracks_tensile").value(compressed), static_cast<double>(compressed.cracks.size()));
+}
+
+TEST(RockProperties, ComeFromWhatExists) {
+    std::set<std::string_view> names;
+    for (const RockProperty& p : rock_properties()) {
+        using enum RockProperty::Source;
+        EXPECT_TRUE(names.insert(p.name).second) << p.name;
+        EXPECT_EQ(p.source == formed, p.tests.empty()) << p.name;
+        EXPECT_FALSE(p.label.empty() || p.symbol.empty()) << p.name;
+        switch (p.source) {
+            case test:
+                ASSERT_EQ(p.tests.size(), 1U) << p.name;
+                ASSERT_NE(p.quantity, nullptr) << p.name;
+                EXPECT_TRUE(p.quantity->tests.contains(*p.tests.begin())) << p.name << " is read from a test that does not define it";
+                break;
+            case ratio: {
+                ASSERT_TRUE(rock_property(p.above) != nullptr && rock_property(p.below) != nullptr) << p.name;
+                std::set<TestKind> both = rock_property(p.above)->tests;
+                both.insert(rock_property(p.below)->tests.begin(), rock_property(p.below)->tests.end());
+                EXPECT_EQ(p.tests, both) << p.name;
+                break;
+            }
+            case envelope: EXPECT_NE(p.fit, nullptr) << p.name; break;
+            case confined_strength:
+            case formed: break;
+        }
+    }
+}
+
+TEST(RockProperties, AreFoundByTheirNames) {
+    for (const RockProperty& p : rock_properties())
+        EXPECT_TRUE(p.source == RockProperty::Source::confined_strength || kept_rock_property(p.kept_name()) == &p) << p.name;
+    EXPECT_EQ(rock_property("unheard_of"), nullptr);
+    EXPECT_EQ(kept_rock_property("E"), nullptr) << "the name has its unit";
+    EXPECT_EQ(confined_strength(2.5e6), "sigma1_at_sigma3_2.5MPa_Pa");
+    EXPECT_EQ(pressure_of_confined_strength_MPa(confined_strength(2.5e6)), 2.5);
+    EXPECT_EQ(kept_rock_property(confined_strength(2.5e6))->source, RockProperty::Source::confined_strength);
+    EXPECT_FALSE(pressure_of_confined_strength_MPa("UCS_Pa").has_value());
+}
+
+TEST(RockProperties, AreWhatASummaryHas) {
+    std::vector<TestResult> results;
+    for (const TestKind kind : test_kinds) {
+        results.push_back(broken(kind));
+        if (kind == TestKind::biaxial) results.back().test.sigma3_Pa = 4e6;
+    }
+    for (const auto& [name, statistics] : summarise(results).values) EXPECT_NE(kept_rock_property(name), nullptr) << name;
 }
