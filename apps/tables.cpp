@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <regex>
-#include <string_view>
 #include <vector>
 
 #include "campaign.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/base/text_table.hpp"
+#include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -31,9 +30,8 @@ struct Entry {
 
 Entry entry_of(const std::string& property) {
     Entry entry{user_quantity(property), property};
-    constexpr std::string_view confined = "sigma1_at_sigma3_";
-    if (property.starts_with(confined)) {
-        entry.sigma3_MPa = std::strtod(property.c_str() + confined.size(), nullptr);
+    if (const auto pressure_MPa = pressure_of_confined_strength_MPa(property)) {
+        entry.sigma3_MPa = *pressure_MPa;
         entry.quantity.label = fmt::format("Strength at sigma_3 = {:g} MPa", entry.sigma3_MPa);
     }
     return entry;

@@ -78,6 +78,9 @@ std::string calibration_template();
 std::vector<Observable> observables_for(const Calibration& calibration);
 std::vector<Observable> observables_for(const std::vector<Target>& targets, const std::vector<double>& sigma3_Pa);
 
+/// The property of the rock that a target is a value of, by its name in PropertySummary: "E_Pa", "sigma_ci_crack_count_Pa", ...
+std::string property_of(const Target& target);
+
 /// A target's value by the means of the quantities, in the order of observables_for(); not-a-number where they do not make sense.
 double value_of(const Target& target, const std::vector<Observable>& quantities, const std::vector<double>& means);
 

@@ -39,9 +39,7 @@ std::string range_text(const Unknown& unknown, double low, double high) {
 }  // namespace
 
 UserQuantity user_quantity(const Target& target) {
-    if (target.name == "sigma1") return user_quantity(fmt::format("sigma1_at_sigma3_{:g}MPa_Pa", target.sigma3_Pa / 1e6));
-    if (target.name == "sigma_ci") return user_quantity("sigma_ci_crack_count_Pa");
-    return user_quantity(property_of_laboratory(target.name));
+    return user_quantity(property_of(target));
 }
 
 std::string unit_word(const Unknown& unknown) { return unknown.unit.substr(std::min(unknown.unit.size(), unknown.unit.find_first_not_of(' '))); }

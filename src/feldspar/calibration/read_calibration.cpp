@@ -7,35 +7,42 @@
 
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/study/reader_on_job.hpp"
 
 namespace feldspar {
 namespace {
 
-// How a target is written and judged unless its tolerance is given.
+// How a target is judged unless its tolerance is given.
 struct TargetKind {
     const char* name;
-    std::optional<Dimension> dimension;   // none: a plain number
-    double tolerance;                     // a fraction of the value; of nu and the angle the value itself
+    double tolerance;   // a fraction of the value; of nu and the angle the value itself
     bool absolute = false;
+
+    // How it is written; none: a plain number.
+    std::optional<Dimension> dimension() const {
+        const QuantityUnit unit = kept_rock_property(property_of({name}))->unit;
+        if (unit == units::pure) return std::nullopt;
+        return unit == units::angle ? Dimension::angle : Dimension::stress;
+    }
 };
 
 constexpr double degree = std::numbers::pi / 180.0;
 
 const std::vector<TargetKind> target_kinds{
-    {"E", Dimension::stress, 0.02},
-    {"nu", std::nullopt, 0.01, true},
-    {"UCS", Dimension::stress, 0.03},
-    {"DTS", Dimension::stress, 0.02},
-    {"BTS", Dimension::stress, 0.10},
-    {"UCS_over_BTS", std::nullopt, 0.10},
-    {"UCS_over_DTS", std::nullopt, 0.04},
-    {"BTS_over_DTS", std::nullopt, 0.10},
-    {"cohesion", Dimension::stress, 0.05},
-    {"friction_angle", Dimension::angle, 2.0, true},
-    {"hoek_brown_mi", std::nullopt, 0.10},
-    {"sigma_ci", Dimension::stress, 0.10},
-    {"sigma1", Dimension::stress, 0.03},
+    {"E", 0.02},
+    {"nu", 0.01, true},
+    {"UCS", 0.03},
+    {"DTS", 0.02},
+    {"BTS", 0.10},
+    {"UCS_over_BTS", 0.10},
+    {"UCS_over_DTS", 0.04},
+    {"BTS_over_DTS", 0.10},
+    {"cohesion", 0.05},
+    {"friction_angle", 2.0, true},
+    {"hoek_brown_mi", 0.10},
+    {"sigma_ci", 0.10},
+    {"sigma1", 0.03},
 };
 
 constexpr double toughest = 300.0;   // N/m: rocks of 200 are to lie inside
@@ -168,9 +175,10 @@ private:
     }
 
     double read_value(const TableReader& table, std::string_view key, const TargetKind& kind) const {
-        if (!kind.dimension) return table.number(key, positive);
-        const double value = table.quantity(key, *kind.dimension, positive);
-        return *kind.dimension == Dimension::angle ? value / degree : value;
+        const std::optional<Dimension> dimension = kind.dimension();
+        if (!dimension) return table.number(key, positive);
+        const double value = table.quantity(key, *dimension, positive);
+        return *dimension == Dimension::angle ? value / degree : value;
     }
 
     Target read_target(const TableReader& table, const TargetKind& kind) const {

@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "feldspar/calibration/calibration.hpp"
+#include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
+#include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
 namespace {
@@ -19,6 +21,12 @@ constexpr double ratio_allowance = 0.10;
 
 bool of_envelope(const Target& target) {
     return target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
+}
+
+// A property that is one number of one kind of test.
+Observable observable(const std::string& name, const std::string& property) {
+    const RockProperty& read_from = *kept_rock_property(property);
+    return {name, *read_from.tests.begin(), 0.0, read_from.quantity->kept_name(), name != "nu"};
 }
 
 double mean_of(const std::string& name, const std::vector<Observable>& quantities, const std::vector<double>& means) {
@@ -47,13 +55,10 @@ std::vector<Observable> observables_for(const std::vector<Target>& targets, cons
     const auto add = [&](const Observable& quantity) {
         if (std::none_of(all.begin(), all.end(), [&](const Observable& q) { return q.name == quantity.name; })) all.push_back(quantity);
     };
-    const Observable ucs{"UCS", TestKind::uniaxial_compression, 0.0, strength_column}, dts{"DTS", TestKind::direct_tension, 0.0, strength_column},
-        bts{"BTS", TestKind::brazilian, 0.0, strength_column};
+    const Observable ucs = observable("UCS", "UCS_Pa"), dts = observable("DTS", "DTS_Pa"), bts = observable("BTS", "BTS_Pa");
     const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), TestKind::biaxial, sigma3_Pa, strength_column}); };
     for (const Target& target : targets) {
-        if (target.name == "E") add({"E", TestKind::uniaxial_compression, 0.0, "E_Pa"});
-        if (target.name == "nu") add({"nu", TestKind::uniaxial_compression, 0.0, "nu", false});
-        if (target.name == "sigma_ci") add({"sigma_ci", TestKind::uniaxial_compression, 0.0, "sigma_ci_crack_count_Pa"});
+        if (target.name == "E" || target.name == "nu" || target.name == "sigma_ci") add(observable(target.name, property_of(target)));
         if (target.name == "UCS" || target.name.starts_with("UCS_over") || of_envelope(target)) add(ucs);
         if (target.name == "DTS" || target.name.ends_with("_DTS")) add(dts);
         if (target.name == "BTS" || target.name.find("BTS") != std::string::npos) add(bts);
@@ -62,6 +67,11 @@ std::vector<Observable> observables_for(const std::vector<Target>& targets, cons
             for (const double sigma3_Pa : sigma3_of_tests_Pa) confined(sigma3_Pa);
     }
     return all;
+}
+
+std::string property_of(const Target& target) {
+    if (target.name == "sigma1") return confined_strength(target.sigma3_Pa);
+    return property_of_laboratory(target.name == "sigma_ci" ? "sigma_ci_crack_count" : target.name);
 }
 
 double value_of(const Target& target, const std::vector<Observable>& quantities, const std::vector<double>& means) {

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/findings/claims.hpp"
+#include "feldspar/lab/rock_properties.hpp"
+#include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
 namespace {
@@ -17,20 +18,11 @@ using enum TestKind;
 /// Names of PropertySummary and the tests that they are read from.
 const std::map<std::string, std::set<TestKind>, std::less<>>& summary_properties() {
     static const std::map<std::string, std::set<TestKind>, std::less<>> known = [] {
-        std::map<std::string, std::set<TestKind>, std::less<>> map{
-            {"DTS_Pa", {direct_tension}},
-            {"BTS_Pa", {brazilian}},
-            {"BTS_first_dip_Pa", {brazilian}},
-            {"BTS_largest_Pa", {brazilian}},
-            {"BTS_valid_share", {brazilian}},
-            {"UCS_over_DTS", {uniaxial_compression, direct_tension}},
-            {"UCS_over_BTS", {uniaxial_compression, brazilian}},
-            {"BTS_over_DTS", {brazilian, direct_tension}}};
-        for (const char* name : {"UCS_Pa", "E_Pa", "E_tangent_Pa", "E_average_Pa", "E_gauge_Pa", "nu", "nu_tangent", "E_initial_Pa", "nu_initial",
-                                 "first_crack_Pa", "sigma_ci_crack_count_Pa", "sigma_ci_crack_volume_Pa", "sigma_ci_lateral_strain_Pa", "sigma_cd_Pa"})
-            map[name] = {uniaxial_compression};
-        for (const char* name : {"cohesion_Pa", "friction_angle_deg", "UCS_fitted_Pa", "hoek_brown_mi", "hoek_brown_UCS_Pa"})
-            map[name] = {uniaxial_compression, biaxial};
+        std::map<std::string, std::set<TestKind>, std::less<>> map;
+        for (const RockProperty& property : rock_properties()) {
+            using enum RockProperty::Source;
+            if (property.source == test || property.source == ratio || property.source == envelope) map[property.kept_name()] = property.tests;
+        }
         return map;
     }();
     return known;
@@ -158,7 +150,7 @@ private:
 std::set<TestKind> tests_behind(const std::string& property) {
     const auto& known = summary_properties();
     if (const auto found = known.find(property); found != known.end()) return found->second;
-    if (property.starts_with("sigma1_at_sigma3_") && property.ends_with("MPa_Pa")) return {biaxial};
+    if (pressure_of_confined_strength_MPa(property)) return {biaxial};
     const auto of = property.find(" of ");
     if (of == std::string::npos) return {};
     const std::vector<std::string>& columns = number_columns();
@@ -169,17 +161,10 @@ std::set<TestKind> tests_behind(const std::string& property) {
 }
 
 double laboratory_value(const Job& job, const Quantity& quantity) {
-    static const std::map<std::string, std::string, std::less<>> keys{
-        {"E_Pa", "E"},         {"E_initial_Pa", "E"}, {"E_tangent_Pa", "E"}, {"E_average_Pa", "E"},       {"E_gauge_Pa", "E"},
-        {"nu", "nu"},          {"nu_initial", "nu"},  {"nu_tangent", "nu"},  {"UCS_Pa", "UCS"},           {"DTS_Pa", "DTS"},
-        {"BTS_Pa", "BTS"},     {"BTS_first_dip_Pa", "BTS"},                  {"BTS_largest_Pa", "BTS"},
-        {"cohesion_Pa", "cohesion"},                  {"hoek_brown_mi", "hoek_brown_mi"},
-        {"friction_angle_deg", "friction_angle"}};
-    const auto key = keys.find(quantity.property);
-    if (key == keys.end() || !quantity.divisor.empty()) return std::nan("");
-    const auto found = job.laboratory.find(key->second);
-    if (found == job.laboratory.end()) return std::nan("");
-    return key->second == "friction_angle" ? found->second * 180.0 / std::numbers::pi : found->second;
+    const RockProperty* property = kept_rock_property(quantity.property);
+    if (property == nullptr || !quantity.divisor.empty()) return std::nan("");
+    const auto found = job.laboratory.find(std::string(property->laboratory));
+    return found == job.laboratory.end() ? std::nan("") : laboratory_as_kept(found->first, found->second);
 }
 
 void check_claims(const ClaimList& list, const StudiesByName& studies) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
@@ -15,13 +16,12 @@ namespace feldspar {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* confined_strength = "sigma1_at_sigma3_";
 
 /// What is compared: E, nu and the strengths of the tests that were run.
 bool is_compared(const std::string& property) {
     for (const char* known : {"E_Pa", "nu", "UCS_Pa", "DTS_Pa", "BTS_Pa"})
         if (property == known) return true;
-    return property.starts_with(confined_strength);
+    return pressure_of_confined_strength_MPa(property).has_value();
 }
 
 std::vector<std::string> compared_properties(std::span<const PointResults> points, const std::vector<std::size_t>& which) {
@@ -79,7 +79,7 @@ double deciding_half_width(const Change& change, double within) { return std::ma
 
 /// "E", "UCS": a property without its unit.
 std::string short_name(const std::string& property) {
-    if (property.starts_with(confined_strength)) return "sigma_1 at " + property.substr(17, property.rfind("MPa") - 17) + " MPa";
+    if (const auto pressure_MPa = pressure_of_confined_strength_MPa(property)) return fmt::format("sigma_1 at {:g} MPa", *pressure_MPa);
     return property.substr(0, property.find('_'));
 }
 

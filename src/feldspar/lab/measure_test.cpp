@@ -11,6 +11,7 @@
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
+#include "feldspar/lab/quantities.hpp"
 #include "feldspar/lab/regression.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/methods/method.hpp"
@@ -22,12 +23,9 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TestProperties nothing() {
-    TestProperties p{};
-    p.peak_stress_Pa = p.first_crack_Pa = nan;
-    p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = p.E_gauge_Pa = p.nu = p.nu_tangent = p.E_initial_Pa = p.nu_initial = nan;
-    p.sigma_ci_crack_count_Pa = p.sigma_ci_crack_volume_Pa = p.sigma_ci_lateral_strain_Pa = p.sigma_cd_Pa = nan;
-    p.section_width_m = nan;
-    return p;
+    TestResult unmeasured;
+    for (const TestQuantity& quantity : test_quantities()) quantity.put(unmeasured, nan);
+    return unmeasured.properties;
 }
 
 double first_crack_stress(const TestResult& result) {

@@ -1,14 +1,13 @@
 // summarise(): from the tests of several packings to the properties of the rock, each with its range (P11)-(P13).
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "feldspar/base/median.hpp"
-#include "feldspar/lab/properties.hpp"
+#include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 
 namespace feldspar {
@@ -40,18 +39,19 @@ BySeed ratio(const BySeed& above, const BySeed& below) {
     return paired;
 }
 
-/// `read` from every test of a kind for which it is a number.
-BySeed collect(std::span<const TestResult> results, TestKind kind, const std::function<double(const TestProperties&)>& read) {
+double strength(const TestProperties& p) { return p.peak_reached ? p.peak_stress_Pa : std::nan(""); }
+
+/// A property that is read from one test, of every such test for which it is a number.
+BySeed collect(std::span<const TestResult> results, const RockProperty& property) {
     BySeed values;
     for (const TestResult& r : results) {
-        if (r.test.kind != kind) continue;
+        if (!property.tests.contains(r.test.kind)) continue;
         if (r.interrupted && !r.properties.peak_reached) continue;
-        if (const double value = read(r.properties); std::isfinite(value)) values.emplace(r.seed, value);
+        const double value = property.of_broken_only ? strength(r.properties) : property.quantity->value(r);
+        if (std::isfinite(value)) values.emplace(r.seed, value);
     }
     return values;
 }
-
-double strength(const TestProperties& p) { return p.peak_reached ? p.peak_stress_Pa : std::nan(""); }
 
 /// A packing's strengths by confining stress: uniaxial at 0, biaxial at its sigma_3.
 using Envelope = std::map<double, double>;
@@ -101,19 +101,15 @@ void add_envelopes(PropertySummary& summary, std::span<const TestResult> results
         summary.fits.push_back(fit_envelopes(std::move(sigma3), std::move(sigma1)));
         summary.fits.back().seed = seed;
     }
-    for (const auto& [s3, values] : by_sigma3) add(summary, fmt::format("sigma1_at_sigma3_{:g}MPa_Pa", s3 / 1e6), values);
-    const auto add_fitted = [&](const std::string& name, double EnvelopeFit::* member) {
+    for (const auto& [s3, values] : by_sigma3) add(summary, confined_strength(s3), values);
+    for (const RockProperty& property : rock_properties()) {
+        if (property.source != RockProperty::Source::envelope) continue;
         BySeed values;
         for (const EnvelopeFit& fit : summary.fits) {
-            if (std::isfinite(fit.*member)) values[fit.seed] = fit.*member;
+            if (std::isfinite(fit.*property.fit)) values[fit.seed] = fit.*property.fit;
         }
-        add(summary, name, values);
-    };
-    add_fitted("cohesion_Pa", &EnvelopeFit::cohesion_Pa);
-    add_fitted("friction_angle_deg", &EnvelopeFit::friction_angle_deg);
-    add_fitted("UCS_fitted_Pa", &EnvelopeFit::UCS_fitted_Pa);
-    add_fitted("hoek_brown_mi", &EnvelopeFit::hoek_brown_mi);
-    add_fitted("hoek_brown_UCS_Pa", &EnvelopeFit::hoek_brown_UCS_Pa);
+        add(summary, property.kept_name(), values);
+    }
     summary.envelope_method = method(summary.fits);
 }
 
@@ -121,40 +117,11 @@ void add_envelopes(PropertySummary& summary, std::span<const TestResult> results
 
 PropertySummary summarise(std::span<const TestResult> results) {
     PropertySummary summary;
-    const auto add_uniaxial = [&](const std::string& name, double TestProperties::* member) {
-        add(summary, name, collect(results, TestKind::uniaxial_compression, [member](const TestProperties& p) { return p.*member; }));
-    };
-    add_uniaxial("E_Pa", &TestProperties::E_secant_Pa);
-    add_uniaxial("E_tangent_Pa", &TestProperties::E_tangent_Pa);
-    add_uniaxial("E_average_Pa", &TestProperties::E_average_Pa);
-    add_uniaxial("E_gauge_Pa", &TestProperties::E_gauge_Pa);
-    add_uniaxial("nu", &TestProperties::nu);
-    add_uniaxial("nu_tangent", &TestProperties::nu_tangent);
-    add_uniaxial("E_initial_Pa", &TestProperties::E_initial_Pa);
-    add_uniaxial("nu_initial", &TestProperties::nu_initial);
-    add_uniaxial("first_crack_Pa", &TestProperties::first_crack_Pa);
-    add_uniaxial("sigma_ci_crack_count_Pa", &TestProperties::sigma_ci_crack_count_Pa);
-    add_uniaxial("sigma_ci_crack_volume_Pa", &TestProperties::sigma_ci_crack_volume_Pa);
-    add_uniaxial("sigma_ci_lateral_strain_Pa", &TestProperties::sigma_ci_lateral_strain_Pa);
-    add_uniaxial("sigma_cd_Pa", &TestProperties::sigma_cd_Pa);
-    // Not the post-peak modulus: it jumps from minus to plus infinity where the branch is upright, and has no median there.
-    add(summary, "brittleness_k1", collect(results, TestKind::uniaxial_compression, [](const TestProperties& p) { return p.post_peak.brittleness; }));
-
-    const BySeed ucs = collect(results, TestKind::uniaxial_compression, strength);
-    const BySeed dts = collect(results, TestKind::direct_tension, strength);
-    const BySeed bts = collect(results, TestKind::brazilian, strength);
-    add(summary, "UCS_Pa", ucs);
-    add(summary, "DTS_Pa", dts);
-    add(summary, "BTS_Pa", bts);
-    const auto add_brazilian = [&](const std::string& name, double BrazilianFailure::* member) {
-        add(summary, name, collect(results, TestKind::brazilian, [member](const TestProperties& p) { return p.brazilian.*member; }));
-    };
-    add_brazilian("BTS_first_dip_Pa", &BrazilianFailure::first_dip_Pa);
-    add_brazilian("BTS_largest_Pa", &BrazilianFailure::largest_Pa);
-    add(summary, "BTS_valid_share", collect(results, TestKind::brazilian, [](const TestProperties& p) { return p.brazilian.valid ? 1.0 : 0.0; }));
-    add(summary, "UCS_over_DTS", ratio(ucs, dts));
-    add(summary, "UCS_over_BTS", ratio(ucs, bts));
-    add(summary, "BTS_over_DTS", ratio(bts, dts));
+    for (const RockProperty& property : rock_properties()) {
+        if (property.source == RockProperty::Source::test) add(summary, property.kept_name(), collect(results, property));
+        if (property.source == RockProperty::Source::ratio)
+            add(summary, property.kept_name(), ratio(collect(results, *rock_property(property.above)), collect(results, *rock_property(property.below))));
+    }
     add_envelopes(summary, results);
     return summary;
 }

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "feldspar/lab/brazilian_failure.hpp"
-#include "feldspar/lab/properties.hpp"
+#include "feldspar/lab/quantities.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -75,10 +75,32 @@ Json history_json(const TestResult& result, std::size_t tests) {
     return json;
 }
 
+/// Adds the test's numbers of a group.
+void add(Json& json, const TestResult& result, QuantityGroup group) {
+    for (const TestQuantity& quantity : test_quantities()) {
+        if (quantity.group != group || quantity.report == TestQuantity::absent) continue;
+        const double value = quantity.value(result);
+        Json& entry = json[quantity.report_name()];
+        if (quantity.place.form == QuantityForm::yes_no) entry = value == 1.0;
+        else entry = rounded(value * quantity.unit.factor);
+    }
+}
+
+Json brazilian_json(const TestResult& result) {
+    Json json;
+    add(json, result, QuantityGroup::brazilian);
+    json["why"] = validity_in_words(result.properties.brazilian);
+    add(json, result, QuantityGroup::flattened);
+    json["marks"] = Json::array();
+    for (const BrazilianMark& mark : brazilian_marks(result))
+        json["marks"].push_back({{"name", mark.name},
+                                 {"strain", rounded(mark.axial_strain * 1e3)},
+                                 {"stress", rounded(mark.stress_Pa * MPa)},
+                                 {"crack", mark.crack}});
+    return json;
+}
+
 Json test_json(const TestResult& result, std::size_t tests) {
-    const TestProperties& p = result.properties;
-    const QuasiStaticEvidence& e = result.evidence;
-    const auto tensile = std::ranges::count(result.cracks, CrackMode::tensile, &Crack::mode);
     Json test;
     if (!result.variant.empty()) test["variant"] = result.variant;
     test["stem"] = test_stem(result);
@@ -86,63 +108,20 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["seed"] = result.seed;
     test["sigma3"] = rounded(result.test.sigma3_Pa * MPa);
     test["numerics"] = name(result.numerics.kind);
-    test["peak"] = rounded(p.peak_stress_Pa * MPa);
-    test["section_width"] = rounded(p.section_width_m * 1e3);
-    test["remarks"] = p.remarks;
-    test["peak_reached"] = p.peak_reached;
-    test["first_crack"] = rounded(p.first_crack_Pa * MPa);
-    if (result.test.kind == TestKind::brazilian) {
-        const BrazilianFailure& b = p.brazilian;
-        test["brazilian"] = {{"split", b.split},
-                             {"valid", b.valid},
-                             {"first_dip", rounded(b.first_dip_Pa * MPa)},
-                             {"largest", rounded(b.largest_Pa * MPa)},
-                             {"first_crack_radius", rounded(b.first_crack_radius)},
-                             {"first_crack_angle", rounded(b.first_crack_angle_deg)},
-                             {"splitting_radius", rounded(b.splitting_radius)},
-                             {"splitting_angle", rounded(b.splitting_angle_deg)},
-                             {"splitting_share", rounded(b.splitting_share)},
-                             {"arc_top", rounded(b.contact_arc_top_deg)},
-                             {"arc_bottom", rounded(b.contact_arc_bottom_deg)},
-                             {"why", validity_in_words(b)},
-                             {"flat_coefficient", rounded(b.flat_coefficient)},
-                             {"marks", Json::array()}};
-        for (const BrazilianMark& mark : brazilian_marks(result))
-            test["brazilian"]["marks"].push_back({{"name", mark.name},
-                                                  {"strain", rounded(mark.axial_strain * 1e3)},
-                                                  {"stress", rounded(mark.stress_Pa * MPa)},
-                                                  {"crack", mark.crack}});
-    }
-    const PostPeak& branch = p.post_peak;
-    test["post_peak"] = {{"modulus", rounded(branch.modulus_Pa * GPa)},
-                         {"brittleness", rounded(branch.brittleness)},
-                         {"fracture", rounded(branch.fracture_share)},
-                         {"friction", rounded(branch.friction_share)},
-                         {"damping", rounded(branch.damping_share)}};
-    test["E"] = rounded(p.E_secant_Pa * GPa);
-    test["nu"] = rounded(p.nu);
-    test["sigma_ci"] = {{"crack count", rounded(p.sigma_ci_crack_count_Pa * MPa)},
-                        {"crack volumetric strain", rounded(p.sigma_ci_crack_volume_Pa * MPa)},
-                        {"lateral strain", rounded(p.sigma_ci_lateral_strain_Pa * MPa)}};
-    test["sigma_cd"] = rounded(p.sigma_cd_Pa * MPa);
-    test["tensile"] = tensile;
-    test["shear"] = static_cast<std::ptrdiff_t>(result.cracks.size()) - tensile;
-    test["steps"] = result.steps;
-    test["wall_s"] = rounded(result.wall_s);
-    test["error_estimate"] = rounded(e.error_estimate);
-    test["error_bound"] = rounded(error_bound(e.error_estimate));
-    test["residual_median"] = rounded(e.residual_median);
-    test["load_per_travel_time"] = rounded(e.load_per_travel_time);
-    test["imbalance_mean"] = rounded(e.imbalance_mean);
-    test["residual_mean"] = rounded(e.residual_mean);
-    test["residual_at_peak"] = rounded(e.residual_at_peak);
-    test["imbalance_max"] = rounded(e.imbalance_max);
-    test["kinetic_over_strain"] = rounded(e.kinetic_over_strain);
-    test["damping_over_fracture"] = rounded(e.damping_over_fracture);
-    test["energy_residual"] = rounded(result.energy_residual);
-    test["grade"] = std::string(1, e.grade);
-    test["verdict"] = e.verdict;
-    test["change_at_third"] = e.confirmed ? rounded(e.peak_change_at_third) : Json(nullptr);
+    add(test, result, QuantityGroup::strength);
+    test["remarks"] = result.properties.remarks;
+    add(test, result, QuantityGroup::peak);
+    add(test, result, QuantityGroup::first_crack);
+    if (result.test.kind == TestKind::brazilian) test["brazilian"] = brazilian_json(result);
+    add(test["post_peak"], result, QuantityGroup::post_peak);
+    add(test, result, QuantityGroup::elastic);
+    add(test["sigma_ci"], result, QuantityGroup::initiation);
+    for (const QuantityGroup group : {QuantityGroup::damage, QuantityGroup::cracks, QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence,
+                                      QuantityGroup::balance})
+        add(test, result, group);
+    test["grade"] = std::string(1, result.evidence.grade);
+    test["verdict"] = result.evidence.verdict;
+    add(test, result, QuantityGroup::repeats);
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
     test["history"] = history_json(result, tests);

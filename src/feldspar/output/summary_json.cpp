@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <system_error>
 
 #include "feldspar/lab/properties.hpp"
+#include "feldspar/lab/quantities.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -21,19 +21,19 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json in_MPa(double value_Pa) { return number(value_Pa * MPa); }
-Json in_GPa(double value_Pa) { return number(value_Pa * GPa); }
 
-Json energy_json(const EnergyLedger& energy) {
-    return {{"external_J", number(energy.external)},
-            {"elastic_start_J", number(energy.elastic_start)},
-            {"rate_control_J", number(energy.rate_control)},
-            {"elastic_grains_J", number(energy.elastic_grains)},
-            {"elastic_contacts_J", number(energy.elastic_contacts)},
-            {"fracture_J", number(energy.fracture)},
-            {"friction_J", number(energy.friction)},
-            {"damping_J", number(energy.damping)},
-            {"kinetic_J", number(energy.kinetic)},
-            {"residual_J", number(energy.residual())}};
+/// Adds the test's numbers of a group.
+void add(Json& json, const TestResult& result, QuantityGroup group) {
+    for (const TestQuantity& quantity : test_quantities()) {
+        if (quantity.group != group || quantity.summary == TestQuantity::absent) continue;
+        const double value = quantity.value(result);
+        Json& entry = json[quantity.summary_name()];
+        switch (quantity.place.form) {
+            case QuantityForm::real: entry = number(value * quantity.unit.factor); break;
+            case QuantityForm::whole: entry = static_cast<long long>(value); break;
+            case QuantityForm::yes_no: entry = value == 1.0; break;
+        }
+    }
 }
 
 /// The files of a test that are in the directory already.
@@ -50,10 +50,6 @@ Json files_json(const RunDirectory& directory, const std::string& stem) {
 }
 
 Json test_json(const RunDirectory& directory, const TestResult& result) {
-    const TestProperties& p = result.properties;
-    const QuasiStaticEvidence& e = result.evidence;
-    int tensile = 0;
-    for (const Crack& crack : result.cracks) tensile += crack.mode == CrackMode::tensile ? 1 : 0;
     Json test;
     if (!result.variant.empty()) test["variant"] = result.variant;
     test["kind"] = name(result.test.kind);
@@ -64,89 +60,28 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["plane"] = name(result.model.plane);
     test["seed"] = result.seed;
     test["sigma3_MPa"] = in_MPa(result.test.sigma3_Pa);
-    test["peak_stress_MPa"] = in_MPa(p.peak_stress_Pa);
-    test["section_width_mm"] = number(p.section_width_m * 1e3);
-    test["remarks"] = p.remarks;
-    test["peak_reached"] = p.peak_reached;
-    test["first_crack_MPa"] = in_MPa(p.first_crack_Pa);
+    add(test, result, QuantityGroup::strength);
+    test["remarks"] = result.properties.remarks;
+    add(test, result, QuantityGroup::peak);
+    add(test, result, QuantityGroup::first_crack);
     if (result.test.kind == TestKind::brazilian) {
-        const BrazilianFailure& b = p.brazilian;
-        test["brazilian"] = {{"plates", name(result.test.plates)},
-                             {"split", b.split},
-                             {"valid", b.valid},
-                             {"BTS_first_dip_MPa", in_MPa(b.first_dip_Pa)},
-                             {"BTS_largest_MPa", in_MPa(b.largest_Pa)},
-                             {"crack_span", number(b.crack_span)},
-                             {"first_crack_radius", number(b.first_crack_radius)},
-                             {"first_crack_angle_deg", number(b.first_crack_angle_deg)},
-                             {"first_crack_share", number(b.first_crack_share)},
-                             {"splitting_radius", number(b.splitting_radius)},
-                             {"splitting_angle_deg", number(b.splitting_angle_deg)},
-                             {"splitting_share", number(b.splitting_share)},
-                             {"contact_arc_top_deg", number(b.contact_arc_top_deg)},
-                             {"contact_arc_bottom_deg", number(b.contact_arc_bottom_deg)}};
-        if (result.specimen && result.specimen->outline.flattened()) {
-            test["brazilian"]["flat_angle_deg"] = number(result.specimen->spec.outline.flat_angle_rad * 180.0 / std::numbers::pi);
-            test["brazilian"]["flat_coefficient"] = number(b.flat_coefficient);
-        }
+        Json& disc = test["brazilian"] = {{"plates", name(result.test.plates)}};
+        add(disc, result, QuantityGroup::brazilian);
+        if (result.specimen && result.specimen->outline.flattened()) add(disc, result, QuantityGroup::flattened);
+    } else {
+        Json& branch = test["post_peak"] = {{"control", name(result.test.control)}};
+        add(branch, result, QuantityGroup::post_peak);
     }
-    if (result.test.kind != TestKind::brazilian) {
-        const PostPeak& b = p.post_peak;
-        test["post_peak"] = {{"control", name(result.test.control)},
-                             {"modulus_GPa", in_GPa(b.modulus_Pa)},
-                             {"brittleness_k1", number(b.brittleness)},
-                             {"fracture_share", number(b.fracture_share)},
-                             {"friction_share", number(b.friction_share)},
-                             {"damping_share", number(b.damping_share)}};
-    }
-    test["E_GPa"] = in_GPa(p.E_secant_Pa);
-    test["E_tangent_GPa"] = in_GPa(p.E_tangent_Pa);
-    test["E_average_GPa"] = in_GPa(p.E_average_Pa);
-    test["E_gauge_GPa"] = in_GPa(p.E_gauge_Pa);
-    test["nu"] = number(p.nu);
-    test["nu_tangent"] = number(p.nu_tangent);
-    test["E_initial_GPa"] = in_GPa(p.E_initial_Pa);
-    test["nu_initial"] = number(p.nu_initial);
-    test["sigma_ci_crack_count_MPa"] = in_MPa(p.sigma_ci_crack_count_Pa);
-    test["sigma_ci_crack_volume_MPa"] = in_MPa(p.sigma_ci_crack_volume_Pa);
-    test["sigma_ci_lateral_strain_MPa"] = in_MPa(p.sigma_ci_lateral_strain_Pa);
-    test["sigma_cd_MPa"] = in_MPa(p.sigma_cd_Pa);
-    test["steps"] = result.steps;
-    test["steps_to_peak"] = result.steps_to_peak;
-    test["passages"] = result.passages;
-    test["preparation_steps"] = result.preparation_steps;
-    test["wall_s"] = number(result.wall_s);
-    test["ms_per_step"] = number(result.ms_per_step);
-    test["threads"] = result.threads;
-    test["error_estimate"] = number(e.error_estimate);
-    test["error_bound"] = number(error_bound(e.error_estimate));
-    test["residual_median"] = number(e.residual_median);
-    test["load_per_travel_time"] = number(e.load_per_travel_time);
-    test["imbalance_mean"] = number(e.imbalance_mean);
-    test["travel_time"] = number(result.travel_time);
-    test["residual_mean"] = number(e.residual_mean);
-    test["residual_at_peak"] = number(e.residual_at_peak);
-    test["imbalance_max"] = number(e.imbalance_max);
-    test["kinetic_over_strain"] = number(e.kinetic_over_strain);
-    test["damping_over_fracture"] = number(e.damping_over_fracture);
-    test["cracks_tensile"] = tensile;
-    test["cracks_shear"] = static_cast<int>(result.cracks.size()) - tensile;
-    test["energy_residual"] = number(result.energy_residual);
-    test["quasi_static"] = std::string(1, e.grade);
-    test["verdict"] = e.verdict;
-    test["peak_change_at_third"] = e.confirmed ? number(e.peak_change_at_third) : Json(nullptr);
-    test["balanced_stress_MPa"] = in_MPa(e.balanced_stress_Pa);
-    test["other_damping"] = e.other_damping > 0.0 ? number(e.other_damping) : Json(nullptr);
-    test["peak_change_at_other_damping"] = e.other_damping > 0.0 ? number(e.peak_change_at_other_damping) : Json(nullptr);
+    for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage, QuantityGroup::steps, QuantityGroup::cost,
+                                      QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
+        add(test, result, group);
+    test["quasi_static"] = std::string(1, result.evidence.grade);
+    test["verdict"] = result.evidence.verdict;
+    add(test, result, QuantityGroup::repeats);
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
-    test["energy_at_end"] = energy_json(result.energy_at_end);
-    test["new_contacts"] = result.new_contacts;
-    test["shape_fallbacks"] = result.shape_fallbacks;
-    test["angular_momentum_loss"] = number(result.angular_momentum_loss);
-    test["vanished_compressions"] = result.vanished_compressions;
-    test["stable_omega2"] = number(result.stable_omega2);
-    test["stable_limit"] = number(result.stable_limit);
+    add(test["energy_at_end"], result, QuantityGroup::energies);
+    add(test, result, QuantityGroup::bookkeeping);
     test["files"] = files_json(directory, test_stem(result));
     return test;
 }

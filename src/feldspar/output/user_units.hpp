@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "feldspar/lab/quantities.hpp"
+
 namespace feldspar {
 
 /// A quantity in user units: its name in summary.json, the factor from SI, the unit and the words of a table.
@@ -22,10 +24,10 @@ UserQuantity user_quantity(const std::string& property);
 /// ("E_Pa", "UCS_Pa", "friction_angle_deg").
 std::string property_of_laboratory(const std::string& name);
 
+/// A value of Job::laboratory (SI, radians) as PropertySummary has it (SI, degrees).
+double laboratory_as_kept(const std::string& name, double value);
+
 /// A value of Job::laboratory (SI, radians) in user units.
 double laboratory_in_user_units(const std::string& name, double value);
-
-inline constexpr double MPa = 1e-6;  ///< times Pa
-inline constexpr double GPa = 1e-9;  ///< times Pa
 
 }  // namespace feldspar

@@ -57,7 +57,7 @@ struct SettledRuns {
 /// Picks them from what a ledger knows of the runs. @param program  whose failures count; none if failed runs are repeated
 SettledRuns settled_runs(std::span<const RunRecord> records, const Provenance* program);
 
-/// As much of a result as summarise() reads.
+/// What the numbers and texts of a record say of a result; the rest as in a result of no test. Enough for summarise().
 TestResult result_of(const RunRecord& record);
 
 /// run.json: every digit, so that reading gives the same bits.

@@ -1,0 +1,126 @@
+#include "feldspar/lab/rock_properties.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+namespace feldspar {
+
+namespace {
+
+using enum TestKind;
+using Source = RockProperty::Source;
+
+constexpr std::string_view confined_stem = "sigma1_at_sigma3", confined_start = "sigma1_at_sigma3_", confined_end = "MPa_Pa";
+
+/// A number of one kind of test, as each packing has it.
+RockProperty read(std::string_view quantity, TestKind kind, const char* label, const char* symbol, std::string_view laboratory = {}) {
+    const TestQuantity& read_from = test_quantity(quantity);
+    RockProperty p{read_from.name, read_from.unit, label, symbol, read_from.definition, Source::test, {kind}, &read_from};
+    p.laboratory = laboratory;
+    return p;
+}
+
+RockProperty in_compression(std::string_view quantity, const char* label, const char* symbol, std::string_view laboratory = {}) {
+    return read(quantity, uniaxial_compression, label, symbol, laboratory);
+}
+
+RockProperty strength(std::string_view name, TestKind kind, const char* label) {
+    RockProperty p = read("strength", kind, label, "", name);
+    p.name = name;
+    p.symbol = name;
+    p.of_broken_only = true;
+    return p;
+}
+
+/// 1 or 0 of each packing: its mean over them is a share.
+RockProperty share(std::string_view name, std::string_view quantity, TestKind kind, const char* label, const char* symbol) {
+    RockProperty p = read(quantity, kind, label, symbol);
+    p.name = name;
+    return p;
+}
+
+RockProperty ratio(std::string_view name, std::string_view above, std::string_view below, const std::set<TestKind>& tests) {
+    RockProperty p{name, units::pure, fmt::format("Ratio {} / {}", above, below), fmt::format("{}/{}", above, below), "(P11)", Source::ratio, tests};
+    p.above = above;
+    p.below = below;
+    return p;
+}
+
+RockProperty fitted(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, std::string_view definition, double EnvelopeFit::* fit,
+                    std::string_view laboratory = {}) {
+    RockProperty p{name, unit, label, symbol, definition, Source::envelope, {uniaxial_compression, biaxial}};
+    p.fit = fit;
+    p.laboratory = laboratory;
+    return p;
+}
+
+std::vector<RockProperty> table() {
+    using namespace units;
+    return {
+        in_compression("E", "Young's modulus, secant at 50 % of the peak", "E", "E"),
+        in_compression("nu", "Poisson's ratio, secant at 50 % of the peak", "\u03bd", "nu"),
+        strength("UCS", uniaxial_compression, "Uniaxial compressive strength"),
+        strength("DTS", direct_tension, "Direct tensile strength"),
+        strength("BTS", brazilian, "Brazilian tensile strength"),
+        read("BTS_first_dip", brazilian, "Brazilian test, stress at the first fall of 5 %", "BTS dip", "BTS"),
+        read("BTS_largest", brazilian, "Brazilian test, largest stress of the record", "BTS largest", "BTS"),
+        fitted("cohesion", stress, "Cohesion, Mohr-Coulomb", "c", "(P12)", &EnvelopeFit::cohesion_Pa, "cohesion"),
+        fitted("friction_angle", angle, "Friction angle, Mohr-Coulomb", "\u03c6", "(P12)", &EnvelopeFit::friction_angle_deg, "friction_angle"),
+        fitted("hoek_brown_mi", pure, "Hoek-Brown constant, intact rock", "mi", "(P13)", &EnvelopeFit::hoek_brown_mi, "hoek_brown_mi"),
+        ratio("UCS_over_BTS", "UCS", "BTS", {uniaxial_compression, brazilian}),
+        ratio("UCS_over_DTS", "UCS", "DTS", {uniaxial_compression, direct_tension}),
+        ratio("BTS_over_DTS", "BTS", "DTS", {brazilian, direct_tension}),
+        {confined_stem, stress, "Strength at \u03c3\u2083", "\u03c3\u2081", "(P1)", Source::confined_strength, {biaxial}},
+        fitted("UCS_fitted", stress, "UCS from the Mohr-Coulomb line", "UCS fit", "(P12)", &EnvelopeFit::UCS_fitted_Pa),
+        {"mohr_coulomb_N", pure, "Slope of the Mohr-Coulomb line", "N", "(P12)"},
+        {"mohr_coulomb_tension", stress, "Tensile strength, Mohr-Coulomb line", "\u03c3t M-C", "(P19)"},
+        fitted("hoek_brown_UCS", stress, "UCS from the Hoek-Brown fit", "\u03c3ci fit", "(P13)", &EnvelopeFit::hoek_brown_UCS_Pa),
+        {"hoek_brown_tension", stress, "Tensile strength, Hoek-Brown parabola", "\u03c3t H-B", "(P19)"},
+        in_compression("first_crack", "Stress at the first crack", "\u03c31st"),
+        in_compression("sigma_ci_crack_count", "Crack initiation stress, crack count", "\u03c3ci"),
+        in_compression("sigma_ci_crack_volume", "Crack initiation stress, crack volumetric strain", "\u03c3ci"),
+        in_compression("sigma_ci_lateral_strain", "Crack initiation stress, lateral strain response", "\u03c3ci"),
+        in_compression("sigma_cd", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd"),
+        // Not the post-peak modulus: it jumps from minus to plus infinity where the branch is upright, and has no median there.
+        in_compression("brittleness_k1", "Brittleness k1: above 1 class I, below 1 class II", "k1"),
+        in_compression("E_tangent", "Young's modulus, tangent at 50 % of the peak", "Et50", "E"),
+        in_compression("nu_tangent", "Poisson's ratio, tangent at 50 % of the peak", "\u03bd tangent", "nu"),
+        in_compression("E_average", "Young's modulus, average 30 to 70 % of the peak", "Eavg", "E"),
+        in_compression("E_gauge", "Young's modulus, tangent, from the gauge", "E gauge", "E"),
+        in_compression("E_initial", "Young's modulus before damage, to 10 % of the peak, from the gauge", "E initial", "E"),
+        in_compression("nu_initial", "Poisson's ratio before damage, to 10 % of the peak", "\u03bd initial", "nu"),
+        share("BTS_valid_share", "BTS_valid", brazilian, "Brazilian test valid by ISRM: 1 yes, 0 no", "valid"),
+    };
+}
+
+}  // namespace
+
+std::span<const RockProperty> rock_properties() {
+    static const std::vector<RockProperty> all = table();
+    return all;
+}
+
+const RockProperty* rock_property(std::string_view name) {
+    const std::span<const RockProperty> all = rock_properties();
+    const auto found = std::ranges::find(all, name, &RockProperty::name);
+    return found == all.end() ? nullptr : &*found;
+}
+
+const RockProperty* kept_rock_property(std::string_view kept_name) {
+    if (pressure_of_confined_strength_MPa(kept_name)) return rock_property(confined_stem);
+    const std::span<const RockProperty> all = rock_properties();
+    const auto found = std::ranges::find_if(all, [&](const RockProperty& p) { return p.source != Source::confined_strength && p.kept_name() == kept_name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+std::string confined_strength(double sigma3_Pa) { return fmt::format("{}{:g}{}", confined_start, sigma3_Pa / 1e6, confined_end); }
+
+std::optional<double> pressure_of_confined_strength_MPa(std::string_view kept_name) {
+    if (!kept_name.starts_with(confined_start) || !kept_name.ends_with(confined_end)) return std::nullopt;
+    return std::strtod(std::string(kept_name.substr(confined_start.size())).c_str(), nullptr);
+}
+
+}  // namespace feldspar
