@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <regex>
@@ -52,10 +51,6 @@ std::string peak_text(const TestResult& result) {
     return result.properties.peak_reached ? value : "> " + value;
 }
 
-// The properties that a comparison begins with, in the order of its columns.
-constexpr std::array compared_properties{"E_Pa",         "nu", "UCS_Pa", "DTS_Pa", "BTS_Pa", "cohesion_Pa", "friction_angle_deg",
-                                         "hoek_brown_mi"};
-
 std::string symbol_with_unit(const UserQuantity& quantity) {
     const std::string symbol = quantity.name.substr(0, quantity.name.find('_'));
     const std::string plain = quantity.name == "hoek_brown_mi" ? "mi" : quantity.name == "friction_angle_deg" ? "phi" : symbol;
@@ -73,10 +68,11 @@ std::string median_and_range(const PropertySummary& properties, const std::strin
 
 std::string compared_table(const Job& job, const std::vector<VariantSummary>& summaries) {
     std::vector<std::string> present;
-    for (const char* property : compared_properties)
-        if (std::any_of(summaries.begin(), summaries.end(),
-                        [&](const VariantSummary& s) { return s.properties.values.contains(property); }))
-            present.emplace_back(property);
+    for (const RockProperty& property : rock_properties()) {
+        const std::string name = property.kept_name();
+        const auto has = [&](const VariantSummary& summary) { return summary.properties.values.contains(name); };
+        if (property.reported() && std::any_of(summaries.begin(), summaries.end(), has)) present.push_back(name);
+    }
     if (present.empty()) return "No property could be read: no test reached its peak.\n";
     std::vector<Row> rows{{"Variant"}};
     for (const std::string& property : present) rows.front().push_back(symbol_with_unit(user_quantity(property)));

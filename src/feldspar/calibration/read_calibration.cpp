@@ -20,11 +20,7 @@ struct TargetKind {
     bool absolute = false;
 
     // How it is written; none: a plain number.
-    std::optional<Dimension> dimension() const {
-        const QuantityUnit unit = kept_rock_property(property_of({name}))->unit;
-        if (unit == units::pure) return std::nullopt;
-        return unit == units::angle ? Dimension::angle : Dimension::stress;
-    }
+    std::optional<Dimension> dimension() const { return kept_rock_property(property_of({name}))->unit.written; }
 };
 
 constexpr double degree = std::numbers::pi / 180.0;

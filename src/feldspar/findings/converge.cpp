@@ -19,9 +19,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// What is compared: E, nu and the strengths of the tests that were run.
 bool is_compared(const std::string& property) {
-    for (const char* known : {"E_Pa", "nu", "UCS_Pa", "DTS_Pa", "BTS_Pa"})
-        if (property == known) return true;
-    return pressure_of_confined_strength_MPa(property).has_value();
+    const RockProperty* known = kept_rock_property(property);
+    if (known == nullptr) return false;
+    return known->source == RockProperty::Source::confined_strength || (known->source == RockProperty::Source::test && known->reported());
 }
 
 std::vector<std::string> compared_properties(std::span<const PointResults> points, const std::vector<std::size_t>& which) {

@@ -6,6 +6,7 @@
 
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -208,10 +209,8 @@ void write_laboratory(Lines& out, const Job& job) {
     if (job.laboratory.empty() && job.laboratory_confined.empty()) return;
     out.head("[laboratory]");
     for (const auto& [key, value] : job.laboratory) {
-        if (key == "nu" || key == "hoek_brown_mi")
-            out.number(key, value);
-        else
-            out.quantity(key, value, key == "friction_angle" ? Dimension::angle : Dimension::stress);
+        if (const auto dimension = rock_property(key)->unit.written) out.quantity(key, value, *dimension);
+        else out.number(key, value);
     }
     if (job.laboratory_confined.empty()) return;
     std::string pairs;

@@ -4,11 +4,13 @@
 // over its packings, which are read from these numbers, have a table of their own (lab/rock_properties.hpp).
 #pragma once
 
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "feldspar/base/units.hpp"
 #include "feldspar/lab/result.hpp"
 
 namespace feldspar {
@@ -21,6 +23,7 @@ struct QuantityUnit {
     std::string_view kept;   ///< SI, but "deg" for angles; "" for a pure number
     std::string_view user;
     double factor = 1.0;     ///< value for the user = factor x value that is kept
+    std::optional<Dimension> written{};   ///< how files of users give it; none for a pure number, and for what they do not give
 
     bool operator==(const QuantityUnit&) const = default;
     /// "E_Pa": as a number that is kept is called
@@ -30,8 +33,8 @@ struct QuantityUnit {
 };
 
 namespace units {
-inline constexpr QuantityUnit pure{"", ""}, stress{"Pa", "MPa", MPa}, modulus{"Pa", "GPa", GPa}, angle{"deg", "deg"}, length{"m", "mm", 1e3}, energy{"J", "J"},
-    duration{"s", "s"};
+inline constexpr QuantityUnit pure{"", ""}, stress{"Pa", "MPa", MPa, Dimension::stress}, modulus{"Pa", "GPa", GPa, Dimension::stress},
+    angle{"deg", "deg", 1.0, Dimension::angle}, length{"m", "mm", 1e3, Dimension::length}, energy{"J", "J"}, duration{"s", "s", 1.0, Dimension::time};
 }
 
 /// Files list numbers group by group, each in its own order of groups; within a group the order is the same everywhere.

@@ -34,6 +34,8 @@ struct RockProperty {
 
     /// In PropertySummary: "E_Pa".
     std::string kept_name() const { return unit.kept_name(name); }
+    /// A laboratory has a number of just this: what comparisons begin with. (It may compare with other definitions, too.)
+    bool reported() const { return laboratory == name; }
 };
 
 /// All, in the order of a table of results: what a laboratory reports first, then how it was reached.
