@@ -9,7 +9,7 @@ const TestMethod biaxial{
     .purpose = "isotropic consolidation, then axial loading at a constant pressure on the sides",
     .specimen = {.confined = true},
     .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true},
-    .rate = {.travel_times = 150.0, .seconds = 10.0},
+    .rate = {.travel_times = 300.0, .seconds = 10.0},
     .verdict = {},
 };
 
