@@ -2,7 +2,6 @@
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -144,8 +143,8 @@ void read_plates(const TableReader& table, bool particles, const Known& known, T
         table.refuse({"membrane_plates"}, setting, "only with kind = \"biaxial\", which has a membrane");
     if (!method.own_disc) table.refuse({"plates", "jaw_radius"}, setting, "only with kind = \"brazilian\"");
     if (!method.own_disc && !particles) return;
-    const std::optional<double> usual_Kn = std::exchange(test.plate_Kn_Pa_m, std::nullopt);   // of the usual plates
-    const PlateShape usual = std::exchange(test.plates, table.has("plates") ? table.choice("plates", plate_shapes) : test.plates);
+    const PlateShape usual = test.plates;
+    if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
     if (table.has("jaw_radius")) {
         if (test.plates != PlateShape::curved)
             table.check({"plates", "disc"}, [&] { table.fail("jaw_radius", "given for flat plates", "plates = \"curved\", which is for a whole disc"); });
@@ -154,7 +153,7 @@ void read_plates(const TableReader& table, bool particles, const Known& known, T
     if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
         table.check({}, [&] { table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them"); });
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn", Dimension::stiffness_gradient, positive);
-    else if (test.plates == usual && !table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m = usual_Kn;
+    else if (test.plates != usual || table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m.reset();   // that of the usual plates
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
     if (!method.glued) test.plate_mu = table.number("plate_mu", not_negative, method.plate_mu);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates", 1, 1000, test.membrane_plates));

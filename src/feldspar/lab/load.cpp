@@ -166,11 +166,10 @@ public:
                 break;
             }
             if (!adaptive_) continue;
-            load_Pa_ = load;
             keep_state(load);
             mode_update_.observe(e_.assembly, e_.step, e_.platen_travel_m);
             const bool known = past_peak && settled();
-            control_.set_limits(known ? first_ : limits());
+            control_.set_limits(known ? first_ : limits(load));
             double speed = control_.next(std::max(0.0, e_.settings.speed), recorder_.unbalanced(), std::abs(row.axial_stress_Pa) * e_.section_m2,
                                          e_.platen_travel_m, slowest_growth());
             if (known && servo_.on()) {   // in balance the body takes what the rate control gives; out of balance it fails, and the servo leads
@@ -196,10 +195,10 @@ private:
 
     // Of the passage under way. On the plateau of a confined specimen, below a strength that is known, it may be out of balance by as much as the
     // load is below it, and the load may grow by that in a travel time: more would be needed to show a strength that is none.
-    PassageLimits limits() const {
+    PassageLimits limits(double load_Pa) const {
         if (first_steps_ == 0) return strict_;
         const double wider = std::max(1.0, static_cast<double>(result_.steps - passage_start_) / (kLongPassage * static_cast<double>(first_steps_)));
-        const double below = confined() && settled() ? std::max(0.0, 1.0 - load_Pa_ / stop_.peak()) : 0.0;
+        const double below = e_.confined() && settled() ? std::max(0.0, 1.0 - load_Pa / stop_.peak()) : 0.0;
         return {std::min(first_.residual, wider * strict_.residual + below / e_.method.rate.residual_share),
                 std::min(first_.growth, wider * strict_.growth + below)};
     }
@@ -209,11 +208,9 @@ private:
     // the limits stricter than that, and the wait for them would be without end.
     double slowest_growth() const {
         const double slow = kGrowthFailing * wanted_;
-        if (confined() && e_.method.rate.residual_share * control_.residual() < kAim * wanted_) return slow;
+        if (e_.confined() && e_.method.rate.residual_share * control_.residual() < kAim * wanted_) return slow;
         return control_.residual() > kFailsByItself && unrest() > kRunOut ? slow * std::max(1.0, unrest() / kPatience) : 0.0;
     }
-
-    bool confined() const { return e_.confined(); }
 
     // How long the typical body has been out of balance, in travel times of a wave.
     double unrest() const { return static_cast<double>(e_.step - balanced_step_) / e_.travel_time; }
@@ -290,7 +287,6 @@ private:
     double settled_Pa_ = 0.0;       // the peak whose passage was judged last
     long long first_steps_ = 0;     // of the first passage
     long long passage_start_ = 0;   // result_.steps when the passage under way began
-    double load_Pa_ = 0.0;          // in the last row
     double passed_Pa_ = 0.0;        // strength of the passage before, and its limits
     PassageLimits passed_with_;
     const PassageLimits first_ = first_passage(e_.setup.numerics, e_.setup.test.kind);

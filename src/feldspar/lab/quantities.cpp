@@ -10,6 +10,7 @@
 
 #include "feldspar/lab/failure_pattern.hpp"
 #include "feldspar/lab/properties.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-using enum TestKind;
 using R = TestResult;
 using P = TestProperties;
 using B = BrazilianFailure;
@@ -94,10 +94,16 @@ double change_at_other_damping(const R& r) { return r.evidence.other_damping > 0
 std::vector<TestQuantity> table() {
     using namespace units;
     constexpr auto same = TestQuantity::same, absent = TestQuantity::absent;
+    const auto those = [](bool (*fits)(const TestMethod&)) {
+        std::set<TestKind> kinds;
+        for (const TestKind kind : test_kinds)
+            if (fits(method_of(kind))) kinds.insert(kind);
+        return kinds;
+    };
     const std::set<TestKind> any(test_kinds.begin(), test_kinds.end());
-    const std::set<TestKind> loaded{uniaxial_compression, direct_tension, biaxial};   // between platens
-    const std::set<TestKind> compressed{uniaxial_compression, biaxial};
-    const std::set<TestKind> discs{brazilian};
+    const std::set<TestKind> discs = those([](const TestMethod& m) { return m.specimen.own_disc; });
+    const std::set<TestKind> loaded = those([](const TestMethod& m) { return !m.specimen.own_disc; });   // between platens
+    const std::set<TestKind> compressed = those([](const TestMethod& m) { return m.loading.widens; });
     std::vector<TestQuantity> all;
     const auto add = [&](QuantityGroup group, const std::set<TestKind>& tests, std::vector<TestQuantity> rows) {
         for (TestQuantity& row : rows) {
