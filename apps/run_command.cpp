@@ -16,7 +16,6 @@
 #include "commands.hpp"
 #include "feldspar/base/parallel.hpp"
 #include "feldspar/base/usable_cores.hpp"
-#include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/study/running_tests.hpp"
@@ -34,8 +33,7 @@ namespace fs = std::filesystem;
 double expected_bytes(const Job& job, const std::vector<PlannedRun>& runs) {
     double bytes = 1e6;
     for (const PlannedRun& run : runs) {
-        const SpecimenSpec& specimen = method_of(*run.test).specimen.own_disc ? job.brazilian_specimen : job.specimen;
-        const double grains = grain_count(specimen);
+        const double grains = grain_count(specimen_of(job, *run.test));
         bytes += 1e6 + 500.0 * grains * (run.test->snapshots + 4);
     }
     return bytes;

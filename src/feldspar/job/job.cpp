@@ -5,6 +5,7 @@
 
 #include "feldspar/job/file_reader.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -100,6 +101,10 @@ private:
 };
 
 }  // namespace
+
+const SpecimenSpec& specimen_of(const Job& job, const TestSpec& test) {
+    return method_of(test).specimen.own_disc ? job.brazilian_specimen : job.specimen;
+}
 
 Job read_tree(toml::table tree, const std::string& text, const std::string& name) { return JobReader(std::move(tree), text, name).read(); }
 

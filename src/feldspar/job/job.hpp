@@ -67,6 +67,9 @@ Job parse_job(const std::string& text, const std::string& name);
 /// Sentences on what is allowed but may not be what was meant; none if there is nothing to say.
 std::vector<std::string> warnings(const Job& job);
 
+/// The specimen of a test of the job: the job's own, or the disc that the test cuts itself.
+const SpecimenSpec& specimen_of(const Job& job, const TestSpec& test);
+
 /// The job with every default written out, as TOML: provenance that can be run again.
 std::string resolved_toml(const Job& job);
 

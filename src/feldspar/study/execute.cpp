@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/methods/method.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_files.hpp"
 #include "feldspar/study/running_tests.hpp"
@@ -23,7 +22,7 @@ constexpr auto between_looks_at_others = std::chrono::milliseconds(500);
 
 // Bodies that move by themselves in the run, before its specimen is there.
 int expected_bodies(const Run& run) {
-    const SpecimenSpec& specimen = method_of(run.test()).specimen.own_disc ? run.job.brazilian_specimen : run.job.specimen;
+    const SpecimenSpec& specimen = specimen_of(run.job, run.test());
     const bool filled = run.job.variants.front().model.kind == GrainKind::inner_particles;
     return static_cast<int>(grain_count(specimen) * (filled ? specimen.particles_per_grain : 1.0));
 }

@@ -4,19 +4,14 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
-#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
 
-const SpecimenSpec& specimen_of(const Run& run) {
-    return method_of(run.test()).specimen.own_disc ? run.job.brazilian_specimen : run.job.specimen;
-}
-
 // What the specimen follows from: the part of the resolved job that is about it, and the seed.
 std::string key_of(const Run& run) {
     Job job = run.job;
-    job.specimen = specimen_of(run);
+    job.specimen = specimen_of(run.job, run.test());
     job.variants = {Variant{}};
     job.tests = {TestSpec{}};
     job.name = "specimen";
@@ -49,7 +44,7 @@ std::shared_ptr<const Specimen> Packings::get(const Run& run, int threads) {
         control.progress = [this](const SpecimenProgress&) {
             if (stop_ != nullptr && *stop_) throw Interrupted();
         };
-        promise.set_value(std::make_shared<const Specimen>(make_specimen(specimen_of(run), run.seed(), control)));
+        promise.set_value(std::make_shared<const Specimen>(make_specimen(specimen_of(run.job, run.test()), run.seed(), control)));
     } catch (...) {
         promise.set_exception(std::current_exception());
         throw;

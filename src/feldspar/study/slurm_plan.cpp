@@ -38,7 +38,7 @@ double default_factor(NumericsKind kind) { return kind == NumericsKind::adaptive
 
 // Time of a run of so many grains as a multiple of that of 1000; the share that does not shrink is that of the least number of steps.
 double size_factor(const Run& run) {
-    const SpecimenSpec& specimen = method_of(run.test()).specimen.own_disc ? run.job.brazilian_specimen : run.job.specimen;
+    const SpecimenSpec& specimen = specimen_of(run.job, run.test());
     return 0.1 + grain_count(specimen) / 1000.0;
 }
 
