@@ -10,7 +10,7 @@
 #include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/base/thread_shares.hpp"
-#include "feldspar/lab/flattened_disc.hpp"
+#include "feldspar/methods/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"

@@ -10,7 +10,7 @@
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
-#include "feldspar/model/platens.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/step/advance_packs.hpp"
 
@@ -55,14 +55,9 @@ Assembly make_assembly(GrainKind grains, Load load, const Specimen& specimen) {
     model.kind = grains;
     const ContactMaterial contact = granite_contact(grains);
     Assembly assembly = assemble(specimen, model, kGranite, contact);
-    if (load == Load::brazilian) {
-        attach_brazilian_plates(assembly, specimen, {contact.Kn_Pa_m, contact.eta, 0.4, false});
-    } else if (grains == GrainKind::flexible) {
-        attach_platen_rows(assembly, specimen);
-    } else {
-        attach_end_plates(assembly, specimen, {contact.Kn_Pa_m, contact.eta, 0.0, false});
-    }
-    assembly.platens[0].mode = {0.0, -1.0};
+    TestSpec test;
+    test.kind = load == Load::brazilian ? TestKind::brazilian : TestKind::uniaxial_compression;
+    attach(assembly, specimen, method_of(test).build.fixtures({specimen, model, kGranite, contact, test}));
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     Nodes& nodes = assembly.nodes;
     for (const Body& body : assembly.bodies) {

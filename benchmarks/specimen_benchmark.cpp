@@ -7,9 +7,9 @@
 
 #include "benchmarks/granite_material.hpp"
 #include "feldspar/lab/stability.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
-#include "feldspar/model/platens.hpp"
 #include "feldspar/specimen/clip_cells.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
@@ -118,7 +118,8 @@ void masses(benchmark::State& state) {
 
 void stability(benchmark::State& state) {
     Assembly assembly = granite(state.range(0));
-    attach_platen_rows(assembly, specimen_of(state.range(0)));
+    const ContactMaterial contact = benchmarks::granite_contact(GrainKind::flexible);
+    attach(assembly, specimen_of(state.range(0)), method_of(TestKind::uniaxial_compression).build.fixtures({specimen_of(state.range(0)), {}, benchmarks::kGranite, contact, {}}));
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     Team team(static_cast<int>(state.range(1)));
     for (auto _ : state) benchmark::DoNotOptimize(largest_omega2(assembly, team));

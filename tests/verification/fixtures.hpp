@@ -10,6 +10,7 @@
 
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/specimen.hpp"
@@ -67,6 +68,29 @@ inline TestSetup setup(std::shared_ptr<const Specimen> specimen, TestKind kind) 
     s.contact = table7();
     s.test.kind = kind;
     return s;
+}
+
+/// The platens and sides of a compressed specimen of flexible grains. @param sigma3_Pa  on its sides; 0: none
+inline std::vector<FixtureSpec> platen_rows(const Specimen& specimen, double sigma3_Pa = 0.0) {
+    TestSpec test;
+    test.kind = TestKind::biaxial;
+    test.sigma3_Pa = sigma3_Pa;
+    const ContactMaterial contact = table7();
+    return method_of(test).build.fixtures({specimen, ModelSpec{}, granite(), contact, test});
+}
+
+/// Plates at both ends that touch like this.
+inline std::vector<FixtureSpec> end_plates(const PlateContact& contact) {
+    std::vector<FixtureSpec> plates(2);
+    for (const bool top : {true, false}) {
+        FixtureSpec& plate = plates[top ? 0 : 1];
+        plate.name = plate.part.label = top ? "top" : "bottom";
+        plate.kind = FixtureKind::plate;
+        plate.normal = {0.0, top ? 1.0 : -1.0};
+        plate.motion = {0.0, top ? -1.0 : 0.0};
+        plate.contact = contact;
+    }
+    return plates;
 }
 
 /// Tables 1 and 2 of the paper: what rigid grains and inner particles have.

@@ -32,7 +32,7 @@ inline void expect_plates_on_a_disc(const ModelSpec& model) {
     EXPECT_DOUBLE_EQ(law.Kn_Pa_m, 0.5 * s.contact.Kn_Pa_m);
     EXPECT_DOUBLE_EQ(law.Ks_Pa_m, s.contact.eta * 0.5 * s.contact.Kn_Pa_m);
     EXPECT_DOUBLE_EQ(law.mu, 0.25);
-    for (const Platen& platen : e.assembly.platens) {
+    for (const Fixture& platen : e.assembly.fixtures) {
         double smallest = INFINITY;
         std::map<int, int> touched;
         for (const Contact* contact : contacts_of(e.assembly, platen.plate)) {

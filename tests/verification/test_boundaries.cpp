@@ -9,7 +9,6 @@
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
-#include "feldspar/model/platens.hpp"
 #include "fixtures.hpp"
 #include "plate_checks.hpp"
 
@@ -19,8 +18,9 @@ namespace {
 TEST(Boundaries, PressureActsNormalToTheInitialFacesOverTheirCurrentLength) {   // (L1)
     const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.04));
     Assembly assembly = assemble(*specimen, ModelSpec{}, fixtures::granite(), fixtures::table7());
-    attach_platen_rows(assembly, *specimen);
-    const double c = 1.1 * std::cos(0.2), s = 1.1 * std::sin(0.2), pressure = 5e6;   // turned by 0.2 and stretched by 1.1
+    const double pressure = 5e6;
+    attach(assembly, *specimen, fixtures::platen_rows(*specimen, pressure));
+    const double c = 1.1 * std::cos(0.2), s = 1.1 * std::sin(0.2);   // turned by 0.2 and stretched by 1.1
     for (int n = 0; n < assembly.nodes.count(); ++n) {
         const Vec2 X = assembly.nodes.reference[n];
         assembly.nodes.displacement[n] = Vec2{c * X.x - s * X.y, s * X.x + c * X.y} - X;

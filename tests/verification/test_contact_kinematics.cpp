@@ -7,7 +7,7 @@
 #include "feldspar/base/rng.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
-#include "feldspar/model/platens.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 

@@ -10,7 +10,7 @@
 #include <Eigen/Sparse>
 #include <gtest/gtest.h>
 
-#include "feldspar/lab/flattened_disc.hpp"
+#include "feldspar/methods/flattened_disc.hpp"
 
 namespace feldspar {
 namespace {

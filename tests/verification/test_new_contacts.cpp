@@ -6,7 +6,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
-#include "feldspar/model/platens.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 

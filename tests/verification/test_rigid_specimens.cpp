@@ -43,9 +43,9 @@ Elastic elastic(const TestSetup& setup) {
     Experiment e(setup, control);
     choose_step(e);
     prepare(e);
-    const Reactions reactions = platen_reactions(e.assembly);
-    const double stress = e.stress(0.5 * (reactions.loading - reactions.rest));
-    return {stress / e.gauge.axial(e.assembly), -e.gauge.lateral(e.assembly) / e.gauge.axial(e.assembly), -reactions.loading / reactions.rest,
+    const Reactions reactions = feldspar::reactions(e.assembly);
+    const double stress = e.stress(0.5 * (reactions.loading + reactions.rest));
+    return {stress / e.gauge.axial(e.assembly), -e.gauge.lateral(e.assembly) / e.gauge.axial(e.assembly), reactions.loading / reactions.rest,
             -mean_axial_stress(e) / stress};
 }
 

@@ -9,7 +9,7 @@
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
-#include "feldspar/model/platens.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "fixtures.hpp"
 
 namespace feldspar {
@@ -138,8 +138,8 @@ TEST(Stability, ARealBarRingsWithTheClosedFormFrequency) {
     // Fixed below, free above: quarter wave, omega = (pi / 2) sqrt(E / rho) / H with the bar's own E.
     const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.04));
     Assembly assembly = assemble(*specimen, ModelSpec{}, fixtures::granite(), fixtures::table7());
-    attach_platen_rows(assembly, *specimen);
-    for (const int node : assembly.platens[0].nodes) assembly.nodes.inverse_mass[node].y = 1.0;   // let the top go
+    attach(assembly, *specimen, fixtures::platen_rows(*specimen));
+    for (const int node : assembly.fixtures[0].nodes) assembly.nodes.inverse_mass[node].y = 1.0;   // let the top go
     set_real_masses(assembly, 2650.0);
     Team team(1);
     StepSettings settings;
@@ -147,10 +147,10 @@ TEST(Stability, ARealBarRingsWithTheClosedFormFrequency) {
     settings.strength = Strength::unlimited;
     for (int n = 0; n < assembly.nodes.count(); ++n)
         assembly.nodes.velocity[n].y = 1e-6 * std::sin(0.5 * 3.14159265358979 * assembly.nodes.reference[n].y / 0.04);
-    for (const int node : assembly.platens[1].nodes) assembly.nodes.velocity[node] = {};
+    for (const int node : assembly.fixtures[1].nodes) assembly.nodes.velocity[node] = {};
     const auto mean_top = [&] {
         double sum = 0.0;
-        for (const int node : assembly.platens[0].nodes) sum += assembly.nodes.displacement[node].y;
+        for (const int node : assembly.fixtures[0].nodes) sum += assembly.nodes.displacement[node].y;
         return sum;
     };
     const std::optional<double> half_period = fixtures::half_period(assembly, team, settings, mean_top);

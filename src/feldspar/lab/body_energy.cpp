@@ -10,7 +10,8 @@ StoredEnergy stored_energy(const Assembly& assembly, double since) {
     StoredEnergy sum;
     const PackEnergies packs = best_kernels().energies(KernelArrays::to_read(assembly), since);
     sum.grains_J = packs.grains + packs.contacts[inside_grains];
-    for (const ContactRole role : {between_grains, at_plates, at_membranes}) sum.contacts_J += packs.contacts[role];
+    for (int role = 0; role < contact_roles; ++role)
+        if (role != inside_grains) sum.contacts_J += packs.contacts[role];
     sum.fracture_J = packs.fracture;
     sum.friction_J = packs.friction;
     const Nodes& nodes = assembly.nodes;
@@ -51,7 +52,7 @@ Motion motion(const Assembly& assembly, const StepSettings& settings) {
     motion.kinetic_J = sums.kinetic;
     motion.deviation_J = sums.deviation;
     motion.ahead_damping_J = sums.ahead_damping;
-    const double platen_power = -platen_reactions(assembly).loading * assembly.platens[0].mode.y * settings.speed;
+    const double platen_power = loading_reaction(assembly) * settings.speed;
     motion.ahead_external_J = 0.5 * settings.dt * (platen_power + pressure_power(assembly));
     return motion;
 }

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "feldspar/lab/disc_splitting.hpp"
-#include "feldspar/lab/flattened_disc.hpp"
+#include "feldspar/methods/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {

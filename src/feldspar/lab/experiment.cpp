@@ -1,19 +1,14 @@
 #include "feldspar/lab/experiment.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/geometry/polygon.hpp"
-#include "feldspar/lab/flattened_disc.hpp"
-#include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
-#include "feldspar/model/platens.hpp"
 
 namespace feldspar {
 namespace {
@@ -45,31 +40,7 @@ ElasticGuess guess(const TestSetup& setup, const Assembly& assembly) {
     return {setup.contact.Kn_Pa_m * mean_body_diameter(assembly), 0.2};
 }
 
-PlateContact plate_contact(const TestSetup& setup) {
-    const TestSpec& test = setup.test;
-    const TestMethod& method = method_of(test);
-    PlateContact contact;
-    contact.Kn_Pa_m = test.plate_Kn_Pa_m.value_or(test.plate_stiffness_factor * setup.contact.Kn_Pa_m);
-    contact.eta = setup.contact.eta;
-    contact.mu = test.plate_mu.value_or(method.specimen.plate_mu);
-    if (method.specimen.own_disc && test.plates == PlateShape::curved) contact.jaw_radius_m = test.jaw_radius * setup.specimen->outline.radius_m;
-    contact.glued = method.specimen.glued;
-    return contact;
-}
-
-void attach_platens(Assembly& assembly, const TestSetup& setup) {
-    const Specimen& specimen = *setup.specimen;
-    const PlateContact contact = plate_contact(setup);
-    if (method_of(setup.test).specimen.own_disc) {
-        attach_brazilian_plates(assembly, specimen, contact);
-    } else if (setup.model.kind == GrainKind::flexible) {
-        attach_platen_rows(assembly, specimen);
-    } else {
-        attach_end_plates(assembly, specimen, contact);
-        if (is_confined(setup.test))
-            attach_membranes(assembly, specimen, {setup.contact.Kn_Pa_m, setup.contact.eta, 0.0, false}, setup.test.membrane_plates);
-    }
-}
+MethodInput input_of(const TestSetup& setup) { return {*setup.specimen, setup.model, setup.grain, setup.contact, setup.test}; }
 
 }  // namespace
 
@@ -93,21 +64,21 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
       gauge(assembly, *s.specimen),
       direction(method.loading.sign),
       elastic_guess(guess(s, assembly)) {
-    const Box box = bounding_box(s.specimen->mesh.nodes);
-    if (method.specimen.own_disc && !s.specimen->outline.is_disc) throw InputError({}, "a Brazilian test needs a disc");
-    attach_platens(assembly, s);
-    if (method.specimen.own_disc) {
-        const Outline& disc = s.specimen->outline;
-        height_m = 2.0 * (disc.flattened() ? disc.flat_height_m : disc.radius_m);
-        section_m2 = 0.5 * std::numbers::pi * 2.0 * disc.radius_m * assembly.thickness_m;
-        if (disc.flattened()) section_m2 /= flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test);
-    } else {
-        height_m = box.upper.y - box.lower.y;
-        section_m2 = section_width_m(s.specimen->outline, loaded_width_m(assembly, *s.specimen)) * assembly.thickness_m;
-        assembly.platens[0].mode = {0.0, -direction};
-    }
-    axial_stiffness = elastic_guess.E_Pa * section_m2 / height_m;
-    for (const int node : assembly.platens[0].nodes) assembly.nodes.loading_mode[node] = assembly.platens[0].mode;
+    const MethodInput input = input_of(s);
+    attach(assembly, *s.specimen, method.build.fixtures(input));
+    length_m = method.build.length_m(input);
+    section_m2 = method.build.section_m2(input);
+    axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
+    impose_motion();
+}
+
+void Experiment::impose_motion() {
+    for (const Fixture& fixture : assembly.fixtures)
+        for (const int node : fixture.nodes) {
+            Vec2& B = assembly.nodes.loading_mode[node];
+            if (fixture.imposed.x != 0.0) B.x = fixture.motion.x;
+            if (fixture.imposed.y != 0.0) B.y = fixture.motion.y;
+        }
 }
 
 void Experiment::run(int count) {
@@ -124,7 +95,7 @@ void Experiment::change_speed(double speed) {
     stepped = false;
     const double dv = speed - settings.speed;
     Nodes& nodes = assembly.nodes;
-    platen_work.loading -= 0.5 * settings.dt * dv * platen_reactions(assembly).loading * assembly.platens[0].mode.y;
+    platen_work.loading += 0.5 * settings.dt * dv * loading_reaction(assembly);
     for (int n = 0; n < nodes.count(); ++n) {
         const Vec2 B = nodes.loading_mode[n], before = nodes.velocity[n];
         nodes.velocity[n] += dv * B;
@@ -182,7 +153,7 @@ void choose_step(Experiment& e) {
                          fmt::format("leave the key out: 1 + damping = {:.4g} is then used", 1.0 + n.damping));
     }
     const double density = mass(e.assembly) / volume(*e.setup.specimen);
-    e.travel_time = e.height_m * std::sqrt(density / e.elastic_guess.E_Pa);   // refined by the elastic start
+    e.travel_time = e.length_m * std::sqrt(density / e.elastic_guess.E_Pa);   // refined by the elastic start
 }
 
 }  // namespace feldspar

@@ -34,15 +34,15 @@ struct Experiment {
     StrainGauge gauge;
     StepSettings settings;
 
-    double height_m = 0.0;        ///< between the platens (Brazilian: the diameter, or between the flats)
-    double section_m2 = 0.0;      ///< initial, loaded (Brazilian: pi D t / (2 k), so that stress = k 2P / (pi D t); k = 1 but for flattened discs)
+    double length_m = 0.0;        ///< strain = loading motion / length (MethodBuild)
+    double section_m2 = 0.0;      ///< stress = load / section
     double direction = 1.0;       ///< +1 compression, -1 tension
     ElasticGuess elastic_guess;
     double mass_factor = 0.0;     ///< of the scaled masses; 0 with real masses
     double omega2 = 0.0;          ///< largest omega^2 dt^2 of the initial state
     double omega2_bound = 4.0;    ///< its limit
-    double travel_time = 0.0;     ///< of a wave over the height, units of dt
-    double platen_travel_m = 0.0; ///< along the loading platen's mode since the start
+    double travel_time = 0.0;     ///< of a wave over the length, units of dt
+    double platen_travel_m = 0.0; ///< loading motion since the start
     double axial_stiffness = 0.0; ///< N per m of platen travel, of the intact body (an estimate until the elastic start)
     long long step = 0;
     bool stepped = false;         ///< the velocities are those of a step that was made, not set since
@@ -55,7 +55,11 @@ struct Experiment {
 
     bool stopped() const { return control.stop != nullptr && control.stop->load(); }
     bool confined() const { return is_confined(setup.test); }   ///< a pressure acts on the sides
-    double stress(double platen_force_N) const { return platen_force_N / section_m2; }
+    /// Compression positive. @param load_N  positive where the specimen resists the loading
+    double stress(double load_N) const { return direction * load_N / section_m2 + 0.0; }   // no minus zero
+
+    /// Sets the loading mode of the nodes whose motion fixtures impose.
+    void impose_motion();
 
     /// Runs `count` steps with the present settings.
     void run(int count);

@@ -73,7 +73,7 @@ double typical_steps(const Experiment& e) {
     const NumericsSpec& n = e.setup.numerics;
     const TestKind kind = e.setup.test.kind;
     if (n.kind != NumericsKind::adaptive) {
-        return e.method.rate.fixed_speed_strain * e.height_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
+        return e.method.rate.fixed_speed_strain * e.length_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
     }
     // In travel times, at the usual accuracy: medians over eight rocks (docs/validation, true strengths).
     return e.method.rate.travel_times * e.travel_time * std::sqrt(residual_target(NumericsSpec{}, kind) / residual_target(n, kind));

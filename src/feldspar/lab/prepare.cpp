@@ -53,14 +53,16 @@ void add_affine(Experiment& e, double travel_m) {
     Nodes& nodes = assembly.nodes;
     const Box box = bounding_box(nodes.reference);
     const Vec2 origin = {fixed_x(assembly, box), box.lower.y};
-    const double strain = assembly.platens[0].mode.y * travel_m / e.height_m;
+    const double strain = -e.direction * travel_m / e.length_m;
     const Array<Vec2> velocity = nodes.velocity;
     for (const Body& body : assembly.bodies)
         for (const int n : body.nodes()) {
             const Vec2 x = nodes.reference[n] - origin;
             nodes.velocity[n] = share_of_field(assembly, body, n, {-e.elastic_guess.nu * strain * x.x, strain * x.y});
         }
-    for (const int node : assembly.platens[0].nodes) nodes.velocity[node].y = assembly.platens[0].mode.y * travel_m;
+    for (const Fixture& fixture : assembly.fixtures)
+        if (fixture.moves())
+            for (const int node : fixture.nodes) nodes.velocity[node].y = fixture.motion.y * travel_m;
     StepSettings elastic;
     elastic.strength = Strength::unlimited;
     contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, elastic, -1);
@@ -69,7 +71,7 @@ void add_affine(Experiment& e, double travel_m) {
     e.platen_travel_m += travel_m;
 }
 
-double platen_force(const Experiment& e) { return platen_reactions(e.assembly).loading; }
+double platen_force(const Experiment& e) { return loading_reaction(e.assembly); }
 
 // Stiffness, travel time and damping as the relaxed body shows them.
 void learn_from(Experiment& e, double force_change, double travel_change) {
@@ -89,8 +91,7 @@ void set_loading_mode(Experiment& e, const BodyState& from, const BodyState& to)
     const double travel = to.platen_travel_m - from.platen_travel_m;
     Nodes& nodes = e.assembly.nodes;
     for (int n = 0; n < nodes.count(); ++n) nodes.loading_mode[n] = (1.0 / travel) * (to.displacement_m[n] - from.displacement_m[n]);
-    for (const int node : e.assembly.platens[0].nodes) nodes.loading_mode[node].y = e.assembly.platens[0].mode.y;
-    for (const int node : e.assembly.platens[1].nodes) nodes.loading_mode[node].y = 0.0;
+    e.impose_motion();
 }
 
 // The factor of superpose() at which the stress reaches the maximum that the user has set; infinite without one.
@@ -108,7 +109,7 @@ bool is_end_of_elastic_phase(double damage_factor, double nearly, double maximum
 // Axial loading of the relaxed state `base` up to the maximum stress or just below the first damage; sets B. Platens that stay in touch.
 void elastic_loading(Experiment& e, const BodyState& base) {
     const double force_before = platen_force(e);
-    add_affine(e, 1e-5 * e.height_m);
+    add_affine(e, 1e-5 * e.length_m);
     relax_or_throw(e, kOnTheWay);
     learn_from(e, platen_force(e) - force_before, e.platen_travel_m - base.platen_travel_m);
     for (int attempt = 0; attempt < 4; ++attempt) {
@@ -130,7 +131,7 @@ void elastic_plates(Experiment& e) {
         relax_or_throw(e, tolerance);
         return capture(e.assembly, e.platen_travel_m);
     };
-    add_affine(e, 2e-5 * e.height_m);
+    add_affine(e, 2e-5 * e.length_m);
     BodyState reached = settle(kOnTheWay);
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
@@ -190,8 +191,8 @@ void consolidate_by_ramp(Experiment& e) {
         if (e.stopped()) throw Interrupted();
         if (!std::isfinite(force)) throw NumericalError("a force is not a number during the consolidation");
         if (e.control.progress && k % 500 == 0) e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
-        const auto [loading, rest] = platen_reactions(e.assembly);
-        const double mean = 0.5 * (loading - rest);   // which is reported
+        const auto [loading, rest] = reactions(e.assembly);
+        const double mean = 0.5 * (loading + rest);   // which is reported
         if (share == 1.0 && std::abs(mean - target) < 2e-3 * target && unbalanced_force(e.assembly) < 0.01 * target) break;
         if (k > most) throw NumericalError("the specimen does not come to rest under the isotropic stress: it fails before it is sheared");
     }
@@ -200,16 +201,16 @@ void consolidate_by_ramp(Experiment& e) {
 
 // The state when shearing starts, for the history.
 void note_isotropic(Experiment& e) {
-    const Reactions reactions = platen_reactions(e.assembly);
+    const Reactions reactions = feldspar::reactions(e.assembly);
     const StoredEnergy stored = stored_energy(e.assembly, 0.0);
     HistoryRow& row = e.isotropic;
     row.step = e.step;
     row.platen_displacement_m = e.direction * e.platen_travel_m;
-    row.axial_strain = row.platen_displacement_m / e.height_m;
+    row.axial_strain = row.platen_displacement_m / e.length_m;
     row.axial_strain_gauge = e.gauge.axial(e.assembly);
     row.lateral_strain_gauge = e.gauge.lateral(e.assembly);
     row.stress_top_Pa = e.stress(reactions.loading);
-    row.stress_bottom_Pa = e.stress(-reactions.rest);
+    row.stress_bottom_Pa = e.stress(reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
     row.sigma3_Pa = e.assembly.pressure_Pa;
     row.energy.elastic_grains = stored.grains_J;
@@ -256,7 +257,7 @@ void prepare_adaptive(Experiment& e) {
             consolidate_by_ramp(e);
             note_isotropic(e);
             const double travel = e.platen_travel_m;   // B from an affine guess on the damaged body
-            add_affine(e, 1e-9 * e.height_m);
+            add_affine(e, 1e-9 * e.length_m);
             const BodyState moved = capture(e.assembly, e.platen_travel_m);
             add_affine(e, travel - e.platen_travel_m);
             set_loading_mode(e, capture(e.assembly, travel), moved);
@@ -278,7 +279,7 @@ void prepare_plainly(Experiment& e) {
         e.change_speed(speed);
         return;
     }
-    const double travel = e.platen_travel_m, unit = 1e-6 * e.height_m;
+    const double travel = e.platen_travel_m, unit = 1e-6 * e.length_m;
     const BodyState before = capture(e.assembly, travel);
     const Array<Vec2> velocity = e.assembly.nodes.velocity;
     add_affine(e, unit);
@@ -289,7 +290,7 @@ void prepare_plainly(Experiment& e) {
     e.change_speed(speed);
     Nodes& nodes = e.assembly.nodes;   // from here on the mode only says what is imposed: local damping acts on the total velocity
     std::fill(nodes.loading_mode.begin(), nodes.loading_mode.end(), Vec2{});
-    for (const int node : e.assembly.platens[0].nodes) nodes.loading_mode[node] = e.assembly.platens[0].mode;
+    e.impose_motion();
 }
 
 }  // namespace

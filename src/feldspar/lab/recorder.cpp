@@ -31,7 +31,7 @@ double contact_arc_deg(const Experiment& e, int side) {
     bool any = false;
     for (std::size_t c = assembly.contacts.size(); c-- > 0;) {
         const Contact& contact = assembly.contacts[c];
-        if (!contact.plate || contact.b.body != assembly.platens[side].plate) continue;
+        if (!contact.plate || contact.b.body != assembly.fixtures[side].plate) continue;
         if (!(assembly.bond(contact.first_point).Fn_N > 0.0)) continue;
         for (const Vec2 end : {assembly.origins[c].from, assembly.origins[c].to}) {
             const double angle = std::atan2(end.x - centre.x, std::abs(end.y - centre.y));
@@ -49,15 +49,15 @@ Recorder::Recorder(const Experiment& experiment, TestResult& result) : e_(experi
 
 HistoryRow Recorder::present(Phase phase) {
     HistoryRow row;
-    const Reactions reactions = platen_reactions(e_.assembly);
+    const Reactions reactions = feldspar::reactions(e_.assembly);
     row.phase = phase;
     row.step = e_.step;
     row.platen_displacement_m = e_.direction * e_.platen_travel_m;
-    row.axial_strain = row.platen_displacement_m / e_.height_m;
+    row.axial_strain = row.platen_displacement_m / e_.length_m;
     row.axial_strain_gauge = e_.gauge.axial(e_.assembly);
     row.lateral_strain_gauge = e_.gauge.lateral(e_.assembly);
     row.stress_top_Pa = e_.stress(reactions.loading);
-    row.stress_bottom_Pa = e_.stress(-reactions.rest);
+    row.stress_bottom_Pa = e_.stress(reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
     row.sigma3_Pa = e_.assembly.pressure_Pa;
     row.cracks_tensile = now_.tensile;

@@ -22,11 +22,6 @@ double height_of(const Outline& outline) {
 
 }  // namespace
 
-double section_width_m(const Outline& outline, double loaded_width_m) {
-    const double narrowest = section_widths(outline).narrowest;
-    return narrowest > 0.0 && narrowest < (1.0 - 1e-9) * loaded_width_m ? narrowest : loaded_width_m;
-}
-
 double euler_stress_Pa(double E_Pa, double width_m, double height_m) {
     const double slenderness = height_m / width_m;
     return std::numbers::pi * std::numbers::pi * E_Pa / (12.0 * slenderness * slenderness);

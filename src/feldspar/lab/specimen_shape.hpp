@@ -10,10 +10,6 @@ namespace feldspar {
 /// counts as uniform: E and nu would be wrong by up to as much.
 inline constexpr double uniform_width = 0.02;
 
-/// Width (m) of the section that axial stresses are taken over: the narrowest across the load.
-/// @param loaded_width_m  extent of the loaded end, which is returned bit for bit where no section is narrower
-double section_width_m(const Outline& outline, double loaded_width_m);
-
 /// The axial stress at which a column bends aside (Pa): Euler's load of two platens that stay parallel and may slide along each
 /// other, pi^2 E w^2 / (12 L^2).
 double euler_stress_Pa(double E_Pa, double width_m, double height_m);

@@ -1,12 +1,14 @@
 // Biaxial compression, the plane form of the triaxial test: strength at a confining pressure, and with others cohesion, friction angle and
 // Hoek-Brown's mi (ISRM 1983; ASTM D7012).
 #include "feldspar/methods/method.hpp"
+#include "feldspar/methods/platens.hpp"
 
 namespace feldspar::methods {
 
 const TestMethod biaxial{
     .kind = TestKind::biaxial,
     .purpose = "isotropic consolidation, then axial loading at a constant pressure on the sides",
+    .build = {between_platens, height_m, narrowest_section_m2},
     .specimen = {.confined = true},
     .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true},
     .rate = {.travel_times = 300.0, .seconds = 10.0},

@@ -1,11 +1,13 @@
 // Direct tension: E, nu, DTS (ISRM 1978; ASTM D2936).
 #include "feldspar/methods/method.hpp"
+#include "feldspar/methods/platens.hpp"
 
 namespace feldspar::methods {
 
 const TestMethod direct_tension{
     .kind = TestKind::direct_tension,
     .purpose = "a specimen pulled apart by its ends",
+    .build = {between_platens, height_m, narrowest_section_m2},
     .specimen = {.glued = true},
     .loading = {.sign = -1.0, .tensile = true},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 28.0, .seconds = 3.0, .fixed_speed_strain = 5e-4},

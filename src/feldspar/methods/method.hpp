@@ -2,9 +2,29 @@
 // of the program reads these facts and asks for no method by name.
 #pragma once
 
+#include <vector>
+
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/model/spec.hpp"
+#include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
+
+/// What a method may look at when it says how a test is built.
+struct MethodInput {
+    const Specimen& specimen;
+    const ModelSpec& model;
+    const GrainMaterial& grain;
+    const ContactMaterial& contact;
+    const TestSpec& test;
+};
+
+/// How a test is built: its fixtures, and what turns force and motion into stress and strain. Functions of the specimen and the test alone.
+struct MethodBuild {
+    std::vector<FixtureSpec> (*fixtures)(const MethodInput&) = nullptr;
+    double (*length_m)(const MethodInput&) = nullptr;    ///< strain = loading motion / length
+    double (*section_m2)(const MethodInput&) = nullptr;  ///< stress = load / section
+};
 
 /// What the specimen is, and what touches it.
 struct MethodSpecimen {
@@ -41,6 +61,7 @@ struct MethodVerdict {
 struct TestMethod {
     TestKind kind;
     const char* purpose;   ///< one sentence
+    MethodBuild build;
     MethodSpecimen specimen;
     MethodLoading loading;
     MethodRate rate;

@@ -1,11 +1,13 @@
 // Uniaxial compression: E, nu, UCS, crack initiation and crack damage stress (ISRM 1979, 1999; ASTM D7012).
 #include "feldspar/methods/method.hpp"
+#include "feldspar/methods/platens.hpp"
 
 namespace feldspar::methods {
 
 const TestMethod uniaxial_compression{
     .kind = TestKind::uniaxial_compression,
     .purpose = "a specimen pressed between two platens, with free sides",
+    .build = {between_platens, height_m, narrowest_section_m2},
     .specimen = {},
     .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true},
     .rate = {},

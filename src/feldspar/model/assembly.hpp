@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "feldspar/base/array.hpp"
@@ -176,11 +177,15 @@ struct Bonds {
     void set(std::size_t i, const BondState& s);
 };
 
-/// What loads the specimen: rows of its own nodes (flexible grains between platens), or the node of a plate in contact with it.
-struct Platen {
-    Vec2 mode;                                 ///< its motion per unit of platen motion: (0, -1) for the loading platen, (0, 0) at rest
-    std::vector<std::int32_t> nodes;           ///< whose y motion it imposes, and whose forces make its reaction
+/// What loads the specimen or holds it (model/fixtures.hpp): nodes of its own, or the node of a plate in contact with it.
+struct Fixture {
+    std::string name;
+    Vec2 motion;                               ///< per unit of the loading motion: (0, -1) for a platen that comes down; zero at rest
+    std::vector<std::int32_t> nodes;           ///< whose motion it imposes, and whose forces make its reaction
+    Vec2 imposed{0.0, 1.0};                    ///< 1 in a component that it imposes, else 0
     std::int32_t plate = -1;                   ///< body of the plate, if it is one
+
+    bool moves() const { return motion != Vec2{}; }
 };
 
 /// A boundary edge under pressure, or a plate of a membrane.
@@ -196,8 +201,8 @@ struct BodyWork {
     double pressure = 0.0;   ///< put in by the lateral pressure
 };
 
-/// Materials of contacts, by Contact::material.
-enum ContactRole : std::int32_t { between_grains = 0, at_plates = 1, inside_grains = 2, at_membranes = 3, contact_roles = 4 };
+/// Materials of contacts, by Contact::material. Plates that touch alike share one; others have those from `at_more_plates` on.
+enum ContactRole : std::int32_t { between_grains = 0, at_plates = 1, inside_grains = 2, at_membranes = 3, at_more_plates = 4, contact_roles = 10 };
 
 /// Everything that a test moves.
 struct Assembly {
@@ -219,7 +224,7 @@ struct Assembly {
     std::vector<std::int32_t> slots_of_bodies; ///< slot numbers, contiguous by body
     std::vector<PressureEdge> pressure_edges;  ///< contiguous by body
     std::vector<BodyWork> body_work;
-    std::array<Platen, 2> platens;             ///< 0 loading (top), 1 at rest (bottom)
+    std::vector<Fixture> fixtures;             ///< those whose reaction is felt: not membranes
     double pressure_Pa = 0.0;                  ///< on the pressure edges, compression positive
     Packs packs;
 

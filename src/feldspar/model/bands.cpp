@@ -141,11 +141,17 @@ void cut_into_bands(Assembly& assembly) {
     std::vector<Span> spans = spans_of_contact_packs(assembly);
     order_contact_packs(assembly, spans);
     const auto grains = static_cast<std::int32_t>(packs.grains.size()), units = grains + packs.rigid_end;
-    Span row;   // with nodes of the loading platen
-    for (const int node : assembly.platens[0].nodes) row.add(pack_of_node(packs, node));
+    Span row;   // with nodes of the fixtures that load
+    int loading = 0;
+    for (const Fixture& fixture : assembly.fixtures) {
+        if (!fixture.moves()) continue;
+        ++loading;
+        for (const int node : fixture.nodes) row.add(pack_of_node(packs, node));
+    }
     const auto is_plate = [&](int body) { return assembly.bodies[body].kind == BodyKind::plate; };
     const bool all_have_units = std::all_of(packs.loose_bodies.begin(), packs.loose_bodies.end(), is_plate);   // or a band by its contacts
-    const Cuts cuts = all_have_units ? cut(units, spans, row) : Cuts{{0, units}, {0, static_cast<std::int32_t>(spans.size())}};
+    // The work of what loads is taken where one band ends: several fixtures may lie in several bands, so there is only one then.
+    const Cuts cuts = all_have_units && loading <= 1 ? cut(units, spans, row) : Cuts{{0, units}, {0, static_cast<std::int32_t>(spans.size())}};
 
     Bands& bands = packs.bands;
     bands = {};
@@ -160,7 +166,8 @@ void cut_into_bands(Assembly& assembly) {
             if (const int plate = plate_of(assembly, packs.contacts[p]); plate >= 0) band_of[plate] = static_cast<int>(b);
         if (bands.platen == 0 && row.last >= cuts.units[b]) bands.platen = static_cast<int>(b);
     }
-    if (const int plate = assembly.platens[0].plate; plate >= 0) bands.platen = band_of[plate];
+    for (const Fixture& fixture : assembly.fixtures)
+        if (fixture.moves() && fixture.plate >= 0) bands.platen = band_of[fixture.plate];
     std::stable_sort(packs.loose_bodies.begin(), packs.loose_bodies.end(), [&](int l, int r) { return band_of[l] < band_of[r]; });
     for (int i = 0; i < std::ssize(packs.loose_bodies); ++i) {
         IndexRange& range = bands.ranges[band_of[packs.loose_bodies[i]]].loose_bodies;

@@ -327,8 +327,8 @@ int pack_of_node(const Packs& packs, int node) {
 void sort_out_packs(Assembly& assembly) {
     Packs& packs = assembly.packs;
     std::fill(packs.forces.begin(), packs.forces.end(), PackForces::own);
-    for (const Platen& platen : assembly.platens)
-        for (const int node : platen.nodes)
+    for (const Fixture& fixture : assembly.fixtures)
+        for (const int node : fixture.nodes)
             if (const int pack = pack_of_node(packs, node); pack >= 0) packs.forces[pack] = PackForces::kept;
     if (assembly.pressure_Pa != 0.0)
         for (std::size_t b = 0; b < assembly.bodies.size(); ++b)

@@ -14,9 +14,9 @@ void advance_readably(Assembly& assembly, Team& team, const StepSettings& settin
             team.barrier();
             body_forces(assembly, team.share(bodies, thread), settings);
             team.barrier();
-            // The platen pushes with the opposite of its reaction along its mode. Meanwhile the others may go on: node forces stay
+            // What moves the body pushes with the opposite of its reaction along its motion. Meanwhile the others may go on: node forces stay
             // as they are until the barrier after the next contact stage.
-            if (thread == 0) work.loading -= loading_reaction(assembly) * assembly.platens[0].mode.y * travel;
+            if (thread == 0) work.loading += loading_reaction(assembly) * travel;
         }
     });
 }

@@ -188,11 +188,11 @@ void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings,
             for (int round = 0; round < rounds; ++round) {
                 in_turn(begin, end, round, [&](const PackRanges& part) { stages.contacts(step, part); });
                 in_turn(begin, end, round - 1, [&](const PackRanges& part) { stages.bodies(step, part); });
-                // The platen pushes with the opposite of its reaction along its mode. Meanwhile the others may go on: its node forces stay
+                // What moves the body pushes with the opposite of its reaction along its motion. Meanwhile the others may go on: its node forces stay
                 // as they are until the barrier after the next contact stage.
                 const int since = round - 1 - platen_band;
                 if (thread == 0 && since >= 0 && since % 2 == 0 && since / 2 < end - begin)
-                    work.loading -= loading_reaction(assembly) * assembly.platens[0].mode.y * travel;
+                    work.loading += loading_reaction(assembly) * travel;
             }
         }
     });

@@ -2,7 +2,7 @@
 //
 //   contact_forces     reads node displacements and velocities; writes contact points and slots
 //   body_forces        reads slots; writes node forces, velocities, displacements, work of each body
-//   platen_reactions   reads node forces of the platens; writes nothing
+//   reactions          reads node forces of the fixtures; writes nothing
 //   find_contacts      (between steps) makes and drops frictional contacts, chooses the fall-back shape functions
 //
 // advance() runs both for a number of steps on a team, with a barrier after each stage. What stands in packs goes through the kernels of
@@ -35,20 +35,20 @@ struct StepSettings {
     double alpha = 0.7;                    ///< local: 0 <= alpha < 1
     double viscous = 0.0;                  ///< viscous: c, 1 per unit of time; 0: no damping
     Strength strength = Strength::real;
-    double speed = 0.0;                    ///< v: platen motion per unit of time
+    double speed = 0.0;                    ///< v: loading motion per unit of time
     const Kernels* kernels = &best_kernels();   ///< of the packs; none: the readable stages only
     int sweep_steps = 0;                   ///< steps that a sweep over the bands takes (model/bands.hpp); 0: as many as pay
 };
 
-/// Work of the platens on the body, J, accumulated every step.
+/// Work of the fixtures on the body, J, accumulated every step.
 struct PlatenWork {
     double loading = 0.0;
 };
 
-/// Forces on the two platens by the body, N, along y: the platen's push on the body is the opposite.
+/// What the body opposes to the loading, N: positive where it resists.
 struct Reactions {
-    double loading = 0.0;
-    double rest = 0.0;
+    double loading = 0.0;   ///< of the fixtures that move, along their motions: the power that they give is this times the speed
+    double rest = 0.0;      ///< of those at rest, along the sum of these motions: the same in equilibrium
 };
 
 /// Stage 1: relative velocity, law, forces of the contacts [begin, end). `step` is written into points that break.
@@ -62,8 +62,11 @@ void add_pressure(Assembly& assembly, const Body& body, BodyWork& work, double d
 void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, double dt);
 
 /// Stage 3: ordered sums.
-Reactions platen_reactions(const Assembly& assembly);
+Reactions reactions(const Assembly& assembly);
 double loading_reaction(const Assembly& assembly);
+
+/// Force of the body on one fixture, N.
+Vec2 reaction(const Assembly& assembly, const Fixture& fixture);
 
 /// Steps in several calls, between which nobody else changes nodes, bonds, contacts, platens or pressure: what a block of steps has to look
 /// up before its first one is looked up once.

@@ -1,5 +1,5 @@
 // (P31): the coefficient of a flattened disc, against what is published and against finite elements.
-#include "feldspar/lab/flattened_disc.hpp"
+#include "feldspar/methods/flattened_disc.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // What the outline means for the numbers of a test: section, uniform strain, buckling.
 #include "feldspar/lab/specimen_shape.hpp"
+#include "feldspar/methods/platens.hpp"
 
 #include <cmath>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "feldspar/lab/flattened_disc.hpp"
+#include "feldspar/methods/flattened_disc.hpp"
 
 #include <algorithm>
 #include <cmath>
