@@ -11,6 +11,7 @@
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/step/advance_packs.hpp"
 

@@ -8,6 +8,7 @@
 #include "benchmarks/granite_material.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/specimen/clip_cells.hpp"

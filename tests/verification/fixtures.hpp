@@ -11,6 +11,7 @@
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/specimen.hpp"

@@ -25,7 +25,7 @@ struct DimensionEntry {
     const char* example;
 };
 
-constexpr std::array<DimensionEntry, 10> dimension_table{{
+constexpr std::array<DimensionEntry, 11> dimension_table{{
     {Dimension::length, "m", "m", "a length", "80 mm"},
     {Dimension::stress, "Pa", "Pa", "a stress", "25.8 GPa"},
     {Dimension::density, "kg m-3", "kg/m3", "a density", "2650 kg/m3"},
@@ -35,6 +35,7 @@ constexpr std::array<DimensionEntry, 10> dimension_table{{
     {Dimension::speed_per_step, "m", "m/step", "a length per step", "6.25e-9 m/step"},
     {Dimension::time, "s", "s", "a time", "1e-8 s"},
     {Dimension::angle, "radian", "rad", "an angle", "53 deg"},
+    {Dimension::toughness, "Pa", "Pa m^0.5", "a fracture toughness", "0.9 MPa m^0.5"},   // the root of the metre is taken off before udunits reads the rest
     {Dimension::fraction, "1", "", "a fraction", "0.5 %"},
 }};
 
@@ -181,11 +182,22 @@ void guard_symbols(std::string_view text, std::string_view unit, const std::vect
 [[noreturn]] void refuse_dimension(std::string_view text, const std::string& unit, Dimension wanted) {
     for (const DimensionEntry& other : dimension_table) {
         if (other.dimension == wanted || other.dimension == Dimension::speed_per_step) continue;
-        if (other.dimension == Dimension::angle || other.dimension == Dimension::fraction) continue;
+        if (other.dimension == Dimension::angle || other.dimension == Dimension::fraction || other.dimension == Dimension::toughness) continue;
         if (UnitSystem::instance().factor(unit, other.dimension).value_or(0.0) != 0.0)
             refuse(wanted, quoted(text) + " is " + other.description + ", not " + std::string(describe(wanted)));
     }
     refuse(wanted, quoted(text) + " is not " + std::string(describe(wanted)));
+}
+
+// "MPa m^0.5" without the root of the metre; nothing where there is none.
+std::optional<std::string> without_root(std::string_view unit) {
+    for (const std::string_view root : {"m^0.5", "m0.5", "m^1/2", "m1/2", "m^(1/2)", "sqrt(m)", "sqrt m", "\xE2\x88\x9Am"}) {
+        if (!unit.ends_with(root)) continue;
+        std::string_view rest = unit.substr(0, unit.size() - root.size());
+        const bool joined = !rest.empty() && (rest.back() == ' ' || rest.back() == '.' || rest.back() == '*');
+        if (joined) return std::string(trimmed(rest.substr(0, rest.size() - 1)));
+    }
+    return std::nullopt;
 }
 
 bool is_angle_symbol(std::string_view word) {
@@ -249,6 +261,12 @@ double parse_quantity(std::string_view text, Dimension dimension) {
     if (dimension == Dimension::speed_per_step && unit.ends_with("step")) {  // "m/step": a step is a count, not a unit
         const std::string_view before = trimmed(std::string_view(unit).substr(0, unit.size() - 4));
         if (before.size() > 1 && before.back() == '/') unit = std::string(trimmed(before.substr(0, before.size() - 1)));
+    }
+
+    if (dimension == Dimension::toughness) {
+        const std::optional<std::string> stress = without_root(unit);
+        if (!stress) refuse(dimension, quoted(whole) + " is not a fracture toughness");
+        unit = *stress;
     }
 
     const std::optional<std::vector<Symbol>> symbols = symbols_of(unit);

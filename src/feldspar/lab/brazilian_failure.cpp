@@ -60,7 +60,7 @@ std::vector<BrazilianMark> brazilian_marks(const TestResult& result) {
         found.push_back({crack.step, {name, crack.axial_strain, crack.axial_stress_Pa, static_cast<int>(c)}});
     };
     const auto peak = find_peak(result);
-    if (!peak || !method_of(result.test).specimen.own_disc) return {};
+    if (!peak || method_of(result.test).reading != Reading::disc) return {};
     if (const Crack* first = first_crack(result)) at_crack("first crack", static_cast<std::size_t>(first - result.cracks.data()));
     if (const auto dip = first_dip(result)) at_row("first dip", dip->row);
     const auto splitting = splitting_crack(result);
@@ -92,7 +92,7 @@ std::string validity_in_words(const BrazilianFailure& failure) {
 }
 
 std::string start_remark(const TestResult& result, const Peak& peak) {
-    if (!method_of(result.test).specimen.own_disc || !loaded_disc(result)) return {};
+    if (method_of(result.test).reading != Reading::disc || !loaded_disc(result)) return {};
     const BrazilianFailure failure = brazilian_failure(result, peak);
     if (!failure.split) return " The disc was not split: the strength is a lower bound.";
     if (failure.valid) return {};

@@ -37,7 +37,7 @@ double LoadedDisc::band_half_width_m() const { return std::max(band_of_diameter 
 double LoadedDisc::reach_m() const { return reach_of_grain * mean_grain_m; }
 
 std::optional<LoadedDisc> loaded_disc(const TestResult& result) {
-    if (!method_of(result.test).specimen.own_disc || !result.specimen || !result.specimen->outline.is_disc) return std::nullopt;
+    if (method_of(result.test).reading != Reading::disc || !result.specimen || !result.specimen->outline.is_disc) return std::nullopt;
     const Outline& outline = result.specimen->outline;
     const LoadedDisc disc{outline.centre, outline.radius_m, result.specimen->quality.mean_diameter_m, outline.flat_height_m};
     if (!(disc.radius_m > 0.0) || !(disc.mean_grain_m > 0.0)) return std::nullopt;

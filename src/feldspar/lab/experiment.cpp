@@ -8,6 +8,7 @@
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/model/masses.hpp"
 
 namespace feldspar {
@@ -68,6 +69,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     attach(assembly, *s.specimen, method.build.fixtures(input));
     length_m = method.build.length_m(input);
     section_m2 = method.build.section_m2(input);
+    if (method.build.gauges != nullptr) gauges = Gauges(assembly, *s.specimen, method.build.gauges(input));
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
     impose_motion();
 }

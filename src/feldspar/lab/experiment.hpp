@@ -32,6 +32,7 @@ struct Experiment {
     Assembly assembly;
     Team team;
     StrainGauge gauge;
+    Gauges gauges;                ///< of the method
     StepSettings settings;
 
     double length_m = 0.0;        ///< strain = loading motion / length (MethodBuild)

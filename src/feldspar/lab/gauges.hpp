@@ -1,10 +1,14 @@
-// Strain gauges away from the platens: the least-squares linear displacement field of the grain centres in a window.
+// Strain gauges away from the platens: the least-squares linear displacement field of the grain centres in a window. And the gauges of a method or a
+// user: displacements of points, strains between them, forces of fixtures.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "feldspar/model/assembly.hpp"
+#include "feldspar/model/gauge_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -35,6 +39,32 @@ private:
 
     std::vector<int> centre_nodes_;
     SlopeWeights weights_;
+};
+
+/// Gauges that a method or a user has asked for, ready to be read.
+class Gauges {
+public:
+    Gauges() = default;
+    /// @throws InputError  if a point lies outside the specimen by more than a grain, or a fixture is not there
+    Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs);
+
+    const std::vector<GaugeSpec>& specs() const { return specs_; }
+    /// The number of the gauge of this name, or -1.
+    int find(std::string_view name) const;
+    /// Of all gauges, SI.
+    std::vector<double> read(const Assembly& assembly) const;
+
+private:
+    struct Term {   // of a gauge's sum: weight . displacement of a node
+        std::int32_t node;
+        Vec2 weight;
+    };
+    void add_point(const Assembly& assembly, const Specimen& specimen, const GaugeSpec& gauge, const GaugePoint& point);
+
+    std::vector<GaugeSpec> specs_;
+    std::vector<Term> terms_;
+    std::vector<std::size_t> ends_;       // into terms_: behind those of each gauge
+    std::vector<int> fixture_of_;         // force: into Assembly::fixtures; else -1
 };
 
 }  // namespace feldspar

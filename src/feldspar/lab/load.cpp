@@ -129,7 +129,9 @@ public:
     Loader(Experiment& e, Recorder& recorder, TestResult& result)
         : e_(e), recorder_(recorder), result_(result), finder_(e.assembly, 0.1 * mean_body_diameter(e.assembly)), watch_(e.assembly),
           mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time),
-          servo_(branch_is_followed(result) ? e.setup.test.control : LoadControl::displacement, kServoShare * wanted_, e.travel_time), stop_(e, result), progress_(e) {}
+          servo_(branch_is_followed(result) ? e.setup.test.control : LoadControl::displacement, kServoShare * wanted_, e.travel_time,
+                 static_cast<std::size_t>(std::max(0, e.gauges.find(e.setup.test.control_gauge)))),
+          stop_(e, result), progress_(e) {}
 
     void run() {
         const int block = adaptive_ ? 10 : 50;   // steps between records
@@ -160,7 +162,7 @@ public:
             }
             const double load = e_.direction * row.axial_stress_Pa;
             const bool past_peak = stop_.past_peak(load);
-            if (adaptive_ && !stop_.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && !e_.method.specimen.own_disc)) && passed_too_fast()) continue;
+            if (adaptive_ && !stop_.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && e_.method.reading != Reading::disc)) && passed_too_fast()) continue;
             if (reason) {
                 result_.stop_reason = *reason;
                 break;

@@ -89,7 +89,7 @@ std::optional<Peak> peak_until_split(const TestResult& result) {
 }  // namespace
 
 std::optional<Peak> find_peak(const TestResult& result) {
-    return method_of(result.test).specimen.own_disc ? peak_until_split(result) : peak_before_a_fall(result, false);
+    return method_of(result.test).reading == Reading::disc ? peak_until_split(result) : peak_before_a_fall(result, false);
 }
 
 std::optional<Peak> first_dip(const TestResult& result) { return peak_before_a_fall(result, true); }

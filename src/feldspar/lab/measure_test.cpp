@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/lab/bending.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
 #include "feldspar/lab/disc_splitting.hpp"
@@ -64,9 +65,11 @@ TestProperties read_record(const TestResult& result) {
     if (!peak) return p;
     p.peak_stress_Pa = peak->stress_Pa;
     p.peak_reached = peak->reached;
-    if (method_of(result.test).specimen.own_disc) {
-        p.brazilian = brazilian_failure(result, *peak);
-        return p;
+    switch (method_of(result.test).reading) {
+        case Reading::disc: p.brazilian = brazilian_failure(result, *peak); return p;
+        case Reading::beam: p.bending = bending(result, *peak); return p;
+        case Reading::curve: return p;
+        case Reading::column: break;
     }
 
     const LoadingCurve curve = loading_curve(result, *peak);

@@ -75,7 +75,7 @@ double platen_force(const Experiment& e) { return loading_reaction(e.assembly); 
 
 // Stiffness, travel time and damping as the relaxed body shows them.
 void learn_from(Experiment& e, double force_change, double travel_change) {
-    if (e.method.specimen.own_disc || travel_change == 0.0) return;
+    if (!e.method.start.stays_in_touch || travel_change == 0.0) return;
     const double stiffness = std::abs(force_change / travel_change);
     e.travel_time *= std::sqrt(e.axial_stiffness / stiffness);
     e.axial_stiffness = stiffness;
@@ -124,18 +124,58 @@ void elastic_loading(Experiment& e, const BodyState& base) {
     set_loading_mode(e, base, capture(e.assembly, e.platen_travel_m));
 }
 
-// The Brazilian start: plate contact is not linear, so scale and relax several times; B from the last two states.
-void elastic_plates(Experiment& e) {
+// Moves only what loads.
+void move_fixtures(Experiment& e, double travel_m) {
+    Assembly& assembly = e.assembly;
+    Nodes& nodes = assembly.nodes;
+    const Array<Vec2> velocity = nodes.velocity;
+    std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
+    for (const Fixture& fixture : assembly.fixtures)
+        for (const int node : fixture.nodes) nodes.velocity[node] = travel_m * Vec2{fixture.imposed.x * fixture.motion.x, fixture.imposed.y * fixture.motion.y};
+    StepSettings elastic;
+    elastic.strength = Strength::unlimited;
+    contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, elastic, -1);
+    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] += nodes.velocity[n];
+    nodes.velocity = velocity;
+    e.platen_travel_m += travel_m;
+}
+
+// Quarter of the loading mode's period over that of a bar's quarter wave: for a bar the time in which a wave crosses it (L16).
+void learn_time_of_mode(Experiment& e, double stiffness) {
+    const Nodes& nodes = e.assembly.nodes;
+    double inertia = 0.0;
+    for (const Body& body : e.assembly.bodies)
+        if (body.kind != BodyKind::plate)
+            for (const int n : body.nodes()) inertia += nodes.mass[n] * dot(nodes.loading_mode[n], nodes.loading_mode[n]);
+    if (!(stiffness > 0.0) || !(inertia > 0.0)) throw NumericalError("the specimen does not resist the loading: nothing holds it, or nothing presses on it");
+    e.axial_stiffness = stiffness;
+    e.travel_time = std::sqrt(3.0 * inertia / stiffness);
+}
+
+// A slender specimen carries little load with large forces inside: what is small beside these may not be small beside the load.
+void balance(Experiment& e) {
+    constexpr double kEnough = 5e-4, kLeast = 1e-7;
+    for (double tolerance = 0.3 * kTolerance; tolerance > kLeast; tolerance *= 0.3) {
+        const Reactions r = reactions(e.assembly);
+        if (std::abs(r.loading - r.rest) < kEnough * std::abs(r.loading)) return;
+        relax_or_throw(e, tolerance);
+    }
+}
+
+// Where contacts close on the way the answer is not linear, so scale and relax several times; B from the last two states.
+void elastic_contacts(Experiment& e) {
     const BodyState unloaded = capture(e.assembly, 0.0);
     const auto settle = [&](double tolerance = kTolerance) {
         relax_or_throw(e, tolerance);
+        if (e.method.start.time_of_mode && tolerance == kTolerance) balance(e);
         return capture(e.assembly, e.platen_travel_m);
     };
-    add_affine(e, 2e-5 * e.length_m);
+    if (e.method.start.strained_evenly) add_affine(e, 2e-5 * e.length_m);
+    else move_fixtures(e, 2e-5 * e.length_m);
     BodyState reached = settle(kOnTheWay);
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
-        if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the disc is loaded");
+        if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded: its fixtures do not strain it");
         const double most = factor_at_maximum(e, 0.0, platen_force(e));
         if (round > 0 && is_end_of_elastic_phase(factor, 1.04, most)) break;
         go_to(e, superpose(unloaded, reached, std::min({kBelowDamage * factor, most, 20.0})));
@@ -148,9 +188,11 @@ void elastic_plates(Experiment& e) {
     }
     go_to(e, superpose(unloaded, reached, 0.95));
     const BodyState below = settle();
+    const double force_below = platen_force(e);
     go_to(e, reached);
     relax_or_throw(e);
     set_loading_mode(e, below, capture(e.assembly, e.platen_travel_m));
+    if (e.method.start.time_of_mode) learn_time_of_mode(e, (platen_force(e) - force_below) / (reached.platen_travel_m - below.platen_travel_m));
 }
 
 // Isotropic stress by superposition: lateral pressure, and platen travel until the platens carry the same stress.
@@ -213,6 +255,7 @@ void note_isotropic(Experiment& e) {
     row.stress_bottom_Pa = e.stress(reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
     row.sigma3_Pa = e.assembly.pressure_Pa;
+    row.gauges = e.gauges.read(e.assembly);
     row.energy.elastic_grains = stored.grains_J;
     row.energy.elastic_contacts = stored.contacts_J;
     row.energy.elastic_start = stored.grains_J + stored.contacts_J;
@@ -231,8 +274,8 @@ void forget_relaxation_work(Experiment& e) {
 }
 
 void prepare_adaptive(Experiment& e) {
-    if (e.method.specimen.own_disc) {
-        elastic_plates(e);
+    if (!e.method.start.stays_in_touch) {
+        elastic_contacts(e);
     } else {
         const BodyState unloaded = capture(e.assembly, 0.0);
         bool elastic = true;
@@ -270,12 +313,31 @@ void prepare_adaptive(Experiment& e) {
     e.elastic_start_J = start.grains_J + start.contacts_J;
 }
 
+// From here on the mode only says what is imposed: local damping acts on the total velocity.
+void forget_mode(Experiment& e) {
+    Nodes& nodes = e.assembly.nodes;
+    std::fill(nodes.loading_mode.begin(), nodes.loading_mode.end(), Vec2{});
+    e.impose_motion();
+}
+
+// A specimen that is not strained evenly begins with the velocities of its elastic answer: pushed at one place only, it would swing.
+void begin_in_mode(Experiment& e, double speed) {
+    const BodyState unloaded = capture(e.assembly, 0.0);
+    elastic_contacts(e);
+    go_to(e, unloaded);
+    evaluate_forces(e.assembly, e.team, Strength::real);
+    forget_relaxation_work(e);
+    e.change_speed(speed);
+    forget_mode(e);
+}
+
 // The paper's own way, and that of real masses: no computed start; rows of nodes begin with an affine velocity field.
 void prepare_plainly(Experiment& e) {
     if (e.confined()) consolidate_by_ramp(e);
     note_isotropic(e);
     const double speed = e.setup.numerics.speed_m.value_or(kPaperSpeed);
-    if (e.method.specimen.own_disc) {
+    if (!e.method.start.strained_evenly) return begin_in_mode(e, speed);
+    if (!e.method.start.stays_in_touch) {
         e.change_speed(speed);
         return;
     }
@@ -288,9 +350,7 @@ void prepare_plainly(Experiment& e) {
     e.assembly.nodes.velocity = velocity;
     set_loading_mode(e, before, moved);
     e.change_speed(speed);
-    Nodes& nodes = e.assembly.nodes;   // from here on the mode only says what is imposed: local damping acts on the total velocity
-    std::fill(nodes.loading_mode.begin(), nodes.loading_mode.end(), Vec2{});
-    e.impose_motion();
+    forget_mode(e);
 }
 
 }  // namespace

@@ -55,6 +55,11 @@ QuantityPlace brazilian_failure() {
 }
 
 template <auto member>
+QuantityPlace bending() {
+    return at<&R::properties, &P::bending, member>();
+}
+
+template <auto member>
 QuantityPlace evidence() {
     return at<&R::evidence, member>();
 }
@@ -77,6 +82,8 @@ QuantityPlace count() {
 QuantityPlace formed(double (*of)(const R&)) { return {QuantityForm::real, of}; }
 
 double flat_angle_deg(const R& r) { return r.specimen ? r.specimen->spec.outline.flat_angle_rad * 180.0 / std::numbers::pi : nan; }
+
+double peak_load_N(const R& r) { return r.properties.peak_stress_Pa * r.section_m2; }
 
 double grain_count(const R& r) { return r.specimen ? static_cast<double>(r.specimen->quality.grains) : 0.0; }
 
@@ -101,8 +108,10 @@ std::vector<TestQuantity> table() {
         return kinds;
     };
     const std::set<TestKind> any(test_kinds.begin(), test_kinds.end());
-    const std::set<TestKind> discs = those([](const TestMethod& m) { return m.specimen.own_disc; });
-    const std::set<TestKind> loaded = those([](const TestMethod& m) { return !m.specimen.own_disc; });   // between platens
+    const std::set<TestKind> discs = those([](const TestMethod& m) { return m.reading == Reading::disc; });
+    const std::set<TestKind> loaded = those([](const TestMethod& m) { return m.reading == Reading::column; });   // between platens
+    const std::set<TestKind> beams = those([](const TestMethod& m) { return m.reading == Reading::beam; });
+    const std::set<TestKind> forces = those([](const TestMethod& m) { return m.reading == Reading::beam || m.reading == Reading::curve; });
     const std::set<TestKind> compressed = those([](const TestMethod& m) { return m.loading.widens; });
     std::vector<TestQuantity> all;
     const auto add = [&](QuantityGroup group, const std::set<TestKind>& tests, std::vector<TestQuantity> rows) {
@@ -115,6 +124,9 @@ std::vector<TestQuantity> table() {
     // name, unit, definition, place; then what the ledger, summary.json and the report call it
     add(G::strength, any, {
         {"strength", stress, "(P1)", property<&P::peak_stress_Pa>(), same, "peak_stress", "peak"},
+    });
+    add(G::strength, forces, {
+        {"peak_load", force, "", formed(peak_load_N), absent},
     });
     add(G::strength, loaded, {
         {"section_width", length, "", property<&P::section_width_m>(), absent},
@@ -170,6 +182,15 @@ std::vector<TestQuantity> table() {
     add(G::flattened, discs, {
         {"BTS_flat_angle", angle, "(P31)", formed(flat_angle_deg), absent, "flat_angle", absent},
         {"BTS_flat_coefficient", pure, "(P31)", brazilian_failure<&B::flat_coefficient>(), same, "flat_coefficient", "flat_coefficient"},
+    });
+    add(G::bending, beams, {
+        {"flexural_strength", stress, "(P36)", bending<&BendingProperties::flexural_strength_Pa>()},
+        {"E_bending", modulus, "(P37), (P39)", bending<&BendingProperties::E_Pa>()},
+        {"K_Ic", toughness, "(P38)", bending<&BendingProperties::K_Ic_Pa_sqrt_m>()},
+        {"work_of_fracture", fracture_work, "(P40)", bending<&BendingProperties::work_of_fracture_J_m2>()},
+        {"softening_length", length, "(P40)", bending<&BendingProperties::softening_length_m>()},
+        {"crack_path", pure, "(P40)", bending<&BendingProperties::crack_path_over_ligament>()},
+        {"notch", length, "", bending<&BendingProperties::notch_m>()},
     });
     add(G::cracks, any, {
         {"cracks_tensile", pure, "", count<CrackMode::tensile>(), same, same, "tensile"},

@@ -67,7 +67,8 @@ HistoryRow Recorder::present(Phase phase) {
     row.residual = force > 0.0 ? now_.unbalanced.total_N / force : 0.0;
     row.residual_median = force > 0.0 ? now_.unbalanced.typical_N / force : 0.0;
     row.platen_speed = e_.settings.speed;
-    if (e_.method.specimen.own_disc) {
+    row.gauges = e_.gauges.read(e_.assembly);
+    if (e_.method.reading == Reading::disc) {
         row.contact_arc_top_deg = contact_arc_deg(e_, 0);
         row.contact_arc_bottom_deg = contact_arc_deg(e_, 1);
     }
@@ -100,6 +101,7 @@ void Recorder::elastic_phase(const HistoryRow& from) {
                                           &HistoryRow::lateral_strain_gauge, &HistoryRow::stress_top_Pa, &HistoryRow::stress_bottom_Pa,
                                           &HistoryRow::axial_stress_Pa})
             row.*value = mix(from.*value, to.*value, share);
+        for (std::size_t g = 0; g < row.gauges.size(); ++g) row.gauges[g] = mix(g < from.gauges.size() ? from.gauges[g] : 0.0, to.gauges[g], share);
         // Energies grow with the square of the load only from an unloaded start; elsewhere they follow the two states.
         for (double EnergyLedger::*value : {&EnergyLedger::elastic_grains, &EnergyLedger::elastic_contacts, &EnergyLedger::elastic_start})
             row.energy.*value = from.axial_stress_Pa == 0.0 ? share * share * (to.energy.*value) : mix(from.energy.*value, to.energy.*value, share);

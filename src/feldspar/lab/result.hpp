@@ -53,6 +53,7 @@ struct HistoryRow {
     double kinetic_deviation = 0.0;       ///< J, of the motion that departs from the loading motion
     double contact_arc_top_deg = 0.0;     ///< Brazilian: arc of the disc that presses on the plate, between the ends of its outermost pressed grain edges
     double contact_arc_bottom_deg = 0.0;
+    std::vector<double> gauges;           ///< of the method or the user, in the order of TestResult::gauges, SI
     EnergyLedger energy;
 };
 
@@ -139,6 +140,18 @@ struct PostPeak {
     double damping_share = none;    ///< and by damping, into which goes all that breaks in jumps
 };
 
+/// What a bent beam shows (P36)-(P40). Not-a-number where the record or the beam defines none.
+struct BendingProperties {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double E_Pa = none;                   ///< from the deflection of a plain beam (P37), or the opening of a notch's mouth (P39): secant at half the largest load
+    double flexural_strength_Pa = none;   ///< of a plain beam (P36)
+    double K_Ic_Pa_sqrt_m = none;         ///< of a notched beam, from the largest load (P38)
+    double work_of_fracture_J_m2 = none;  ///< of a notched beam: work of the loading over the ligament (P40); of a record that ends below a tenth of the largest load
+    double softening_length_m = none;     ///< E Gf / sigma_t^2 of the contacts: K_Ic means something only where it is small beside notch and ligament
+    double crack_path_over_ligament = none;   ///< length of all cracks over the ligament's: 1 for one straight crack
+    double notch_m = none;                ///< a
+};
+
 /// Properties read from one test. Not-a-number where the test does not define one.
 struct TestProperties {
     double peak_stress_Pa;        ///< strength, a positive magnitude; Brazilian: the largest until the disc is split
@@ -160,6 +173,7 @@ struct TestProperties {
     std::vector<std::string> remarks;     ///< sentences that a reader of the numbers must know
     BrazilianFailure brazilian{};         ///< Brazilian test only
     PostPeak post_peak{};                 ///< not of a Brazilian test
+    BendingProperties bending{};          ///< of a bent beam only
 };
 
 struct TestResult {
@@ -174,6 +188,9 @@ struct TestResult {
     std::vector<HistoryRow> history;
     std::vector<Crack> cracks;
     std::vector<Snapshot> snapshots;
+    std::vector<GaugeSpec> gauges;        ///< that the rows of the history have, beside those of the strain in the middle
+    double length_m = std::numeric_limits<double>::quiet_NaN();     ///< strain = loading motion / length
+    double section_m2 = std::numeric_limits<double>::quiet_NaN();   ///< stress = load / section
     EnergyLedger energy_at_end;
     double energy_residual = 0.0;         ///< largest |residual| of the ledger / supplied work
     QuasiStaticEvidence evidence;

@@ -51,6 +51,9 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     result.specimen = setup.specimen;
 
     Experiment e(setup, control);
+    result.gauges = e.gauges.specs();
+    result.length_m = e.length_m;
+    result.section_m2 = e.section_m2;
     choose_step(e);
     result.stable_omega2 = e.omega2;
     result.stable_limit = e.omega2_bound;

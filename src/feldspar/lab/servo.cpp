@@ -1,6 +1,7 @@
 #include "feldspar/lab/servo.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace feldspar {
 namespace {
@@ -14,10 +15,9 @@ constexpr double kFails = 0.25;       // of the limit: with less the low stress 
 void Servo::observe(const HistoryRow& row, int steps) {
     if (!on()) return;
     if (!observed_) lateral_origin_ = row.lateral_strain_gauge;
-    const double widening = lateral_origin_ - row.lateral_strain_gauge;
-    const bool lateral = control_ == LoadControl::lateral_strain;
-    const double quantity = lateral ? widening : row.energy.fracture + row.energy.friction;
-    const double scale = lateral ? widening : row.energy.elastic_grains + row.energy.elastic_contacts;
+    double quantity = row.energy.fracture + row.energy.friction, scale = row.energy.elastic_grains + row.energy.elastic_contacts;
+    if (control_ == LoadControl::lateral_strain) quantity = scale = lateral_origin_ - row.lateral_strain_gauge;
+    if (control_ == LoadControl::gauge) quantity = scale = std::abs(row.gauges[gauge_]);
     if (observed_ && scale > 0.0) {
         const double now = (quantity - before_) / scale * travel_time_ / (share_ * steps);
         growth_ += std::min(1.0, steps / (kSmoothing * travel_time_)) * (now - growth_);

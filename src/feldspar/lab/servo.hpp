@@ -9,13 +9,16 @@ namespace feldspar {
 
 /// At a growing platen displacement a brittle specimen falls by itself, dynamically, at any platen speed. The servo gives the speed that lets
 /// it fail slowly instead: it goes back as fast as the failing body asks for. What it keeps constant is the growth of one quantity relative to
-/// a scale, in a travel time of a wave: the work of fracture and friction relative to the elastic energy, or the lateral strain relative to itself.
+/// a scale, in a travel time of a wave: the work of fracture and friction relative to the elastic energy, or the lateral strain or the reading of a
+/// gauge relative to itself.
 class Servo {
 public:
-    /// @param control      dissipation or lateral strain; with displacement the servo is off
+    /// @param control      dissipation, lateral strain or a gauge; with displacement the servo is off
     /// @param share        growth that is kept, in a travel time of a wave; > 0
     /// @param travel_time  of a wave over the height, steps
-    Servo(LoadControl control, double share, double travel_time) : control_(control), share_(share), travel_time_(travel_time) {}
+    /// @param gauge        which of the row's gauges controls, if one does
+    Servo(LoadControl control, double share, double travel_time, std::size_t gauge = 0)
+        : control_(control), share_(share), travel_time_(travel_time), gauge_(gauge) {}
 
     bool on() const { return control_ != LoadControl::displacement; }
 
@@ -31,6 +34,7 @@ public:
 private:
     LoadControl control_;
     double share_, travel_time_;
+    std::size_t gauge_;
     bool observed_ = false;
     double lateral_origin_ = 0.0;   // lateral strain where loading began
     double before_ = 0.0;           // the quantity in the row before

@@ -30,7 +30,7 @@ double euler_stress_Pa(double E_Pa, double width_m, double height_m) {
 double slenderest(double E_Pa, double strength_Pa) { return std::numbers::pi * std::sqrt(E_Pa / (12.0 * strength_Pa)); }
 
 void note_section(const TestResult& result, TestProperties& p) {
-    if (!result.specimen || result.specimen->outline.is_disc || method_of(result.test).specimen.own_disc) return;
+    if (!result.specimen || result.specimen->outline.is_disc || method_of(result.test).reading != Reading::column) return;
     const SectionWidths widths = section_widths(result.specimen->outline);
     if (!(widths.narrowest > 0.0)) return;
     p.section_width_m = widths.narrowest;

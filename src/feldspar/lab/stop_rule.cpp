@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/base/error.hpp"
+
 namespace feldspar {
 namespace {
 
@@ -15,6 +17,10 @@ constexpr long long kStepsAfterPeak = 100;
 
 StopRule::StopRule(const Experiment& experiment, const TestResult& result) : e_(&experiment), result_(&result) {
     if (const auto disc = loaded_disc(result)) splitting_.emplace(*disc);
+    if (const auto& stop = experiment.setup.test.stop_gauge) {
+        gauge_ = experiment.gauges.find(stop->gauge);
+        if (gauge_ < 0) throw InputError({.key = "test.until"}, fmt::format("the test has no gauge called \"{}\"", stop->gauge));
+    }
 }
 
 bool StopRule::past_peak(double load_Pa) const { return load_Pa < kPastPeak * peak_Pa_ && (!splitting_ || split()); }
@@ -41,6 +47,10 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool unloading
         return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * test.stop_fraction);
     if (std::abs(row.axial_strain) >= test.maximum_strain)
         return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
+    if (gauge_ >= 0) {
+        const double now = row.gauges[gauge_], end = test.stop_gauge->value;
+        if (end >= 0.0 ? now >= end : now <= end) return fmt::format("the gauge {} has reached its end", test.stop_gauge->gauge);
+    }
     if (test.maximum_stress_Pa && load >= *test.maximum_stress_Pa)
         return fmt::format("the stress has reached its maximum of {:.4g} MPa", *test.maximum_stress_Pa / 1e6);
     if (steps_are_spent()) return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);

@@ -37,6 +37,7 @@ private:
     const TestResult* result_;
     std::optional<SplittingCrack> splitting_;   // of a Brazilian test: a first dip does not end it
     std::size_t cracks_seen_ = 0;
+    int gauge_ = -1;   // that ends the test
     double peak_strain_ = 0.0;
     double peak_Pa_ = 0.0;
     long long peak_step_ = 0;

@@ -51,7 +51,10 @@ double section_m2(const MethodInput& in) {
 const TestMethod brazilian{
     .kind = TestKind::brazilian,
     .purpose = "a disc pressed between two jaws until it splits",
+    .words = {"Brazilian test", "2P / (πDt)", "Approach of the plates / diameter"},
     .build = {jaws, diameter_m, section_m2},
+    .start = {.stays_in_touch = false},
+    .reading = Reading::disc,
     .specimen = {.own_disc = true, .plate_mu = 0.4},
     .loading = {.tensile = true},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 250.0, .seconds = 8.0},

@@ -7,7 +7,10 @@ namespace feldspar::methods {
 const TestMethod direct_tension{
     .kind = TestKind::direct_tension,
     .purpose = "a specimen pulled apart by its ends",
+    .words = {"Direct tension", "Axial stress", "Axial strain from the platens"},
     .build = {between_platens, height_m, narrowest_section_m2},
+    .start = {},
+    .reading = Reading::column,
     .specimen = {.glued = true},
     .loading = {.sign = -1.0, .tensile = true},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 28.0, .seconds = 3.0, .fixed_speed_strain = 5e-4},

@@ -2,9 +2,10 @@
 // of the program reads these facts and asks for no method by name.
 #pragma once
 
+#include <string>
 #include <vector>
 
-#include "feldspar/model/fixtures.hpp"
+#include "feldspar/model/fixture_spec.hpp"
 #include "feldspar/model/spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -24,6 +25,29 @@ struct MethodBuild {
     std::vector<FixtureSpec> (*fixtures)(const MethodInput&) = nullptr;
     double (*length_m)(const MethodInput&) = nullptr;    ///< strain = loading motion / length
     double (*section_m2)(const MethodInput&) = nullptr;  ///< stress = load / section
+    std::vector<GaugeSpec> (*gauges)(const MethodInput&) = nullptr;   ///< none: no gauges but those of the strain in the specimen's middle
+};
+
+/// What results and pages call things.
+struct MethodWords {
+    const char* title;     ///< "Uniaxial compression"
+    const char* stress;    ///< what the stress is: "Axial stress"
+    const char* strain;    ///< what the strain is: "Axial strain from the platens"
+};
+
+/// What is known of the elastic answer to the loading before it is computed.
+struct MethodStart {
+    bool strained_evenly = true;    ///< about the same strain everywhere: a first guess; else only the fixtures move at first
+    bool stays_in_touch = true;     ///< the answer is in proportion to the loading; else contacts at plates close on the way
+    bool time_of_mode = false;      ///< the time that rates are measured in is the loading mode's; else a wave's over the length
+};
+
+/// What is read from the record of a test.
+enum class Reading {
+    column,   ///< moduli, Poisson's ratio, thresholds and the branch behind the peak of a specimen that is strained evenly
+    disc,     ///< how a disc was split
+    beam,     ///< flexural strength, modulus and toughness
+    curve     ///< the largest load alone
 };
 
 /// What the specimen is, and what touches it.
@@ -38,6 +62,7 @@ struct MethodSpecimen {
 struct MethodLoading {
     double sign = 1.0;         ///< of the axial stress that loads: 1 compression, -1 tension
     LoadControl control = LoadControl::displacement;   ///< behind the strength, unless the job gives another
+    double stop_fraction = 0.8; ///< of the peak, at which the test ends unless the job gives another
     bool widens = false;       ///< the specimen widens as it fails: the lateral strain can control the test, and tells of damage
     bool bends = false;        ///< a column that may bend aside before it breaks (Euler)
     bool tensile = false;      ///< the strength is a tensile one
@@ -61,7 +86,10 @@ struct MethodVerdict {
 struct TestMethod {
     TestKind kind;
     const char* purpose;   ///< one sentence
+    MethodWords words;
     MethodBuild build;
+    MethodStart start;
+    Reading reading;
     MethodSpecimen specimen;
     MethodLoading loading;
     MethodRate rate;
@@ -70,12 +98,15 @@ struct TestMethod {
 
 /// One definition a file, named as jobs name the method.
 namespace methods {
-extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian;
+extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom;
 }
 
 /// The facts of a method.
 const TestMethod& method_of(TestKind kind);
 inline const TestMethod& method_of(const TestSpec& test) { return method_of(test.kind); }
+
+/// What files call the test: the method, or the name that the user gave his own.
+inline std::string test_name(const TestSpec& test) { return test.custom.name.empty() ? name(test.kind) : test.custom.name; }
 
 /// Whether a pressure acts on the sides of the specimen.
 inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }

@@ -10,7 +10,8 @@ constexpr double tape_Kn_Pa_m = 1.6e12;
 }  // namespace
 
 const TestMethod& method_of(TestKind kind) {
-    for (const TestMethod* method : {&methods::uniaxial_compression, &methods::direct_tension, &methods::biaxial, &methods::brazilian})
+    for (const TestMethod* method : {&methods::uniaxial_compression, &methods::direct_tension, &methods::biaxial, &methods::brazilian,
+                                     &methods::three_point_bend, &methods::custom})
         if (method->kind == kind) return *method;
     return methods::uniaxial_compression;   // never: every kind has its method
 }
@@ -18,6 +19,7 @@ const TestMethod& method_of(TestKind kind) {
 TestSpec usual_test(TestKind kind, bool flattened) {
     TestSpec test;
     test.kind = kind;
+    test.stop_fraction = method_of(kind).loading.stop_fraction;
     if (method_of(kind).specimen.own_disc && !flattened) {
         test.plates = PlateShape::curved;
         test.plate_Kn_Pa_m = tape_Kn_Pa_m;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {

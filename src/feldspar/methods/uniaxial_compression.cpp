@@ -7,7 +7,10 @@ namespace feldspar::methods {
 const TestMethod uniaxial_compression{
     .kind = TestKind::uniaxial_compression,
     .purpose = "a specimen pressed between two platens, with free sides",
+    .words = {"Uniaxial compression", "Axial stress", "Axial strain from the platens"},
     .build = {between_platens, height_m, narrowest_section_m2},
+    .start = {},
+    .reading = Reading::column,
     .specimen = {},
     .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true},
     .rate = {},

@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "feldspar/model/fixture_spec.hpp"
+#include "feldspar/model/gauge_spec.hpp"
+
 namespace feldspar {
 
 enum class GrainKind { flexible, rigid, inner_particles };
@@ -60,10 +63,25 @@ struct NumericsSpec {
 
 enum class PlateShape { flat, curved };   ///< of the plates of a Brazilian test; curved: the jaws of ISRM
 
-enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian };
+enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom };
 
-/// What the platens keep constant behind the strength: their own speed, the growth of the lateral strain, or that of the dissipated energy.
-enum class LoadControl { displacement, lateral_strain, dissipation };
+/// What the loading keeps constant behind the strength: its own speed, the growth of the lateral strain, of the dissipated energy, or of a gauge.
+enum class LoadControl { displacement, lateral_strain, dissipation, gauge };
+
+/// A test of the user's own: what loads and holds the specimen, and what is read.
+struct CustomTest {
+    std::string name;                      ///< names its results, as a test method's name does
+    std::vector<FixtureSpec> fixtures;     ///< plates with a stiffness of 0 have that of the test
+    std::vector<GaugeSpec> gauges;
+    std::optional<double> length_m;        ///< strain = loading motion / length; default: the extent of the specimen along the loading
+    std::optional<double> width_m;         ///< stress = load / (width x thickness); default: its extent across
+};
+
+/// Ends a test when a gauge has reached a value, upwards or downwards.
+struct GaugeStop {
+    std::string gauge;
+    double value = 0.0;                    ///< SI
+};
 
 struct TestSpec {
     TestKind kind = TestKind::uniaxial_compression;
@@ -80,6 +98,11 @@ struct TestSpec {
     int membrane_plates = 16;            ///< biaxial, rigid and inner particles: plates of the membrane on each side
     int snapshots = 8;                   ///< fields kept between the first crack and the end, besides start, peak and end
     std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
+    std::optional<double> span_m;        ///< bending: between the supports; default: of the method
+    std::optional<double> roller_radius_m;  ///< bending: default: of the method
+    std::string control_gauge;           ///< LoadControl::gauge: the gauge that controls
+    std::optional<GaugeStop> stop_gauge; ///< ends the test
+    CustomTest custom;                   ///< custom only
 };
 
 // All values of each, in the order in which users are told; name() is how files call them.
@@ -90,8 +113,9 @@ inline constexpr std::array plane_states{PlaneState::stress, PlaneState::strain}
 inline constexpr std::array contact_laws{ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle};
 inline constexpr std::array numerics_kinds{NumericsKind::adaptive, NumericsKind::paper, NumericsKind::dynamic};
 inline constexpr std::array plate_shapes{PlateShape::flat, PlateShape::curved};
-inline constexpr std::array load_controls{LoadControl::displacement, LoadControl::lateral_strain, LoadControl::dissipation};
-inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian};
+inline constexpr std::array load_controls{LoadControl::displacement, LoadControl::lateral_strain, LoadControl::dissipation};   // and gauges, by their names
+inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian,
+                                       TestKind::three_point_bend, TestKind::custom};
 
 inline const char* name(TestKind kind) {
     switch (kind) {
@@ -99,6 +123,8 @@ inline const char* name(TestKind kind) {
         case TestKind::direct_tension: return "direct-tension";
         case TestKind::biaxial: return "biaxial";
         case TestKind::brazilian: return "brazilian";
+        case TestKind::three_point_bend: return "three-point-bend";
+        case TestKind::custom: return "custom";
     }
     return "?";
 }
@@ -134,6 +160,7 @@ inline const char* name(LoadControl control) {
         case LoadControl::displacement: return "displacement";
         case LoadControl::lateral_strain: return "lateral-strain";
         case LoadControl::dissipation: return "dissipation";
+        case LoadControl::gauge: return "gauge";
     }
     return "?";
 }

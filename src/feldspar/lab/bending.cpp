@@ -1,0 +1,70 @@
+#include "feldspar/lab/bending.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "feldspar/methods/beam.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double kHalf = 0.5;            // of the largest load: where the modulus is read
+constexpr double kWholeCurve = 0.11;     // share of the largest load below which a record has the whole work of fracture (it ends at 0.1)
+
+int gauge_number(const TestResult& result, std::string_view name) {
+    const auto found = std::ranges::find(result.gauges, name, &GaugeSpec::name);
+    return found == result.gauges.end() ? -1 : static_cast<int>(found - result.gauges.begin());
+}
+
+double load_N(const TestResult& result, const HistoryRow& row) { return row.axial_stress_Pa * result.section_m2; }
+
+// Load over reading when the load first reaches half of the largest; not-a-number without the gauge.
+double secant_N_m(const TestResult& result, const Peak& peak, std::string_view gauge) {
+    const int g = gauge_number(result, gauge);
+    if (g < 0) return BendingProperties::none;
+    for (std::size_t i = 0; i <= peak.row; ++i) {
+        const HistoryRow& row = result.history[i];
+        if (row.axial_stress_Pa < kHalf * peak.stress_Pa || !(row.gauges[g] > 0.0)) continue;
+        return load_N(result, row) / row.gauges[g];
+    }
+    return BendingProperties::none;
+}
+
+// Work that the loading has done until the end of the record: its elastic start, then the fixtures.
+double work_J(const TestResult& result) { return result.history.back().energy.supplied(); }
+
+// Area of all cracks (their shares of grain edges), over the ligament's.
+double crack_path(const TestResult& result, const Beam& beam) {
+    double length = 0.0;
+    for (const Crack& crack : result.cracks) length += norm(crack.to - crack.from);
+    return length / beam.ligament_m();
+}
+
+// Where a beam's E is that of a plate in plane stress, which E' of the closed forms is too.
+double nu_of(const TestResult& result) { return result.model.kind == GrainKind::flexible ? result.grain.nu : 0.2; }
+
+}  // namespace
+
+BendingProperties bending(const TestResult& result, const Peak& peak) {
+    BendingProperties p;
+    if (!result.specimen) return p;
+    const Beam beam = beam_of(result.specimen->outline, result.specimen->spec.thickness_m, result.test);
+    const double largest_N = load_N(result, result.history[peak.row]), x = beam.notch_m / beam.height_m;
+    p.notch_m = beam.notch_m;
+    const ContactMaterial& contact = result.contact;
+    if (!beam.notched()) {
+        p.flexural_strength_Pa = peak.stress_Pa;
+        p.E_Pa = secant_N_m(result, peak, "deflection") * deflection_factor(beam, nu_of(result)) / beam.thickness_m;
+        return p;
+    }
+    if (std::abs(beam.span_m / beam.height_m - mouth_span) <= mouth_span_tolerance * mouth_span)
+        p.E_Pa = secant_N_m(result, peak, "CMOD") * mouth_factor(x) / beam.thickness_m;
+    p.K_Ic_Pa_sqrt_m = largest_N * beam.span_m / (beam.thickness_m * std::pow(beam.height_m, 1.5)) * notch_factor(x, beam.height_m / beam.span_m);
+    if (const double E_Pa = std::isfinite(p.E_Pa) ? p.E_Pa : result.grain.E_Pa; contact.law != ContactLaw::brittle && E_Pa > 0.0)
+        p.softening_length_m = E_Pa * contact.Gfn_J_m2 / (contact.sigma_nt_Pa * contact.sigma_nt_Pa);
+    p.crack_path_over_ligament = crack_path(result, beam);
+    if (result.history.back().axial_stress_Pa <= kWholeCurve * peak.stress_Pa) p.work_of_fracture_J_m2 = work_J(result) / (beam.ligament_m() * beam.thickness_m);
+    return p;
+}
+
+}  // namespace feldspar
