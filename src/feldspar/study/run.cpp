@@ -1,7 +1,4 @@
 // Runs and their identity.
-#include <fmt/format.h>
-#include <xxhash.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +6,7 @@
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/study/study.hpp"
+#include "feldspar/study/text_hash.hpp"
 
 namespace feldspar {
 namespace {
@@ -30,11 +28,6 @@ std::string identity(Job job) {
     return text + resolved_toml(job);
 }
 
-std::string hash(const std::string& text) {
-    const XXH128_hash_t value = XXH3_128bits(text.data(), text.size());
-    return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(value.high64), static_cast<std::uint64_t>(value.low64));
-}
-
 }  // namespace
 
 Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::uint64_t seed) {
@@ -51,7 +44,7 @@ Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::
     run.job.seeds = {seed};
     if (!method_of(test).specimen.own_disc) run.job.brazilian_specimen = {};
     if (variant.model.kind != GrainKind::inner_particles) run.job.specimen.particles_per_grain = run.job.brazilian_specimen.particles_per_grain = 0.0;
-    run.id = hash(identity(run.job));
+    run.id = hash_of_text(identity(run.job));
     return run;
 }
 
