@@ -7,11 +7,12 @@
 #include <numbers>
 #include <utility>
 
-#include "campaign.hpp"
 #include "commands.hpp"
 #include "feldspar/base/thread_shares.hpp"
 #include "feldspar/lab/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/study/packings.hpp"
+#include "feldspar/study/planned_runs.hpp"
 #include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
@@ -97,7 +98,7 @@ std::string variant_text(const Variant& variant) {
 // tests the steps and the time.
 class Check {
 public:
-    Check(const Job& job, int threads) : job_(job), specimens_(job), threads_(threads), sharing_(job.at_once, threads) {
+    Check(const Job& job, int threads) : job_(job), packings_(planned_runs(job).size(), &stop_requested()), threads_(threads), sharing_(job.at_once, threads) {
         control_.stop = &stop_requested();
     }
 
@@ -114,8 +115,8 @@ private:
     void add(const Group& group) {
         const PlannedRun& run = group.example;
         const std::shared_ptr<const Specimen> specimen =
-            specimens_.get(run, threads_, [this](const std::string& what, const SpecimenProgress& p) { progress_.making(what, p); });
-        progress_.busy(fmt::format("building {}, seed {}", title(run.variant->name, *run.test), run.seed));
+            packings_.get(specimen_of(run), run.seed, threads_, [&](const SpecimenProgress& state) { progress_.making(packing_stem(run), state); });
+        progress_.busy("building " + label_of(run));
         // timed with the threads that it will have beside the others; what these would take of its speed is not seen
         const int bodies = body_count(run, *specimen);
         const int at_once = std::min(sharing_.most_at_once(bodies), static_cast<int>(planned_runs(job_).size()));
@@ -147,7 +148,7 @@ private:
     }
 
     const Job& job_;
-    Specimens specimens_;
+    Packings packings_;
     int threads_;
     Sharing sharing_;
     Progress progress_;

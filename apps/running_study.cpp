@@ -5,7 +5,7 @@
 #include <chrono>
 #include <map>
 
-#include "campaign.hpp"
+#include "feldspar/study/planned_runs.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"

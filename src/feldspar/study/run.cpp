@@ -1,10 +1,13 @@
 // Runs and their identity.
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/study/planned_runs.hpp"
 #include "feldspar/study/study.hpp"
 #include "feldspar/study/text_hash.hpp"
 
@@ -50,27 +53,12 @@ Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::
 
 void index_runs(Study& study) {
     study.runs.clear();
-    std::vector<std::uint64_t> seeds;
-    const auto add = [&](std::uint64_t seed) {
-        if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
-    };
-    for (const Point& point : study.points) {
-        for (const std::uint64_t seed : point.job.seeds) add(seed);
-        for (const TestSpec& test : point.job.tests)
-            for (const std::uint64_t seed : test.seeds) add(seed);
+    std::vector<const Job*> jobs;
+    for (const Point& point : study.points) jobs.push_back(&point.job);
+    for (const PlannedRun& run : planned_runs(jobs)) {
+        study.runs.push_back(make_run(*run.job, *run.variant, *run.test, run.seed));
+        study.runs.back().point = run.job_number;
     }
-    for (const std::uint64_t seed : seeds)
-        for (std::size_t p = 0; p < study.points.size(); ++p) {
-            const Job& job = study.points[p].job;
-            for (const TestSpec& test : job.tests) {
-                const std::vector<std::uint64_t> own(test.seeds.begin(), test.seeds.end());
-                const std::vector<std::uint64_t>& wanted = own.empty() ? job.seeds : own;
-                const bool runs = std::find(wanted.begin(), wanted.end(), seed) != wanted.end() && job.variants.front().runs(test, seed);
-                if (!runs) continue;
-                study.runs.push_back(make_run(job, job.variants.front(), test, seed));
-                study.runs.back().point = p;
-            }
-        }
 }
 
 Study study_of(const Job& job, const std::string& name, const std::filesystem::path& results) {
