@@ -10,6 +10,7 @@
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/quantities.hpp"
 #include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
 
@@ -283,10 +284,7 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     for (const FailedTest& test : failed)
         data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"seed", test.seed},
                                   {"sigma3", rounded(test.test.sigma3_Pa * MPa)}, {"reason", test.reason}});
-    data["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
-                          {"machine", provenance.machine},          {"compiler", provenance.compiler},
-                          {"started", provenance.started},          {"threads", provenance.threads},
-                          {"command_line", provenance.command_line}};
+    data["provenance"] = provenance_json(provenance);
     return data;
 }
 
