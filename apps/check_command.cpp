@@ -4,10 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include "commands.hpp"
+#include "feldspar/base/angle.hpp"
+#include "feldspar/base/counted.hpp"
 #include "feldspar/base/thread_shares.hpp"
 #include "feldspar/lab/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
@@ -52,7 +53,7 @@ std::string flats_text(const PlannedRun& run, const Specimen& specimen) {
     if (!method_of(*run.test).specimen.own_disc || !specimen.outline.flattened()) return {};
     const double angle = specimen.spec.outline.flat_angle_rad, R = specimen.outline.radius_m;
     const Variant& v = *run.variant;
-    return fmt::format("  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n", angle * 180.0 / std::numbers::pi,
+    return fmt::format("  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n", in_degrees(angle),
                        2e3 * R * std::sin(0.5 * angle), 2e3 * specimen.outline.flat_height_m, flat_coefficient(specimen, v.model, v.grain, v.contact, *run.test));
 }
 
@@ -165,8 +166,8 @@ ExitCode check_command(const JobOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
     const int threads = thread_count(job.threads);
-    say("Job {} is sound: {} runs of {} tests{}, {} thread{}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
-        job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", threads, threads == 1 ? "" : "s");
+    say("Job {} is sound: {} runs of {} tests{}, {}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
+        job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", counted(threads, "thread"));
     for (const std::string& warning : warnings(job)) say("warning: {}\n\n", warning);
     Check(job, threads).run();
     return ExitCode::success;

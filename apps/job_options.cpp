@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "commands.hpp"
+#include "feldspar/base/counted.hpp"
 #include "feldspar/base/usable_cores.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "say.hpp"
@@ -68,7 +69,7 @@ int thread_count(int wanted) {
     const int cores = usable_cores();
     if (wanted == 0) return cores;
     if (wanted > cores)
-        say(stderr, "warning: {} threads on {} core{} will wait for each other\n", wanted, cores, cores == 1 ? "" : "s");
+        say(stderr, "warning: {} threads on {} will wait for each other\n", wanted, counted(cores, "core"));
     return wanted;
 }
 

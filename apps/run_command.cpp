@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "commands.hpp"
+#include "feldspar/base/counted.hpp"
 #include "feldspar/study/planned_runs.hpp"
 
 #include "feldspar/study/run_job.hpp"
@@ -15,7 +16,7 @@ namespace feldspar {
 namespace {
 
 void tell_place(std::size_t tests, const std::filesystem::path& directory) {
-    say(stderr, "the files of {} finished test{} are in {}\n", tests, tests == 1 ? "" : "s", directory.string());
+    say(stderr, "the files of {} are in {}\n", counted(tests, "finished test"), directory.string());
 }
 
 // Shows on stderr what a job tells.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/quantities.hpp"
 #include "feldspar/output/history_columns.hpp"
@@ -202,7 +202,7 @@ Json specimens_json(std::span<const TestResult> results) {
         if (outline.shape == Shape::rectangle)
             shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
         if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
-        if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", outline.flat_angle_rad * 180.0 / std::numbers::pi);
+        if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", in_degrees(outline.flat_angle_rad));
         list.push_back({{"for", brazilian ? "Brazilian test" : "compression and tension"},
                         {"shape", shape},
                         {"thickness", rounded(specimen.spec.thickness_m * 1e3)},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/stopwatch.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_files.hpp"
 #include "feldspar/study/schedule.hpp"
@@ -120,7 +121,7 @@ private:
     TestResult run_one(const Run& run, const RunControl& run_control) {
         const Clock::time_point start = Clock::now();
         TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control);
-        result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+        result.wall_s = seconds_since(start);
         return result;
     }
 
@@ -175,7 +176,7 @@ Execution execute(std::span<const Run> runs, Ledger& ledger, const ExecuteContro
     const Clock::time_point start = Clock::now();
     const std::size_t without_turn = run_in_order(sink.count(), Sharing(control.at_once, control.threads), *control.stop, sink);
     Execution execution = sink.execution(without_turn);
-    execution.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+    execution.wall_s = seconds_since(start);
     return execution;
 }
 

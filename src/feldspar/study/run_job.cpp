@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "feldspar/base/counted.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/parallel.hpp"
 #include "feldspar/study/packings.hpp"
@@ -80,7 +81,7 @@ private:
         for (const PlannedRun& run : runs_)
             if (seen.insert(identity_of(specimen_of(run), run.seed)).second) of_each.push_back(&run);
         const int count = static_cast<int>(of_each.size());
-        tell_.busy(fmt::format("making {} packing{}", count, count == 1 ? "" : "s"));
+        tell_.busy("making " + counted(count, "packing"));
         side_by_side(count, control_.threads, [&](int i) {
             const PlannedRun& run = *of_each[static_cast<std::size_t>(i)];
             Packings::Tell tell;
