@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "feldspar/base/angle.hpp"
@@ -38,6 +39,13 @@ TEST(Median, IsTheMiddleOrTheMeanOfTheMiddleTwo) {
     EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
     EXPECT_EQ(median({4.0, 1.0, 3.0, 2.0}), 2.5);
     EXPECT_EQ(median({7.0}), 7.0);
+}
+
+TEST(Median, TheUpperOneIsOneOfTheValues) {
+    for (const auto& [values, middle] : std::vector<std::pair<std::vector<double>, double>>{{{3.0, 1.0, 2.0}, 2.0}, {{4.0, 1.0, 3.0, 2.0}, 3.0}, {{7.0}, 7.0}}) {
+        std::vector<double> own = values;
+        EXPECT_EQ(upper_median(own), middle);
+    }
 }
 
 TEST(Stopwatch, RunsForwardInSeconds) {
