@@ -4,8 +4,20 @@
 #include <numeric>
 #include <utility>
 
+#include "feldspar/base/error.hpp"
+
 namespace feldspar {
 namespace {
+
+bool cannot_write(const std::exception_ptr& error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const OutputError&) {
+        return true;
+    } catch (...) {
+        return false;
+    }
+}
 
 class Schedule {
 public:
@@ -18,12 +30,12 @@ public:
         while (true) {
             while (may_start()) start_next();
             running_.share_out_free_threads();
-            if (running_.count() == 0 && results_.empty()) {
+            if (running_.count() == 0 && ended_.empty()) {
                 if (stop_ || !another_turn()) return waiting_.size();
                 continue;
             }
-            // a result is taken only when every thread has something to do
-            const bool idle = results_.empty();
+            // what a run left is taken only when every thread has something to do
+            const bool idle = ended_.empty();
             if (!idle) take_next();
             listen(running_.events(idle));
             sink_.beat();
@@ -40,17 +52,18 @@ private:
     }
 
     void take_next() {
-        RunningTests::Ended run = std::move(results_.front());
-        results_.pop_front();
-        sink_.finished(run.number, std::move(*run.result));
+        RunningTests::Ended run = std::move(ended_.front());
+        ended_.pop_front();
+        if (run.error) sink_.failed(run.number, run.error);
+        else sink_.finished(run.number, std::move(*run.result));
     }
 
     void listen(RunningTests::Events events) {
         for (const auto& [run, state] : events.news) sink_.progress(run, state);
         for (RunningTests::Ended& run : events.ended) {
             sink_.ended(run.number);
-            if (run.error) sink_.failed(run.number, run.error);
-            else results_.push_back(std::move(run));
+            if (run.error && cannot_write(run.error)) sink_.failed(run.number, run.error);   // at once, before more runs begin in vain
+            else ended_.push_back(std::move(run));
         }
     }
 
@@ -64,7 +77,7 @@ private:
     RunSink& sink_;
     RunningTests running_;
     std::deque<std::size_t> waiting_;
-    std::deque<RunningTests::Ended> results_;   // not taken yet
+    std::deque<RunningTests::Ended> ended_;   // not taken yet
 };
 
 }  // namespace

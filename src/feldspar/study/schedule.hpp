@@ -31,10 +31,11 @@ public:
     /// The run no longer runs; what it left comes in finished() or failed().
     virtual void ended(std::size_t run) = 0;
 
-    /// Its result, which may be that of an interrupted test. Comes only when every thread has something to do, so it may take its time.
+    /// Its result, which may be that of an interrupted test. Runs are taken up in the order in which they ended, and only when every thread has
+    /// something to do: so this may take its time.
     virtual void finished(std::size_t run, TestResult result) = 0;
 
-    /// What it threw, at once; Interrupted and OutputError too.
+    /// What it threw, Interrupted too, in the same order; an OutputError at once.
     virtual void failed(std::size_t run, const std::exception_ptr& error) = 0;
 
     /// Nothing runs, and none is left that had no turn yet. @return runs that have another turn, by number; may wait for them

@@ -76,6 +76,13 @@ public:
             if (happened == what) runs.push_back(run);
         return runs;
     }
+    /// The numbers of those that were finished or failed.
+    std::vector<std::size_t> taken() const {
+        std::vector<std::size_t> runs;
+        for (const auto& [happened, run] : log)
+            if (happened != "begin" && happened != "ended") runs.push_back(run);
+        return runs;
+    }
     /// Its place in the log.
     std::size_t place(const std::string& what, std::size_t run) const {
         return static_cast<std::size_t>(std::find(log.begin(), log.end(), std::pair(what, run)) - log.begin());
@@ -150,6 +157,13 @@ TEST_F(ScheduleOfRuns, AFailureIsToldAndTheOthersGoOn) {
     EXPECT_EQ(finished, (Numbers{0, 2, 3}));
     EXPECT_EQ(sink_.who("ended").size(), 4u);
     EXPECT_FALSE(stop_);
+}
+
+TEST_F(ScheduleOfRuns, ResultsAndFailuresComeInTheOrderInWhichRunsEnd) {
+    for (std::size_t i = 0; i < 30; i += 3) sink_.work[i] = [](const RunControl&) -> TestResult { throw NumericalError("a force is not a number"); };
+    EXPECT_EQ(run(30, 3), 0u);
+    EXPECT_EQ(sink_.who("ended"), sink_.taken());
+    EXPECT_EQ(sink_.taken().size(), 30u);
 }
 
 TEST_F(ScheduleOfRuns, AnInterruptionEndsWhatRunsAndStartsNothing) {
