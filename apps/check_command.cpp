@@ -4,14 +4,16 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <numbers>
 #include <utility>
 
-#include "campaign.hpp"
 #include "commands.hpp"
+#include "feldspar/base/angle.hpp"
+#include "feldspar/base/counted.hpp"
 #include "feldspar/base/thread_shares.hpp"
 #include "feldspar/methods/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/study/packings.hpp"
+#include "feldspar/study/planned_runs.hpp"
 #include "feldspar/study/sharing.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
@@ -51,7 +53,7 @@ std::string flats_text(const PlannedRun& run, const Specimen& specimen) {
     if (!method_of(*run.test).specimen.own_disc || !specimen.outline.flattened()) return {};
     const double angle = specimen.spec.outline.flat_angle_rad, R = specimen.outline.radius_m;
     const Variant& v = *run.variant;
-    return fmt::format("  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n", angle * 180.0 / std::numbers::pi,
+    return fmt::format("  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n", in_degrees(angle),
                        2e3 * R * std::sin(0.5 * angle), 2e3 * specimen.outline.flat_height_m, flat_coefficient(specimen, v.model, v.grain, v.contact, *run.test));
 }
 
@@ -97,7 +99,7 @@ std::string variant_text(const Variant& variant) {
 // tests the steps and the time.
 class Check {
 public:
-    Check(const Job& job, int threads) : job_(job), specimens_(job), threads_(threads), sharing_(job.at_once, threads) {
+    Check(const Job& job, int threads) : job_(job), packings_(planned_runs(job).size(), &stop_requested()), threads_(threads), sharing_(job.at_once, threads) {
         control_.stop = &stop_requested();
     }
 
@@ -114,8 +116,8 @@ private:
     void add(const Group& group) {
         const PlannedRun& run = group.example;
         const std::shared_ptr<const Specimen> specimen =
-            specimens_.get(run, threads_, [this](const std::string& what, const SpecimenProgress& p) { progress_.making(what, p); });
-        progress_.busy(fmt::format("building {}, seed {}", title(run.variant->name, *run.test), run.seed));
+            packings_.get(specimen_of(run), run.seed, threads_, [&](const SpecimenProgress& state) { progress_.making(packing_stem(run), state); });
+        progress_.busy("building " + label_of(run));
         // timed with the threads that it will have beside the others; what these would take of its speed is not seen
         const int bodies = body_count(run, *specimen);
         const int at_once = std::min(sharing_.most_at_once(bodies), static_cast<int>(planned_runs(job_).size()));
@@ -147,7 +149,7 @@ private:
     }
 
     const Job& job_;
-    Specimens specimens_;
+    Packings packings_;
     int threads_;
     Sharing sharing_;
     Progress progress_;
@@ -164,8 +166,8 @@ ExitCode check_command(const JobOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
     const int threads = thread_count(job.threads);
-    say("Job {} is sound: {} runs of {} tests{}, {} thread{}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
-        job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", threads, threads == 1 ? "" : "s");
+    say("Job {} is sound: {} runs of {} tests{}, {}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
+        job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", counted(threads, "thread"));
     for (const std::string& warning : warnings(job)) say("warning: {}\n\n", warning);
     Check(job, threads).run();
     return ExitCode::success;

@@ -5,7 +5,9 @@
 #include <chrono>
 #include <map>
 
-#include "campaign.hpp"
+#include "feldspar/base/counted.hpp"
+#include "feldspar/base/stopwatch.hpp"
+#include "feldspar/study/planned_runs.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"
@@ -52,7 +54,7 @@ private:
     std::string left() const {
         const int rest = runs() - ended_;
         if (rest <= 0) return {};
-        const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double passed = seconds_since(start_);
         return fmt::format("; about {} left", duration_text(passed / (ended_ - first_) * rest));
     }
 
@@ -85,8 +87,8 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
     control.retry_failed = running.retry_failed;
     StudyProgress progress(study, ledger, running.retry_failed ? nullptr : &control.provenance);
     const std::string failed = progress.failed() > 0 ? fmt::format(", {} failed before and not repeated", progress.failed()) : "";
-    progress.note(fmt::format("{}: {} runs at {} point{}, {} done already{}; results in {}", study.name, progress.runs(), study.points.size(),
-                              study.points.size() == 1 ? "" : "s", progress.done(), failed, study.results.string()));
+    progress.note(fmt::format("{}: {} runs at {}, {} done already{}; results in {}", study.name, progress.runs(), counted(study.points.size(), "point"),
+                              progress.done(), failed, study.results.string()));
     control.threads = running.threads;
     control.at_once = running.at_once;
     control.keep = study.keep;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "commands.hpp"
+#include "feldspar/base/counted.hpp"
 #include "feldspar/study/point_results.hpp"
 #include "feldspar/study/slurm.hpp"
 #include "feldspar/study/study_table.hpp"
@@ -18,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string counted(std::size_t count, const std::string& thing) { return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s"); }
-
 std::string what_runs(const RunRecord& record) {
     const std::string confined = record.sigma3_Pa != 0.0 ? fmt::format(" at {:.6g} MPa", record.sigma3_Pa / 1e6) : "";
     return fmt::format("{}{}, seed {} (run {})", record.test, confined, record.seed, record.id);
@@ -29,7 +28,7 @@ void print_gathering(const Gathering& gathering) {
     for (const RunRecord& record : gathering.failed) say("failed: {}: {}\n", what_runs(record), record.reason);
     for (const LostElement& lost : gathering.lost)
         say("not done: {} of element {}: {}\n  its output: {}\n", counted(lost.runs.size(), "run"), lost.job, lost.reason, lost.output.string());
-    say("{} taken into the ledger, {} in the queue, {} failed, {} not done\n", counted(static_cast<std::size_t>(gathering.taken), "run"),
+    say("{} taken into the ledger, {} in the queue, {} failed, {} not done\n", counted(gathering.taken, "run"),
         gathering.queued, gathering.failed.size(), gathering.missing());
 }
 
@@ -38,17 +37,17 @@ ExitCode outcome(const Gathering& gathering) {
 }
 
 void print_submission(const Submission& submission, const std::string& study) {
-    if (submission.queued > 0) say("{} already in Slurm's queue\n", counted(static_cast<std::size_t>(submission.queued), "run"));
-    if (submission.elsewhere > 0) say("{} left to another process of this machine\n", counted(static_cast<std::size_t>(submission.elsewhere), "run"));
+    if (submission.queued > 0) say("{} already in Slurm's queue\n", counted(submission.queued, "run"));
+    if (submission.elsewhere > 0) say("{} left to another process of this machine\n", counted(submission.elsewhere, "run"));
     if (submission.failed > 0)
-        say("{} failed before and not repeated; --retry-failed submits them again\n", counted(static_cast<std::size_t>(submission.failed), "run"));
+        say("{} failed before and not repeated; --retry-failed submits them again\n", counted(submission.failed, "run"));
     if (!submission.plan) {
-        say("Nothing to submit: {} done\n", counted(static_cast<std::size_t>(submission.done), "run"));
+        say("Nothing to submit: {} done\n", counted(submission.done, "run"));
         return;
     }
     const SlurmPlan& plan = *submission.plan;
     say("Submitted {} (about {} on one thread) as {} of job {}; job {} takes the results in\n",
-        counted(static_cast<std::size_t>(submission.submitted), "run"), duration_text(submission.expected_s),
+        counted(submission.submitted, "run"), duration_text(submission.expected_s),
         counted(plan.groups.size(), "element"), plan.array_job, plan.gather_job);
     say("Plan, scripts and output: {}\n", plan.directory.string());
     say("To follow: feldspar study status {}   or   squeue --jobs={},{}\nTo stop:   scancel {}\n", study, plan.array_job, plan.gather_job,

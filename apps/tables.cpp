@@ -8,13 +8,13 @@
 #include <regex>
 #include <vector>
 
-#include "campaign.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/base/text_table.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
+#include "feldspar/study/planned_runs.hpp"
 #include "progress.hpp"
 
 namespace feldspar {

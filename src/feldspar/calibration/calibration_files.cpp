@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "feldspar/base/text_table.hpp"
+#include "feldspar/output/provenance_json.hpp"
 
 namespace feldspar {
 namespace {
@@ -107,8 +108,7 @@ std::string calibration_json(const Calibration& calibration, const CalibrationRe
     }
     json["seeds"] = calibration.seeds;
     json["confirm_seeds"] = calibration.confirm_seeds;
-    json["provenance"] = {{"version", provenance.version}, {"commit", provenance.commit}, {"machine", provenance.machine}, {"started", provenance.started},
-                          {"command_line", provenance.command_line}};
+    json["provenance"] = provenance_json(provenance);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -4,6 +4,7 @@
 
 #include "feldspar/calibration/calibration_files.hpp"
 #include "feldspar/output/html_page.hpp"
+#include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/report_assets.hpp"
 #include "feldspar/output/report_data.hpp"
 
@@ -76,9 +77,7 @@ void write_calibration_report(const Calibration& calibration, const CalibrationR
               {"sensitivity", Json::array()},
               {"findings", result.findings},
               {"way", Json::array()},
-              {"provenance",
-               {{"version", provenance.version}, {"commit", provenance.commit}, {"machine", provenance.machine}, {"started", provenance.started},
-                {"threads", provenance.threads}, {"command_line", provenance.command_line}}}};
+              {"provenance", provenance_json(provenance)}};
     for (const TargetOutcome& outcome : result.targets) json["targets"].push_back(target_json(outcome));
     for (const UnknownOutcome& outcome : result.unknowns) json["unknowns"].push_back(unknown_json(outcome));
     for (const std::vector<double>& of_target : result.sensitivity) {

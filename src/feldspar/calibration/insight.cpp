@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "feldspar/base/mean.hpp"
 #include "feldspar/calibration/search.hpp"
 
 namespace feldspar {
@@ -22,8 +23,6 @@ constexpr double evenly_spread = 0.2887;       // standard deviation of a parame
 constexpr double not_determined = 0.5;         // of that: beyond it the data do not say much of a combination
 constexpr double takes_part = 0.35;            // of a direction: an unknown with less has no say in it
 constexpr double nearly_all = 0.75;            // of an unknown lies in such directions: it is open by itself
-
-double mean(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()); }
 
 // What is believed of the targets at one set, in tolerances. The doubt is about measured quantities: targets that hang on the same ones go together.
 struct Standing {
@@ -237,7 +236,7 @@ MeanInterval confirmed_interval(const Target& target, const std::vector<Observab
         std::vector<double> values;
         for (std::size_t p = 0; p < packings; ++p)
             if (p != left_out && std::isfinite(seen[q][p])) values.push_back(seen[q][p]);
-        return values.empty() ? nan : mean(values);
+        return values.empty() ? nan : mean_of(values);
     };
     const auto means_without = [&](std::size_t left_out) {
         std::vector<double> means;

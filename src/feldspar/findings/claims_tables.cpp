@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "feldspar/base/counted.hpp"
 #include "feldspar/findings/claims.hpp"
 #include "feldspar/study/study_table.hpp"
 
@@ -15,21 +16,21 @@ namespace {
 constexpr Verdict all_verdicts[] = {Verdict::reproduced, Verdict::contradicted, Verdict::in_part, Verdict::undecided, Verdict::not_run, Verdict::not_evaluated};
 
 /// "11 of 12 reproduced, 1 undecided"
-std::string counted(std::size_t total, const std::function<int(Verdict)>& count) {
+std::string tally(std::size_t total, const std::function<int(Verdict)>& count) {
     std::vector<std::string> parts;
     for (const Verdict verdict : all_verdicts)
         if (const int n = count(verdict); n > 0) parts.push_back(fmt::format("{}{} {}", n, parts.empty() ? fmt::format(" of {}", total) : "", name(verdict)));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string counted(const StatementResult& statement) {
-    return counted(statement.comparisons.size(), [&](Verdict verdict) { return statement.count(verdict); });
+std::string tally(const StatementResult& statement) {
+    return tally(statement.comparisons.size(), [&](Verdict verdict) { return statement.count(verdict); });
 }
 
-std::string counted(const ClaimResult& claim) {
+std::string tally(const ClaimResult& claim) {
     std::size_t votes = 0;
     for (const StatementResult& statement : claim.statements) votes += statement.votes ? 1 : 0;
-    return counted(votes, [&](Verdict verdict) {
+    return tally(votes, [&](Verdict verdict) {
         return static_cast<int>(std::count_if(claim.statements.begin(), claim.statements.end(),
                                               [&](const StatementResult& s) { return s.votes && s.verdict == verdict; }));
     });
@@ -63,7 +64,7 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{:
 std::string interval_text(const Comparison& comparison) {
     const MeanInterval& i = comparison.interval;
     const std::string unit = comparison.unit.empty() ? "" : " " + comparison.unit;
-    return fmt::format("{}{} ({} to {}), {} packing{}", number(i.mean), unit, number(i.low), number(i.high), i.count, i.count == 1 ? "" : "s");
+    return fmt::format("{}{} ({} to {}), {}", number(i.mean), unit, number(i.low), number(i.high), counted(i.count, "packing"));
 }
 
 /// Empty where there is no number, as spreadsheets and pandas expect.
@@ -88,7 +89,7 @@ std::string claims_csv(std::span<const ClaimResult> results) {
 std::string claims_text(std::span<const ClaimResult> results) {
     std::string text;
     for (const ClaimResult& claim : results) {
-        text += fmt::format("{}  {}: {}\n  {}: {}\n", claim.claim.id, place(claim.claim), claim.claim.says, name(claim.verdict), counted(claim));
+        text += fmt::format("{}  {}: {}\n  {}: {}\n", claim.claim.id, place(claim.claim), claim.claim.says, name(claim.verdict), tally(claim));
         for (const StatementResult& s : claim.statements) {
             text += fmt::format("  - {}\n", s.statement.says);
             if (!s.statement.not_evaluated.empty()) {
@@ -96,14 +97,14 @@ std::string claims_text(std::span<const ClaimResult> results) {
                 continue;
             }
             const std::string lack = lacking(s);
-            text += fmt::format("    {}{}: {} ({}){}; {}\n", s.study, s.votes ? "" : " (no vote)", name(s.verdict), counted(s), lack.empty() ? "" : ", " + lack,
+            text += fmt::format("    {}{}: {} ({}){}; {}\n", s.study, s.votes ? "" : " (no vote)", name(s.verdict), tally(s), lack.empty() ? "" : ", " + lack,
                                 rule_text(s.statement));
             for (const Comparison& c : s.comparisons)
                 if (c.interval.count > 0) text += fmt::format("      {:14} {}: {}\n", name(c.verdict), c.what, interval_text(c));
         }
         text += "\n";
     }
-    text += fmt::format("Claims: {}\n", counted(results.size(), [&](Verdict verdict) {
+    text += fmt::format("Claims: {}\n", tally(results.size(), [&](Verdict verdict) {
         return static_cast<int>(std::count_if(results.begin(), results.end(), [&](const ClaimResult& claim) { return claim.verdict == verdict; }));
     }));
     return text;
@@ -112,7 +113,7 @@ std::string claims_text(std::span<const ClaimResult> results) {
 std::string claims_markdown(const ClaimList& list, std::span<const ClaimResult> results) {
     std::string text = fmt::format("# {}\n\n{}\n\n| claim | figure | what it says | verdict | statements |\n|---|---|---|---|---|\n", list.title, list.source);
     for (const ClaimResult& claim : results)
-        text += fmt::format("| {} | {} | {} | {} | {} |\n", claim.claim.id, claim.claim.figure, claim.claim.says, name(claim.verdict), counted(claim));
+        text += fmt::format("| {} | {} | {} | {} | {} |\n", claim.claim.id, claim.claim.figure, claim.claim.says, name(claim.verdict), tally(claim));
     for (const ClaimResult& claim : results) {
         text += fmt::format("\n## {}: {}\n\n{}: {}.\n", claim.claim.id, name(claim.verdict), place(claim.claim), claim.claim.says);
         for (const StatementResult& s : claim.statements) {
@@ -122,7 +123,7 @@ std::string claims_markdown(const ClaimList& list, std::span<const ClaimResult> 
             }
             const std::string lack = lacking(s);
             text += fmt::format("\n**{}**: {} ({}){}. Study `{}`{}, `{}`.\n\n| compared | mean | 95 % interval | packings | |\n|---|---|---|---|---|\n", s.statement.says,
-                                name(s.verdict), counted(s), lack.empty() ? "" : ", " + lack, s.study, s.votes ? "" : " (shown beside, without a vote)",
+                                name(s.verdict), tally(s), lack.empty() ? "" : ", " + lack, s.study, s.votes ? "" : " (shown beside, without a vote)",
                                 rule_text(s.statement));
             for (const Comparison& c : s.comparisons)
                 text += fmt::format("| {} | {}{} | {} to {} | {} | {} |\n", c.what, number(c.interval.mean), c.unit.empty() ? "" : " " + c.unit,

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "feldspar/base/mean.hpp"
 #include "feldspar/study/statistics.hpp"
 
 namespace feldspar {
@@ -44,10 +45,6 @@ int smallest_count(double wanted, const HalfWidth& half_width_of) {
             low = middle + 1;
     }
     return low;
-}
-
-double mean_of(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 /// How many subsets of k there are of n, or `most_subsets` + 1 if that is more.
@@ -165,7 +162,7 @@ std::vector<bool> stand_together(std::span<const double> chances) {
 
 std::vector<Subsample> subsamples(std::span<const double> values) {
     std::vector<Subsample> found;
-    const double scale = values.empty() ? nan : mean_of({values.begin(), values.end()});
+    const double scale = values.empty() ? nan : mean_of(values);
     if (!std::isfinite(scale) || scale == 0.0) return found;
     for (int k = 2; k <= static_cast<int>(values.size()); ++k) found.push_back(subsample(values, k, scale));
     return found;

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
@@ -67,7 +67,7 @@ double expected_UCS_Pa(const Job& job) {
     const auto known = [&](const char* key) { return job.laboratory.contains(key); };
     if (known("UCS")) return job.laboratory.at("UCS");
     if (known("cohesion") && known("friction_angle"))
-        return mohr_coulomb_UCS_Pa(job.laboratory.at("cohesion"), job.laboratory.at("friction_angle") * 180.0 / std::numbers::pi);
+        return mohr_coulomb_UCS_Pa(job.laboratory.at("cohesion"), in_degrees(job.laboratory.at("friction_angle")));
     return 4.0 * job.variants.front().contact.tau_Pa;
 }
 

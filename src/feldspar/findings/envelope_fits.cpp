@@ -7,9 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <set>
 
+#include "feldspar/base/angle.hpp"
+#include "feldspar/base/counted.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 #include "feldspar/output/user_units.hpp"
 
@@ -161,11 +162,11 @@ std::string method_of(const EnvelopeFits& fits) {
     const bool uniaxial = fits.strengths.front().sigma3_Pa == 0.0;
     return fmt::format(
         "Mohr-Coulomb (sigma_1 = UCS_fitted + N sigma_3) and Hoek-Brown (intact rock: s = 1, a = 0.5; linear in sigma_3 after squaring) by least squares on the "
-        "{}biaxial tests at sigma_3 = {:g} MPa, sigma_3 from {:g} to {:g} MPa; {}. Fitted on each of {} packing{}, then mean and 95 % interval over "
+        "{}biaxial tests at sigma_3 = {:g} MPa, sigma_3 from {:g} to {:g} MPa; {}. Fitted on each of {}, then mean and 95 % interval over "
         "packings by Student's distribution; the joint fit takes all {} strengths at once.",
         uniaxial ? "uniaxial and " : "", fmt::join(confined, ", "), fits.strengths.front().sigma3_Pa * MPa, fits.strengths.back().sigma3_Pa * MPa,
-        fits.with_tension ? "the parabola also goes through the direct tensile strengths (sigma_3 = -DTS, sigma_1 = 0)" : "no tensile points", fits.packings.size(),
-        fits.packings.size() == 1 ? "" : "s", fits.points.size());
+        fits.with_tension ? "the parabola also goes through the direct tensile strengths (sigma_3 = -DTS, sigma_1 = 0)" : "no tensile points",
+        counted(fits.packings.size(), "packing"), fits.points.size());
 }
 
 std::vector<double> values_of(const BySeed& strengths) {
@@ -192,7 +193,7 @@ CurvePair fit_curves(std::span<const StrengthPoint> points, const std::vector<do
     }
     pair.fit = fit_envelopes(std::move(sigma3), std::move(sigma1), DTS_Pa);
     if (!points.empty()) pair.fit.seed = points.front().seed;
-    const double sine = std::sin(pair.fit.friction_angle_deg * std::numbers::pi / 180.0);
+    const double sine = std::sin(in_radians(pair.fit.friction_angle_deg));
     pair.N = (1.0 + sine) / (1.0 - sine);
     // (P19)
     pair.mohr_coulomb_tension_Pa = pair.fit.UCS_fitted_Pa / pair.N;

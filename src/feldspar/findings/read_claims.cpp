@@ -5,6 +5,7 @@
 
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/findings/claims.hpp"
+#include "feldspar/study/base_job.hpp"
 
 namespace feldspar {
 namespace {
@@ -51,9 +52,7 @@ Quantity quantity_of(const TableReader& table, std::string_view key, const std::
 }
 
 std::string label_of(const TableReader& table, const toml::node& node, std::string_view key) {
-    if (node.is_integer()) return std::to_string(node.as_integer()->get());
-    if (node.is_floating_point()) return fmt::format("{:g}", node.as_floating_point()->get());
-    return table.text_of(node, key);
+    return node.is_number() ? axis_label(node) : table.text_of(node, key);
 }
 
 /// { grains = "rigid", "tau/sigma_nt" = [1, 2] }; lists only in `where`.

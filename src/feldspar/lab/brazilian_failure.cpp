@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/lab/disc_splitting.hpp"
 #include "feldspar/methods/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
@@ -18,7 +18,7 @@ double radius_of(Vec2 place, const LoadedDisc& disc) { return norm(place - disc.
 
 double angle_deg_of(Vec2 place, const LoadedDisc& disc) {
     const Vec2 from_centre = place - disc.centre;
-    return std::atan2(from_centre.x, from_centre.y) * 180.0 / std::numbers::pi;
+    return in_degrees(std::atan2(from_centre.x, from_centre.y));
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ std::vector<BrazilianMark> brazilian_marks(const TestResult& result) {
 }
 
 double tension_under_arcs(double arc_deg) {
-    const double arc = arc_deg * std::numbers::pi / 180.0;
+    const double arc = in_radians(arc_deg);
     return arc > 0.0 ? 2.0 * std::sin(arc) / arc - 1.0 : 1.0;
 }
 

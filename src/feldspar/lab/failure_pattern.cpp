@@ -5,11 +5,11 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/methods/method.hpp"
@@ -30,7 +30,7 @@ void read_directions(const TestResult& result, double total, FailurePattern& pat
         sine += length(crack) * std::sin(twice);
     }
     pattern.crack_alignment = std::hypot(cosine, sine) / total;
-    pattern.crack_angle_deg = std::abs(0.5 * std::atan2(sine, cosine)) * 180.0 / std::numbers::pi;
+    pattern.crack_angle_deg = in_degrees(std::abs(0.5 * std::atan2(sine, cosine)));
 }
 
 /// The places count with the whole crack at its middle: a crack is shorter than a grain, a square some grains wide.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/base/median.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/post_peak.hpp"
@@ -124,9 +125,7 @@ double residual_near_peak(const TestResult& result, const Peak& peak, double sig
         if (row.phase == Phase::loading && sign * row.axial_stress_Pa >= 0.99 * peak.stress_Pa) residuals.push_back(row.residual);
     }
     if (residuals.empty() || std::any_of(residuals.begin(), residuals.end(), [](double r) { return std::isnan(r); })) return nan;
-    const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-    std::nth_element(residuals.begin(), middle, residuals.end());
-    return *middle;
+    return upper_median(residuals);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/stopwatch.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/post_peak.hpp"
@@ -21,8 +22,6 @@ namespace feldspar {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Tells the caller how the loading goes, at most a few times a second.
 class ProgressReporter {

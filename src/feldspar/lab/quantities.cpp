@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/lab/failure_pattern.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/methods/method.hpp"
@@ -81,7 +81,7 @@ QuantityPlace count() {
 
 QuantityPlace formed(double (*of)(const R&)) { return {QuantityForm::real, of}; }
 
-double flat_angle_deg(const R& r) { return r.specimen ? r.specimen->spec.outline.flat_angle_rad * 180.0 / std::numbers::pi : nan; }
+double flat_angle_deg(const R& r) { return r.specimen ? in_degrees(r.specimen->spec.outline.flat_angle_rad) : nan; }
 
 double peak_load_N(const R& r) { return r.properties.peak_stress_Pa * r.section_m2; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "feldspar/base/median.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/methods/method.hpp"
 
@@ -49,9 +50,7 @@ Unbalanced unbalanced(const Assembly& assembly) {
     for (const double force : of_bodies) sum.total_N += force;
     while (!of_bodies.empty() && assembly.bodies[of_bodies.size() - 1].kind == BodyKind::plate) of_bodies.pop_back();   // plates stand at the end
     if (of_bodies.empty()) return sum;
-    const auto middle = of_bodies.begin() + static_cast<std::ptrdiff_t>(of_bodies.size() / 2);
-    std::nth_element(of_bodies.begin(), middle, of_bodies.end());
-    sum.typical_N = *middle * static_cast<double>(of_bodies.size());
+    sum.typical_N = upper_median(of_bodies) * static_cast<double>(of_bodies.size());
     return sum;
 }
 

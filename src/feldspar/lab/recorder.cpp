@@ -4,8 +4,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/grain_fields.hpp"
 
@@ -40,7 +40,7 @@ double contact_arc_deg(const Experiment& e, int side) {
             any = true;
         }
     }
-    return (most - least) * 180.0 / std::numbers::pi;
+    return in_degrees(most - least);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/stopwatch.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/memory.hpp"
 #include "feldspar/lab/properties.hpp"
@@ -18,8 +19,6 @@ namespace feldspar {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Compression left by unloading that vanished when the point broke (docs/theory/contacts.md).
 long long count_vanished(const Assembly& assembly) {

@@ -2,15 +2,15 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/lab/regression.hpp"
 
 namespace feldspar {
 
 namespace {
 
-double root_of_slope(double friction_angle_deg) { return std::tan((45.0 + 0.5 * friction_angle_deg) * std::numbers::pi / 180.0); }
+double root_of_slope(double friction_angle_deg) { return std::tan(in_radians(45.0 + 0.5 * friction_angle_deg)); }
 
 }  // namespace
 
@@ -32,7 +32,7 @@ EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sig
     const double N = line.slope;
     fit.UCS_fitted_Pa = line.intercept;
     if (N > 0.0) {
-        fit.friction_angle_deg = std::asin((N - 1.0) / (N + 1.0)) * 180.0 / std::numbers::pi;
+        fit.friction_angle_deg = in_degrees(std::asin((N - 1.0) / (N + 1.0)));
         fit.cohesion_Pa = line.intercept / (2.0 * std::sqrt(N));
     }
 

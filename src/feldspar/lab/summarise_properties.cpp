@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "feldspar/base/counted.hpp"
 #include "feldspar/base/median.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
@@ -83,9 +84,9 @@ std::string method(const std::vector<EnvelopeFit>& fits) {
     const bool uniaxial = *sigma3.begin() == 0.0;
     return fmt::format(
         "Mohr-Coulomb (sigma_1 = UCS_fitted + N sigma_3) and Hoek-Brown (intact, no tensile points) by least squares on the {}biaxial "
-        "tests (sigma_3 = {:g} MPa) of each packing, sigma_3 from {:g} to {:g} MPa; then median and range over {} packing{} (seed{} {}).",
-        uniaxial ? "uniaxial and " : "", fmt::join(confined, ", "), *sigma3.begin() / 1e6, *sigma3.rbegin() / 1e6, seeds.size(),
-        seeds.size() == 1 ? "" : "s", seeds.size() == 1 ? "" : "s", fmt::join(seeds, ", "));
+        "tests (sigma_3 = {:g} MPa) of each packing, sigma_3 from {:g} to {:g} MPa; then median and range over {} (seed{} {}).",
+        uniaxial ? "uniaxial and " : "", fmt::join(confined, ", "), *sigma3.begin() / 1e6, *sigma3.rbegin() / 1e6, counted(seeds.size(), "packing"),
+        seeds.size() == 1 ? "" : "s", fmt::join(seeds, ", "));
 }
 
 void add_envelopes(PropertySummary& summary, std::span<const TestResult> results) {

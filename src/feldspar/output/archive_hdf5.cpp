@@ -109,6 +109,13 @@ void set_number(hid_t object, const char* key, Number value) {
     require(H5Awrite(attribute, type_of<Number>(), &value));
 }
 
+/// Settings of a data set that does not say when it was made: the same results give the same bytes.
+Handle timeless() {
+    const hid_t settings = require(H5Pcreate(H5P_DATASET_CREATE));
+    require(H5Pset_obj_track_times(settings, false));
+    return {settings, H5Pclose};
+}
+
 /// Writes `values` as rows of `width` numbers, shuffled and compressed, with its unit and meaning as attributes.
 template <class Number>
 void put(hid_t parent, const std::string& name, const std::vector<Number>& values, hsize_t width, const char* unit,
@@ -117,8 +124,7 @@ void put(hid_t parent, const std::string& name, const std::vector<Number>& value
     const hsize_t extent[2] = {rows, width};
     const int rank = width == 1 ? 1 : 2;
     const Handle space(H5Screate_simple(rank, extent, nullptr), H5Sclose);
-    const Handle settings(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    require(H5Pset_obj_track_times(settings, false));  // the same results give the same bytes
+    const Handle settings = timeless();
     if (rows > 0) {
         const hsize_t chunk[2] = {std::min<hsize_t>(rows, 65536), width};
         require(H5Pset_chunk(settings, rank, chunk));
@@ -179,7 +185,7 @@ void put_provenance(hid_t root, const TestResult& result, const Job& job, const 
     require(H5Tset_size(type, resolved.size() + 1));
     require(H5Tset_cset(type, H5T_CSET_UTF8));
     const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-    const Handle set(H5Dcreate2(root, "job", type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+    const Handle set(H5Dcreate2(root, "job", type, space, H5P_DEFAULT, timeless(), H5P_DEFAULT), H5Dclose);
     require(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, resolved.c_str()));
     set_text(set, "meaning", "the job with every default written out, as TOML");
 }

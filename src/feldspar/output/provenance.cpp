@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar_commit.hpp"  // made at build time
 
@@ -69,6 +70,11 @@ Provenance collect_provenance(std::string command_line, int threads) {
     provenance.command_line = std::move(command_line);
     provenance.threads = threads;
     return provenance;
+}
+
+nlohmann::ordered_json provenance_json(const Provenance& provenance) {
+    return {{"version", provenance.version}, {"commit", provenance.commit},   {"machine", provenance.machine},           {"compiler", provenance.compiler},
+            {"started", provenance.started}, {"threads", provenance.threads}, {"command_line", provenance.command_line}};
 }
 
 }  // namespace feldspar

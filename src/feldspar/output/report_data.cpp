@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/quantities.hpp"
 #include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
 
@@ -201,7 +202,7 @@ Json specimens_json(std::span<const TestResult> results) {
         if (outline.shape == Shape::rectangle)
             shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
         if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
-        if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", outline.flat_angle_rad * 180.0 / std::numbers::pi);
+        if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", in_degrees(outline.flat_angle_rad));
         list.push_back({{"for", brazilian ? "Brazilian test" : "compression and tension"},
                         {"shape", shape},
                         {"thickness", rounded(specimen.spec.thickness_m * 1e3)},
@@ -283,10 +284,7 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     for (const FailedTest& test : failed)
         data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"seed", test.seed},
                                   {"sigma3", rounded(test.test.sigma3_Pa * MPa)}, {"reason", test.reason}});
-    data["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
-                          {"machine", provenance.machine},          {"compiler", provenance.compiler},
-                          {"started", provenance.started},          {"threads", provenance.threads},
-                          {"command_line", provenance.command_line}};
+    data["provenance"] = provenance_json(provenance);
     return data;
 }
 

@@ -9,6 +9,7 @@
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/quantities.hpp"
 #include "feldspar/output/history_columns.hpp"
+#include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -228,10 +229,7 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
     summary["laboratory"] = laboratory_json(job);
     summary["envelope"] = envelope_json(whole);
     summary["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}};
-    summary["provenance"] = {{"version", provenance.version},          {"commit", provenance.commit},
-                             {"machine", provenance.machine},          {"compiler", provenance.compiler},
-                             {"started", provenance.started},          {"threads", provenance.threads},
-                             {"command_line", provenance.command_line}};
+    summary["provenance"] = provenance_json(provenance);
     // a name that is not valid UTF-8 must not lose the run's numbers
     directory.write_text("summary.json", summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 
 namespace feldspar {
@@ -35,7 +35,7 @@ std::string property_of_laboratory(const std::string& name) {
 
 double laboratory_as_kept(const std::string& name, double value) {
     const RockProperty* property = rock_property(name);
-    return property != nullptr && property->unit == units::angle ? value * 180.0 / std::numbers::pi : value;
+    return property != nullptr && property->unit == units::angle ? in_degrees(value) : value;
 }
 
 double laboratory_in_user_units(const std::string& name, double value) {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/mean.hpp"
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
@@ -50,7 +50,7 @@ double largest_diameter(const GrainSizeSpec& grains) {
 }
 
 double mean_diameter(const Packing& packing) {
-    return 2.0 * std::accumulate(packing.radii_m.begin(), packing.radii_m.end(), 0.0) / static_cast<double>(packing.radii_m.size());
+    return 2.0 * mean_of(packing.radii_m);
 }
 
 double smaller_side(const Outline& outline) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/base/error.hpp"
 
 namespace feldspar {
@@ -86,7 +87,7 @@ Outline make_polygon(const OutlineSpec& spec) {
 /// Cuts the two flats: a segment of the circle is gone at the top and one at the bottom.
 void flatten(Outline& outline, double angle_rad) {
     if (!(angle_rad > 0.0) || !(angle_rad < std::numbers::pi))
-        throw InputError({"", 0, 0, "test.flat_angle"}, fmt::format("{:g} degrees is no angle of two flats", angle_rad * 180.0 / std::numbers::pi),
+        throw InputError({"", 0, 0, "test.flat_angle"}, fmt::format("{:g} degrees is no angle of two flats", in_degrees(angle_rad)),
                          "greater than 0 and less than 180 degrees");
     outline.flat_height_m = outline.radius_m * std::cos(0.5 * angle_rad);
     outline.edge_labels = {"circle", top_label, bottom_label};
@@ -130,7 +131,7 @@ std::optional<EndFault> end_fault(const OutlineSpec& spec) {
         if (!top && spec.edge_labels[k] != bottom_label) continue;
         const Vec2 a = corners[k], b = corners[(k + 1) % n];
         if (std::abs(b.x - a.x) < least_cosine * norm(b - a)) {
-            const double slope = std::atan2(std::abs(b.y - a.y), std::abs(b.x - a.x)) * 180.0 / std::numbers::pi;
+            const double slope = in_degrees(std::atan2(std::abs(b.y - a.y), std::abs(b.x - a.x)));
             return EndFault{k, fmt::format("the edge labelled \"{}\", {}, is {:.0f} degrees from horizontal", spec.edge_labels[k], in_mm(a, b), slope), allowed,
                             "turn the outline so that the load acts along y, or label the horizontal ends; edge i runs from vertex i to vertex i + 1"};
         }

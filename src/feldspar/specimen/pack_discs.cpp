@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/mean.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
 #include "feldspar/specimen/outline.hpp"
 
@@ -42,7 +43,7 @@ Vec2 find_room(int number, const Outline& outline, const Box& box, const DiscGri
 /// Sorts the discs in horizontal rows two mean diameters high, left to right within a row.
 void sort_in_rows(Packing& packing, const Box& box) {
     const std::size_t n = packing.radii_m.size();
-    const double mean_radius = std::accumulate(packing.radii_m.begin(), packing.radii_m.end(), 0.0) / static_cast<double>(n);
+    const double mean_radius = mean_of(packing.radii_m);
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
     const auto row = [&](std::size_t i) { return std::floor((packing.centres[i].y - box.lower.y) / (4.0 * mean_radius)); };

@@ -3,12 +3,12 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/mean.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
 #include "feldspar/specimen/fire.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -82,7 +82,7 @@ public:
         const auto [least, largest] = std::minmax_element(radii_.begin(), radii_.end());
         smallest_radius_ = *least;
         largest_radius_ = *largest;
-        mean_diameter_ = 2.0 * std::accumulate(radii_.begin(), radii_.end(), 0.0) / static_cast<double>(radii_.size());
+        mean_diameter_ = 2.0 * mean_of(radii_);
         skin_ = near_skin_share * mean_diameter_;
         far_skin_ = far_skin_share * mean_diameter_;
         convex_ = outline.is_disc || is_convex_polygon(outline.vertices);

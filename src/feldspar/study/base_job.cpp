@@ -1,5 +1,7 @@
 #include "feldspar/study/base_job.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -30,6 +32,16 @@ Measure measure_of(const toml::node& node) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error == std::errc{}) measure = {number, std::string(end, text.data() + text.size())};
     return measure;
+}
+
+std::string axis_label(const toml::node& node) {
+    if (node.is_string()) return node.as_string()->get();
+    std::stringstream text;
+    node.visit([&](const auto& value) {
+        if constexpr (toml::is_integer<decltype(value)> || toml::is_boolean<decltype(value)>) text << value;
+        else if constexpr (toml::is_floating_point<decltype(value)>) text << fmt::format("{:g}", value.get());
+    });
+    return text.str();
 }
 
 void insert(toml::table& piece, const std::string& key, const toml::node& value) {

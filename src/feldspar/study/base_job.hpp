@@ -24,6 +24,9 @@ struct Measure {
 
 Measure measure_of(const toml::node& node);
 
+/// What a value of an axis is called: a word as it stands, a number in short ("0.2").
+std::string axis_label(const toml::node& node);
+
 /// Puts a value where a dotted key ("material.contact.tau") says, making tables on the way.
 void insert(toml::table& piece, const std::string& key, const toml::node& value);
 void insert(toml::table& piece, const std::string& key, const Measure& measure);

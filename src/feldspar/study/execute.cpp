@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <deque>
+#include <exception>
 #include <set>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/stopwatch.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_files.hpp"
-#include "feldspar/study/running_tests.hpp"
+#include "feldspar/study/schedule.hpp"
 
 namespace feldspar {
 namespace {
@@ -27,96 +30,106 @@ int expected_bodies(const Run& run) {
     return static_cast<int>(grain_count(specimen) * (filled ? specimen.particles_per_grain : 1.0));
 }
 
-class Execute {
+// Takes runs from a ledger, and what becomes of them back to it.
+class LedgerSink final : public RunSink {
 public:
-    Execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control)
-        : ledger_(ledger), control_(control), packings_(static_cast<std::size_t>(2 * control.threads + 2), control.stop),
-          running_(Sharing(control.at_once, control.threads), *control.stop) {
+    LedgerSink(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control)
+        : ledger_(ledger), control_(control), packings_(static_cast<std::size_t>(2 * control.threads + 2), control.stop) {
         std::set<std::string> seen;
         for (const Run& run : runs)   // points may share runs
             if (seen.insert(run.id).second) runs_.push_back(&run);
         const SettledRuns settled = settled_runs(ledger_.find(std::vector<std::string>(seen.begin(), seen.end())), whose_failures_count());
         execution_.found_done = static_cast<int>(settled.done.size());
         execution_.found_failed = static_cast<int>(settled.failed.size());
-        for (std::size_t i = 0; i < runs_.size(); ++i)
-            if (!settled.done.contains(runs_[i]->id) && !settled.failed.contains(runs_[i]->id)) waiting_.push_back(i);
+        std::erase_if(runs_, [&](const Run* run) { return settled.done.contains(run->id) || settled.failed.contains(run->id); });
     }
 
-    Execution operator()() {
-        const Clock::time_point start = Clock::now();
-        while (true) {
-            while (may_start()) start_next();
-            running_.share_out_free_threads();
-            if (running_.count() == 0) {
-                if (stopped() || (waiting_.empty() && others_.empty())) break;
-                look_at_others();
-                continue;
-            }
-            listen();
-            beat();
-        }
-        execution_.left = static_cast<int>(waiting_.size() + others_.size()) + interrupted_;
-        execution_.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+    std::size_t count() const { return runs_.size(); }
+
+    /// @param without_turn  so many runs had none  @throws OutputError if results could not be written
+    Execution execution(std::size_t without_turn) {
+        execution_.left = static_cast<int>(without_turn + others_.size()) + interrupted_;
         if (lost_) std::rethrow_exception(lost_);
         return execution_;
+    }
+
+    int bodies(std::size_t i) override { return expected_bodies(*runs_[i]); }
+
+    RunningTests::Work begin(std::size_t i) override {
+        const Run& run = *runs_[i];
+        switch (ledger_.claim(run, whose_failures_count())) {   // another process may have ended it by now
+            case Ledger::Claim::done: ++execution_.found_done; return {};
+            case Ledger::Claim::failed: ++execution_.found_failed; return {};
+            case Ledger::Claim::others: others_.push_back(i); return {};
+            case Ledger::Claim::ours: break;
+        }
+        if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
+            ledger_.record(*record);
+            ++execution_.found_done;
+            return {};
+        }
+        if (const auto record = failure_left(ledger_.run_directory(run.id), run);
+            record && !settled_runs(std::span(&*record, 1), whose_failures_count()).failed.empty()) {
+            ledger_.record(*record);
+            ++execution_.found_failed;
+            return {};
+        }
+        return [this, &run](const RunControl& run_control) { return run_one(run, run_control); };
+    }
+
+    void progress(std::size_t i, const TestProgress& state) override {
+        if (control_.progress) control_.progress(*runs_[i], state);
+    }
+
+    void ended(std::size_t) override {}
+
+    void finished(std::size_t i, TestResult result) override {
+        const Run& run = *runs_[i];
+        settle(run, [&] {
+            if (result.interrupted) throw Interrupted();
+            execution_.run_s += result.wall_s;
+            finish_files(run, result, ledger_.run_directory(run.id), control_.keep, control_.provenance);
+            record(run, *finished_record(ledger_.run_directory(run.id), run));
+            ++execution_.done;
+        });
+    }
+
+    void failed(std::size_t i, const std::exception_ptr& error) override {
+        settle(*runs_[i], [&] { std::rethrow_exception(error); });
+    }
+
+    // Runs that another process had: done by now, still at it, or left behind.
+    std::vector<std::size_t> another_turn() override {
+        if (others_.empty()) return {};
+        if (!told_ && control_.note) control_.note(fmt::format("waiting for {} runs that another process is at", others_.size()));
+        told_ = true;
+        std::this_thread::sleep_for(between_looks_at_others);
+        return std::exchange(others_, {});
+    }
+
+    void beat() override {
+        if (Clock::now() < next_beat_) return;
+        ledger_.heartbeat();
+        next_beat_ = Clock::now() + between_heartbeats;
     }
 
 private:
     // None if failed runs are to be repeated.
     const Provenance* whose_failures_count() const { return control_.retry_failed ? nullptr : &control_.provenance; }
 
-    bool stopped() const { return *control_.stop || lost_ != nullptr; }
-
-    bool may_start() const { return !stopped() && !waiting_.empty() && running_.has_room_for(expected_bodies(*runs_[waiting_.front()])); }
-
-    void start_next() {
-        const std::size_t i = waiting_.front();
-        waiting_.pop_front();
-        const Run& run = *runs_[i];
-        switch (ledger_.claim(run, whose_failures_count())) {   // another process may have ended it by now
-            case Ledger::Claim::done: ++execution_.found_done; return;
-            case Ledger::Claim::failed: ++execution_.found_failed; return;
-            case Ledger::Claim::others: others_.push_back(i); return;
-            case Ledger::Claim::ours: break;
-        }
-        if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
-            ledger_.record(*record);
-            ++execution_.found_done;
-            return;
-        }
-        if (const auto record = failure_left(ledger_.run_directory(run.id), run);
-            record && !settled_runs(std::span(&*record, 1), whose_failures_count()).failed.empty()) {
-            ledger_.record(*record);
-            ++execution_.found_failed;
-            return;
-        }
-        running_.start(i, expected_bodies(run), waiting_.size() + 1, [this, &run](const RunControl& run_control) { return run_one(run, run_control); });
-    }
-
     // On the run's own thread.
     TestResult run_one(const Run& run, const RunControl& run_control) {
         const Clock::time_point start = Clock::now();
         TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control);
-        result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+        result.wall_s = seconds_since(start);
         return result;
     }
 
-    void listen() {
-        RunningTests::Events events = running_.events(true);
-        for (const auto& [i, state] : events.news)
-            if (control_.progress) control_.progress(*runs_[i], state);
-        for (RunningTests::Ended& ended : events.ended) take(std::move(ended));
-    }
-
-    void take(RunningTests::Ended ended) {
-        const Run& run = *runs_[ended.number];
+    // What `action` throws decides what is said of the run.
+    template <class Action>
+    void settle(const Run& run, Action&& action) {
         try {
-            if (ended.error) std::rethrow_exception(ended.error);
-            if (ended.result->interrupted) throw Interrupted();
-            execution_.run_s += ended.result->wall_s;
-            finish_files(run, *ended.result, ledger_.run_directory(run.id), control_.keep, control_.provenance);
-            record(run, *finished_record(ledger_.run_directory(run.id), run));
-            ++execution_.done;
+            action();
         } catch (const Interrupted&) {
             ledger_.release(run.id);
             ++interrupted_;
@@ -144,27 +157,11 @@ private:
         if (control_.ended) control_.ended(run, record);
     }
 
-    void beat() {
-        if (Clock::now() < next_beat_) return;
-        ledger_.heartbeat();
-        next_beat_ = Clock::now() + between_heartbeats;
-    }
-
-    // Runs that another process had: done by now, still at it, or left behind.
-    void look_at_others() {
-        if (others_.empty()) return;
-        if (!told_ && control_.note) control_.note(fmt::format("waiting for {} runs that another process is at", others_.size()));
-        told_ = true;
-        std::this_thread::sleep_for(between_looks_at_others);
-        std::swap(waiting_, others_);
-    }
-
     Ledger& ledger_;
     const ExecuteControl& control_;
     Packings packings_;
-    RunningTests running_;
-    std::vector<const Run*> runs_;
-    std::deque<std::size_t> waiting_, others_;
+    std::vector<const Run*> runs_;        // not settled at the beginning
+    std::vector<std::size_t> others_;     // another process is at them
     int interrupted_ = 0;
     bool told_ = false;
     std::exception_ptr lost_;
@@ -174,6 +171,13 @@ private:
 
 }  // namespace
 
-Execution execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control) { return Execute(runs, ledger, control)(); }
+Execution execute(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control) {
+    LedgerSink sink(runs, ledger, control);
+    const Clock::time_point start = Clock::now();
+    const std::size_t without_turn = run_in_order(sink.count(), Sharing(control.at_once, control.threads), *control.stop, sink);
+    Execution execution = sink.execution(without_turn);
+    execution.wall_s = seconds_since(start);
+    return execution;
+}
 
 }  // namespace feldspar

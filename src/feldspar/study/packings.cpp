@@ -1,30 +1,64 @@
 #include "feldspar/study/packings.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
+#include "feldspar/study/text_hash.hpp"
 
 namespace feldspar {
 namespace {
 
-// What the specimen follows from: the part of the resolved job that is about it, and the seed.
-std::string key_of(const Run& run) {
-    Job job = run.job;
-    job.specimen = specimen_of(run.job, run.test());
-    job.variants = {Variant{}};
-    job.tests = {TestSpec{}};
-    job.name = "specimen";
-    job.laboratory.clear();
-    job.laboratory_confined.clear();
-    job.threads = job.at_once = 0;
-    return resolved_toml(job) + format_exact(job.specimen.outline.flat_angle_rad);   // flats stand with the test in a job
-}
+// Numbers and words, one a line, with every digit. Lists begin with how many there are and words with their length, so that no two
+// definitions have the same text.
+class Text {
+public:
+    void add(double number) { text_ += format_exact(number) + '\n'; }
+    void add(const std::string& word) { text_ += fmt::format("{} {}\n", word.size(), word); }
+    template <class Items, class AddItem>
+    void add(const Items& items, AddItem add_item) {
+        add(static_cast<double>(items.size()));
+        for (const auto& item : items) add_item(item);
+    }
+    const std::string& text() const { return text_; }
+
+private:
+    std::string text_;
+};
 
 }  // namespace
 
-std::shared_ptr<const Specimen> Packings::get(const Run& run, int threads) {
-    const std::string key = key_of(run);
+// Takes each struct apart by name: one that gets another member is not compiled until the member stands here.
+std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
+    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain] = spec;
+    const auto& [shape, width_m, height_m, diameter_m, vertices_m, edge_labels, flat_angle_rad] = outline;
+    const auto& [kind, minimum_m, maximum_m, median_m, log_standard_deviation, sieve] = grain_sizes;
+    Text text;
+    text.add(std::to_string(seed));
+    text.add(static_cast<int>(shape));
+    for (const double number : {width_m, height_m, diameter_m, flat_angle_rad, thickness_m}) text.add(number);
+    text.add(vertices_m, [&](Vec2 vertex) {
+        text.add(vertex.x);
+        text.add(vertex.y);
+    });
+    text.add(edge_labels, [&](const std::string& label) { text.add(label); });
+    text.add(static_cast<int>(kind));
+    for (const double number : {minimum_m, maximum_m, median_m, log_standard_deviation, porosity}) text.add(number);
+    text.add(sieve, [&](const SievePoint& point) {
+        const auto& [diameter, passing] = point;
+        text.add(diameter);
+        text.add(passing);
+    });
+    if (merge_length_m) text.add(*merge_length_m);
+    else text.add(std::string("usual"));
+    text.add(triangles_per_grain);
+    text.add(packing_file.string());
+    text.add(particles_per_grain);
+    return hash_of_text(text.text());
+}
+
+std::shared_ptr<const Specimen> Packings::get(const SpecimenSpec& spec, std::uint64_t seed, int threads, const Tell& tell) {
+    const std::string key = identity_of(spec, seed);
     std::promise<std::shared_ptr<const Specimen>> promise;
     std::unique_lock lock(mutex_);
     std::erase(used_, key);
@@ -41,10 +75,11 @@ std::shared_ptr<const Specimen> Packings::get(const Run& run, int threads) {
     try {
         SpecimenControl control;
         control.threads = threads;
-        control.progress = [this](const SpecimenProgress&) {
+        control.progress = [&](const SpecimenProgress& progress) {
             if (stop_ != nullptr && *stop_) throw Interrupted();
+            if (tell) tell(progress);
         };
-        promise.set_value(std::make_shared<const Specimen>(make_specimen(specimen_of(run.job, run.test()), run.seed(), control)));
+        promise.set_value(std::make_shared<const Specimen>(make_specimen(spec, seed, control)));
     } catch (...) {
         promise.set_exception(std::current_exception());
         throw;

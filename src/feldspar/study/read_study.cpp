@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <sstream>
 
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/study/reader_on_job.hpp"
@@ -32,16 +31,6 @@ struct Axis {
     std::vector<std::pair<std::string, double>> coupled;
     std::vector<Choice> choices;
 };
-
-std::string label_of(const toml::node& node) {
-    if (node.is_string()) return node.as_string()->get();
-    std::stringstream text;
-    node.visit([&](const auto& value) {
-        if constexpr (toml::is_integer<decltype(value)> || toml::is_boolean<decltype(value)>) text << value;
-        else if constexpr (toml::is_floating_point<decltype(value)>) text << fmt::format("{:g}", value.get());
-    });
-    return text.str();
-}
 
 class StudyReader : private ReaderOnJob {
 public:
@@ -126,7 +115,7 @@ private:
         if (values.empty()) table.check({"values"}, [&] { table.fail("values", "the list is empty", "one value or more"); });
         for (const toml::node& node : values) {
             Choice choice;
-            choice.value = {label_of(node), measure_of(node).number};
+            choice.value = {axis_label(node), measure_of(node).number};
             table.check({}, [&] {
                 if (table.has("times") && !node.is_number())
                     table.fail_at(node, "values", shown(node) + " is not a factor", "plain numbers, which multiply the value of `times`");

@@ -45,11 +45,6 @@ Json laboratory_json(const Job& job) {
     return json;
 }
 
-Json provenance_json(const Provenance& provenance) {
-    return {{"version", provenance.version}, {"commit", provenance.commit},   {"machine", provenance.machine},           {"compiler", provenance.compiler},
-            {"started", provenance.started}, {"threads", provenance.threads}, {"command_line", provenance.command_line}};
-}
-
 std::string point_label(const PointResults& point) {
     std::string label;
     for (const AxisValue& value : point.values) label += (label.empty() ? "" : ", ") + value.label;

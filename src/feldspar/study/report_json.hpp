@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/study/point_results.hpp"
@@ -31,8 +32,6 @@ Json failures_json(std::span<const PointResults> points);
 
 /// The laboratory's numbers of the job, by their names in user units.
 Json laboratory_json(const Job& job);
-
-Json provenance_json(const Provenance& provenance);
 
 /// "rigid, 2, 33.1 N/m"; "" without axes.
 std::string point_label(const PointResults& point);

@@ -1,14 +1,15 @@
 // Runs and their identity.
-#include <fmt/format.h>
-#include <xxhash.h>
-
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/study/planned_runs.hpp"
 #include "feldspar/study/study.hpp"
+#include "feldspar/study/text_hash.hpp"
 
 namespace feldspar {
 namespace {
@@ -30,11 +31,6 @@ std::string identity(Job job) {
     return text + resolved_toml(job);
 }
 
-std::string hash(const std::string& text) {
-    const XXH128_hash_t value = XXH3_128bits(text.data(), text.size());
-    return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(value.high64), static_cast<std::uint64_t>(value.low64));
-}
-
 }  // namespace
 
 Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::uint64_t seed) {
@@ -51,33 +47,18 @@ Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::
     run.job.seeds = {seed};
     if (!method_of(test).specimen.own_disc) run.job.brazilian_specimen = {};
     if (variant.model.kind != GrainKind::inner_particles) run.job.specimen.particles_per_grain = run.job.brazilian_specimen.particles_per_grain = 0.0;
-    run.id = hash(identity(run.job));
+    run.id = hash_of_text(identity(run.job));
     return run;
 }
 
 void index_runs(Study& study) {
     study.runs.clear();
-    std::vector<std::uint64_t> seeds;
-    const auto add = [&](std::uint64_t seed) {
-        if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
-    };
-    for (const Point& point : study.points) {
-        for (const std::uint64_t seed : point.job.seeds) add(seed);
-        for (const TestSpec& test : point.job.tests)
-            for (const std::uint64_t seed : test.seeds) add(seed);
+    std::vector<const Job*> jobs;
+    for (const Point& point : study.points) jobs.push_back(&point.job);
+    for (const PlannedRun& run : planned_runs(jobs)) {
+        study.runs.push_back(make_run(*run.job, *run.variant, *run.test, run.seed));
+        study.runs.back().point = run.job_number;
     }
-    for (const std::uint64_t seed : seeds)
-        for (std::size_t p = 0; p < study.points.size(); ++p) {
-            const Job& job = study.points[p].job;
-            for (const TestSpec& test : job.tests) {
-                const std::vector<std::uint64_t> own(test.seeds.begin(), test.seeds.end());
-                const std::vector<std::uint64_t>& wanted = own.empty() ? job.seeds : own;
-                const bool runs = std::find(wanted.begin(), wanted.end(), seed) != wanted.end() && job.variants.front().runs(test, seed);
-                if (!runs) continue;
-                study.runs.push_back(make_run(job, job.variants.front(), test, seed));
-                study.runs.back().point = p;
-            }
-        }
 }
 
 Study study_of(const Job& job, const std::string& name, const std::filesystem::path& results) {

@@ -23,7 +23,7 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
                         const RunControl& control) {
     TestResult result;
     {
-        const auto specimen = packings.get(run, control.threads);
+        const auto specimen = packings.get(specimen_of(run.job, run.test()), run.seed(), control.threads);
         const Variant& variant = run.job.variants.front();
         TestSpec test = run.test();
         if (keep != Keep::all) test.snapshots = 0;

@@ -292,7 +292,12 @@ TEST_F(CalibrateRock, KeepsTheWayThere) {
     EXPECT_LT(result.way.back().runs, result.runs);   // then it was confirmed
     ASSERT_EQ(result.way.back().best.size(), result.unknowns.size());
     for (std::size_t u = 0; u < result.unknowns.size(); ++u) EXPECT_EQ(result.way.back().best[u], result.unknowns[u].best);
-    const nlohmann::json json = nlohmann::json::parse(calibration_json(calibration, result, {}));
+    Provenance provenance;
+    provenance.compiler = "a compiler";
+    provenance.threads = 3;
+    const nlohmann::json json = nlohmann::json::parse(calibration_json(calibration, result, provenance));
+    EXPECT_EQ(json["provenance"]["compiler"], "a compiler");
+    EXPECT_EQ(json["provenance"]["threads"], 3);
     EXPECT_EQ(json["way"].size(), result.way.size());
     EXPECT_EQ(json["targets"][4]["grades"]["A"], 20);
     EXPECT_EQ(json["targets"][1]["miss"] == "none", result.targets[1].met);

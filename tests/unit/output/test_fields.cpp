@@ -81,6 +81,24 @@ TEST_F(Fields, ArchiveOfTheSameResultsHasTheSameBytes) {
     EXPECT_EQ(read_text(directory.path() / "uniaxial-compression-s3.h5"), before);
 }
 
+TEST_F(Fields, NothingInAnArchiveSaysWhenItWasMade) {   // a second later the bytes would be others
+    write_hdf5(directory, result, make_job(), make_provenance());
+    const hid_t file = H5Fopen((directory.path() / "uniaxial-compression-s3.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    ASSERT_GE(file, 0);
+    int objects = 0;
+    H5Ovisit2(
+        file, H5_INDEX_NAME, H5_ITER_NATIVE,
+        [](hid_t, const char* name, const auto* info, void* count) -> herr_t {
+            ++*static_cast<int*>(count);
+            EXPECT_EQ(info->mtime, 0) << name;
+            EXPECT_EQ(info->ctime, 0) << name;
+            return 0;
+        },
+        &objects, H5O_INFO_TIME);
+    EXPECT_GT(objects, 20);
+    H5Fclose(file);
+}
+
 TEST_F(Fields, ArchiveOfATestWithoutAnythingIsWhole) {
     TestResult empty;
     empty.seed = 1;

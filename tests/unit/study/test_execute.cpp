@@ -170,12 +170,13 @@ TEST_F(ExecuteStudy, AnInterruptedStudyGoesOn) {
     control.keep = Keep::numbers;
     control.ended = [&](const feldspar::Run&, const RunRecord&) { stop_ = true; };
     const Execution first = execute(study.runs, ledger, control);
-    EXPECT_EQ(first.done, 1);
-    EXPECT_EQ(first.left, 3);
+    EXPECT_GE(first.done, 1);
+    EXPECT_GE(first.left, 2);   // the second run had begun
+    EXPECT_EQ(first.done + first.left, 4);
     stop_ = false;
     const Execution second = run(study, ledger);
-    EXPECT_EQ(second.found_done, 1);
-    EXPECT_EQ(second.done, 3);
+    EXPECT_EQ(second.found_done, first.done);
+    EXPECT_EQ(second.done, first.left);
     EXPECT_EQ(second.left, 0);
 }
 

@@ -1,14 +1,12 @@
 // Study files: which points and runs they make, and what is said of mistakes in them.
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cmath>
 #include <set>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/job/mistakes.hpp"
-#include "feldspar/study/packings.hpp"
 #include "feldspar/study/study.hpp"
 #include "../../small_study.hpp"
 #include "../job/broken_lines.hpp"
@@ -210,23 +208,6 @@ TEST_F(ReadStudy, TheResolvedJobOfARunMakesTheSameRun) {
         const Job again = parse_job(resolved_toml(run.job), "again.toml");
         EXPECT_EQ(make_run(again, again.variants.front(), again.tests.front(), again.seeds.front()).id, run.id);
     }
-}
-
-TEST(Packings, WholeAndFlattenedDiscsAreDifferentSpecimens) {
-    const std::atomic<bool> stop = false;
-    Packings packings(4, &stop);
-    const auto specimen = [&](const std::string& keys) {
-        std::string text = small_job;
-        const std::string tests = "[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"direct-tension\"\n";
-        text.replace(text.find(tests), tests.size(), "[[test]]\nkind = \"brazilian\"\ndiameter = \"30 mm\"\n" + keys);
-        const Job job = parse_job(text, "job.toml");
-        return packings.get(make_run(job, job.variants.front(), job.tests.front(), 1), 1);
-    };
-    const auto whole = specimen("");
-    EXPECT_FALSE(whole->outline.flattened());
-    EXPECT_TRUE(specimen("disc = \"flattened\"\n")->outline.flattened());
-    EXPECT_NE(specimen("disc = \"flattened\"\n"), specimen("disc = \"flattened\"\nflat_angle = \"25 deg\"\n"));
-    EXPECT_EQ(specimen("disc = \"whole\"\nplate_mu = 0.1\n"), whole) << "made once";
 }
 
 TEST_F(ReadStudy, MistakesAreSaidWithPlaceAndSuggestion) {

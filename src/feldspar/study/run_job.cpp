@@ -1,0 +1,251 @@
+#include "feldspar/study/run_job.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <new>
+#include <set>
+#include <utility>
+
+#include "feldspar/base/counted.hpp"
+#include "feldspar/base/error.hpp"
+#include "feldspar/base/parallel.hpp"
+#include "feldspar/study/packings.hpp"
+#include "feldspar/study/schedule.hpp"
+
+namespace feldspar {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+// Bytes that the job will leave, roughly: fields at the snapshots in two formats, histories and the report.
+double expected_bytes(const std::vector<PlannedRun>& runs) {
+    double bytes = 1e6;
+    for (const PlannedRun& run : runs) bytes += 1e6 + 500.0 * grain_count(specimen_of(run)) * (run.test->snapshots + 4);
+    return bytes;
+}
+
+void check_space(const std::optional<std::string>& out, const std::vector<PlannedRun>& runs) {
+    std::error_code error;
+    fs::path place = fs::absolute(out ? fs::path(*out) : fs::path("results"), error);
+    while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();
+    const fs::space_info space = fs::space(place, error);
+    if (error || space.capacity == 0) return;  // a file system that does not tell is not full
+    const double wanted = expected_bytes(runs);
+    if (static_cast<double>(space.available) < wanted)
+        throw InputError({{}, 0, 0, "--out"},
+                         fmt::format("the results need about {:.0f} MB, but the disk of '{}' has only {:.0f} MB free",
+                                     wanted / 1e6, place.string(), static_cast<double>(space.available) / 1e6),
+                         "a directory on a disk with more space, or fewer snapshots");
+}
+
+// The runs of a job with their packings, all of which stay until the job is over.
+class PreparedRuns {
+public:
+    PreparedRuns(const Job& job, const JobControl& control)
+        : job_(job), control_(control), tell_(*control.listener), runs_(planned_runs(job)), packings_(runs_.size(), control.stop) {}
+
+    const std::vector<PlannedRun>& all() const { return runs_; }
+    const PlannedRun& operator[](std::size_t i) const { return runs_[i]; }
+    std::size_t count() const { return runs_.size(); }
+
+    std::shared_ptr<const Specimen> specimen(const PlannedRun& run) { return packings_.get(specimen_of(run), run.seed, 1); }
+    int bodies(std::size_t i) { return body_count(runs_[i], *specimen(runs_[i])); }
+
+    void prepare() {
+        if (*control_.stop) throw Interrupted();
+        make_packings();
+        side_by_side(static_cast<int>(runs_.size()), control_.threads, [this](int i) { judge_setting(runs_[static_cast<std::size_t>(i)]); });
+        tell_.clear();
+        std::vector<std::string> told;
+        const auto warn = [&](const std::vector<std::string>& warnings) {
+            for (const std::string& warning : warnings) {
+                if (std::find(told.begin(), told.end(), warning) != told.end()) continue;
+                tell_.note("warning: " + warning);
+                told.push_back(warning);
+            }
+        };
+        warn(warnings(job_));
+        for (const PlannedRun& run : runs_) warn(specimen(run)->quality.warnings);
+    }
+
+private:
+    // Side by side; a single one tells how far it is.
+    void make_packings() {
+        std::vector<const PlannedRun*> of_each;   // the first run on it
+        std::set<std::string> seen;
+        for (const PlannedRun& run : runs_)
+            if (seen.insert(identity_of(specimen_of(run), run.seed)).second) of_each.push_back(&run);
+        const int count = static_cast<int>(of_each.size());
+        tell_.busy("making " + counted(count, "packing"));
+        side_by_side(count, control_.threads, [&](int i) {
+            const PlannedRun& run = *of_each[static_cast<std::size_t>(i)];
+            Packings::Tell tell;
+            if (count == 1) tell = [&](const SpecimenProgress& progress) { tell_.making(packing_stem(run), progress); };
+            (void)packings_.get(specimen_of(run), run.seed, std::max(1, control_.threads / count), tell);
+        });
+    }
+
+    // An unstable setting is refused here; what the program chooses itself is stable.
+    void judge_setting(const PlannedRun& run) {
+        if (*control_.stop) throw Interrupted();
+        const NumericsSpec& numerics = run.variant->numerics;
+        if (numerics.kind == NumericsKind::adaptive && !numerics.mass_factor) return;
+        RunControl judging;
+        judging.stop = control_.stop;
+        (void)preview_test(setup_of(run, specimen(run)), judging);
+    }
+
+    const Job& job_;
+    const JobControl& control_;
+    JobListener& tell_;
+    std::vector<PlannedRun> runs_;
+    Packings packings_;
+};
+
+// In words for the user.
+std::string reason_of(const std::exception_ptr& error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+        return "there is not enough memory for it";
+    } catch (const std::exception& problem) {
+        return problem.what();
+    }
+}
+
+// Takes what tests leave into the job's directory.
+class DirectorySink final : public RunSink {
+public:
+    DirectorySink(const Job& job, PreparedRuns& runs, const JobControl& control)
+        : job_(job), runs_(runs), control_(control), tell_(*control.listener), directory_(RunDirectory::create(control.out, job.name)) {
+        tell_.note(fmt::format("results go to {}", directory_.path().string()));
+        directory_.write_text("job.toml", job_.text);
+        directory_.write_text("job-resolved.toml", resolved_toml(job_));
+    }
+
+    const fs::path& path() const { return directory_.path(); }
+    /// Tests of which there is something.
+    std::size_t tests() const { return results_.size(); }
+
+    int bodies(std::size_t i) override { return runs_.bodies(i); }
+
+    RunningTests::Work begin(std::size_t i) override {
+        const PlannedRun& run = runs_[i];
+        const std::shared_ptr<const Specimen> specimen = runs_.specimen(run);
+        const std::string packing = packing_stem(run) + ".txt";
+        if (packings_.insert(packing).second) directory_.write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
+        return [this, &run, specimen](const RunControl& run_control) {
+            TestResult result = run_test(setup_of(run, specimen), run_control);
+            result.variant = run.variant->name;
+            if (!result.history.empty()) {   // else interrupted before the first row
+                write_history_csv(directory_, result, control_.provenance);
+                write_vtu(directory_, result, *run_control.more_threads);
+            }
+            return result;
+        };
+    }
+
+    void progress(std::size_t i, const TestProgress& state) override {
+        tell_.progress(number_of(i), static_cast<int>(runs_.count()), label_of(runs_[i]), state);
+    }
+
+    void ended(std::size_t i) override { tell_.ended(number_of(i)); }
+
+    // Writes what only this thread may write: the HDF5 library is not made for several, and the overview holds all tests.
+    void finished(std::size_t i, TestResult ended) override {
+        tell_.finished(numbered_label(i), ended);
+        if (ended.history.empty()) return;
+        const auto place = std::upper_bound(order_.begin(), order_.end(), i) - order_.begin();
+        order_.insert(order_.begin() + place, i);
+        const auto result = results_.insert(results_.begin() + place, std::move(ended));
+        write_hdf5(directory_, *result, job_, control_.provenance);
+        if (results_.size() < runs_.count()) write_overview(false, false);
+    }
+
+    // The other tests go on. @throws OutputError: what is still running could not be written either
+    void failed(std::size_t i, const std::exception_ptr& error) override {
+        try {
+            std::rethrow_exception(error);
+        } catch (const Interrupted&) {
+            return;   // before there was anything to keep of this test
+        } catch (const OutputError&) {
+            throw;
+        } catch (...) {
+            reasons_[i] = reason_of(error);
+        }
+        tell_.note(fmt::format("{}: failed: {}", numbered_label(i), reasons_[i]));
+        if (results_.size() + reasons_.size() < runs_.count()) write_overview(false, false);
+    }
+
+    /// The last overview, when all have ended.
+    JobOutcome outcome() {
+        tell_.clear();
+        JobOutcome outcome;
+        outcome.directory = directory_.path();
+        outcome.tests = runs_.count();
+        outcome.interrupted = results_.size() + reasons_.size() < runs_.count() ||
+                              std::any_of(results_.begin(), results_.end(), [](const TestResult& result) { return result.interrupted; });
+        write_overview(!outcome.interrupted && reasons_.empty(), true);
+        outcome.failed = failures();
+        outcome.results = std::move(results_);
+        outcome.properties = std::move(properties_);
+        return outcome;
+    }
+
+private:
+    static int number_of(std::size_t i) { return static_cast<int>(i) + 1; }
+    std::string numbered_label(std::size_t i) const { return fmt::format("{}/{} {}", number_of(i), runs_.count(), label_of(runs_[i])); }
+
+    std::vector<FailedTest> failures() const {
+        std::vector<FailedTest> list;
+        for (const auto& [i, reason] : reasons_) list.push_back({runs_[i].variant->name, *runs_[i].test, runs_[i].seed, reason});
+        return list;
+    }
+
+    // The report of many tests takes a second to make: on the way it may take a twentieth of the time.
+    void write_overview(bool complete, bool last) {
+        if (!job_.has_variants()) properties_ = summarise(results_);  // else each variant has its own
+        const std::vector<FailedTest> failed = failures();
+        write_summary(directory_, job_, results_, properties_, control_.provenance, complete, failed);
+        const Clock::time_point start = Clock::now();
+        if (!last && start < next_report_) return;
+        write_report(directory_, job_, results_, properties_, control_.provenance, complete, failed);
+        next_report_ = Clock::now() + 20 * (Clock::now() - start);
+    }
+
+    const Job& job_;
+    PreparedRuns& runs_;
+    const JobControl& control_;
+    JobListener& tell_;
+    RunDirectory directory_;
+    std::set<std::string> packings_;                // written already
+    std::vector<TestResult> results_;               // in the job's order
+    std::vector<std::size_t> order_;                // the number of each
+    std::map<std::size_t, std::string> reasons_;    // of failures, by number
+    PropertySummary properties_;
+    Clock::time_point next_report_;
+};
+
+}  // namespace
+
+JobOutcome run_job(const Job& job, const JobControl& control) {
+    PreparedRuns runs(job, control);
+    RunDirectory::check(control.out, job.name);
+    check_space(control.out, runs.all());
+    runs.prepare();
+    DirectorySink sink(job, runs, control);
+    try {
+        run_in_order(runs.count(), Sharing(job.at_once, control.threads), *control.stop, sink);
+        return sink.outcome();
+    } catch (const std::exception&) {
+        control.listener->broken_off(sink.tests(), sink.path());
+        throw;
+    }
+}
+
+}  // namespace feldspar
