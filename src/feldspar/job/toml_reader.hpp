@@ -19,24 +19,10 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/mistakes.hpp"
+#include "feldspar/job/range.hpp"
 #include "feldspar/job/toml_include.hpp"
 
 namespace feldspar {
-
-/// The allowed values of a number, with the words that say so.
-struct Range {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-    bool low_allowed = true;
-    bool high_allowed = true;
-    std::string_view words = "any finite number";
-
-    bool contains(double v) const { return (low_allowed ? v >= low : v > low) && (high_allowed ? v <= high : v < high); }
-};
-
-inline constexpr Range any_value{};
-inline constexpr Range positive{0.0, std::numeric_limits<double>::infinity(), false, true, "greater than zero"};
-inline constexpr Range not_negative{0.0, std::numeric_limits<double>::infinity(), true, true, "zero or greater"};
 
 /// The candidate that `word` was probably meant to be (optimal string alignment distance, case ignored), or "" when none is near.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
