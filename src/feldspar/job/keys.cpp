@@ -78,6 +78,13 @@ bool not_adaptive(NumericsKind kind) { return kind != NumericsKind::adaptive; }
 bool dynamic(NumericsKind kind) { return kind == NumericsKind::dynamic; }
 bool not_dynamic(NumericsKind kind) { return kind != NumericsKind::dynamic; }
 
+// "6.25e-9"
+std::string short_number(double value) {
+    std::string text = fmt::format("{:.12g}", value);
+    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+    return text;
+}
+
 // The stiffness and friction of plates that tests have unless a job says otherwise.
 std::string usual_plate_Kn() {
     for (const TestKind kind : test_kinds)
@@ -107,16 +114,17 @@ std::vector<JobKey> file_keys() {
 
 std::vector<JobKey> specimen_keys() {
     const SpecimenSpec spec;
+    const char *rectangle = "with `shape = \"rectangle\"`", *polygon = "with `shape = \"polygon\"`";
     return {
         {"shape", choice(shapes), needed, "the outline: a rectangle (`width`, `height`), a disc (`diameter`) or a polygon (`vertices`, `edge_labels`)"},
-        {"width", quantity(length), must, "across the load; the Brazilian test cuts its own disc of this diameter", "rectangle"},
-        {"height", quantity(length), must, "in the direction of loading", "rectangle"},
-        {"diameter", quantity(length), must, "of the disc", "disc"},
+        {"width", quantity(length), must, "across the load; the Brazilian test cuts its own disc of this diameter", rectangle},
+        {"height", quantity(length), must, "in the direction of loading", rectangle},
+        {"diameter", quantity(length), must, "diameter of the disc", "with `shape = \"disc\"`"},
         {"vertices", pairs_of(quantity(length, any_value), quantity(length, any_value)), must,
-         "corners of the outline, x and y each, 3 to 10000; they may run either way round", "polygon"},
-        {"edge_labels", list_of(text()), words("none; needed by every test but the Brazilian"),
+         "corners of the outline, x and y each, 3 to 10000; they may run either way round", polygon},
+        {"edge_labels", list_of(text()), words("none; needed by tests that press on flat ends"),
          "one label an edge, edge i from vertex i to vertex i + 1: `\"top\"` on the upper end and `\"bottom\"` on the lower one, both within 10 degrees of horizontal; the load acts along y",
-         "polygon"},
+         polygon},
         {"thickness", quantity(length), usual(spec.thickness_m), "out of plane; scales forces, not stresses"},
         {"packing", text("a packing saved by an earlier run, its path relative to the job file"), words("a new one for each seed"), "a packing that is loaded instead of made"},
         {"grains", table("specimen.grains"), needed, "sizes of the grains and what is in them"},
@@ -131,19 +139,20 @@ std::vector<JobKey> grains_keys() {
         {"merge_length", quantity(length, not_negative, {"auto", "none"}), usual_word("auto"), "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
         {"triangles_per_grain", integer(0, 10000), usual(spec.triangles_per_grain), "0 for the standard mesh of about 15 triangles, or about so many"},
         {"particles_per_grain", number({7.0, 500.0, true, true, "from 7 to 500"}), usual(usual_particles_per_grain), "inner particles in a grain of mean area",
-         "grains of `kind = \"inner-particles\"`"},
+         "with `kind = \"inner-particles\"`"},
     };
 }
 
 std::vector<JobKey> diameter_keys() {
+    const char *bounded_kinds = "with `distribution = \"uniform\"`, `\"log-normal\"`", *log_normal = "with `distribution = \"log-normal\"`";
     return {
         {"distribution", choice(grain_size_kinds), needed, "how diameters are distributed"},
-        {"minimum", quantity(length), must, "the smallest", "uniform and log-normal"},
-        {"maximum", quantity(length), must, "the largest", "uniform and log-normal"},
-        {"median", quantity(length), must, "between the smallest and the largest", "log-normal"},
-        {"log_standard_deviation", number({0.0, 3.0, false, true, "greater than 0, at most 3"}), must, "of the natural logarithm of the diameter", "log-normal"},
+        {"minimum", quantity(length), must, "the smallest", bounded_kinds},
+        {"maximum", quantity(length), must, "the largest", bounded_kinds},
+        {"median", quantity(length), must, "half of the grains are smaller; between the smallest and the largest", log_normal},
+        {"log_standard_deviation", number({0.0, 3.0, false, true, "greater than 0, at most 3"}), must, "standard deviation of the natural logarithm of the diameter", log_normal},
         {"curve", pairs_of(quantity(length), share_of_one(share)), must,
-         "sieves of increasing diameter and the share by mass that passes each, from 0 % to 100 %; it may have flat parts", "sieve"},
+         "sieves of increasing diameter and the share by mass that passes each, from 0 % to 100 %; it may have flat parts", "with `distribution = \"sieve\"`"},
     };
 }
 
@@ -154,7 +163,7 @@ std::vector<JobKey> model_keys() {
          "`\"flexible\"`: grains of elastic triangles; `\"rigid\"`: three degrees of freedom a grain; `\"inner-particles\"`: grains filled with small rigid particles on unbreakable elastic contacts"},
         {"contact", choice(contact_kinds), usual_word(name(spec.contact)), "`\"lobatto3\"`: three points on a grain edge; `\"point\"`: one. Inner particles always have one"},
         {"normal", choice(contact_normals), usual_word(name(spec.normal)), "`\"centres\"`: from centre to centre; `\"edge\"`: that of the Laguerre edge, between inner particles of two grains"},
-        {"plane", choice(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", "flexible grains"},
+        {"plane", choice(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", "of flexible grains"},
     };
 }
 
@@ -170,20 +179,20 @@ std::vector<JobKey> material_keys() {
 std::vector<JobKey> grain_keys() {
     const GrainMaterial spec;
     return {
-        {"E", quantity(stress), must, "Young's modulus of the grains", "flexible grains; refused for the others, which have no elastic constants: they deform by `Kn` and `eta`"},
-        {"nu", number(poisson), must, "Poisson's ratio of the grains", "flexible grains; refused for the others"},
+        {"E", quantity(stress), must, "Young's modulus of the grains", "of flexible grains; refused for the others, which have no elastic constants: they deform by `Kn` and `eta`"},
+        {"nu", number(poisson), must, "Poisson's ratio of the grains", "of flexible grains; refused for the others"},
         {"density", quantity(density), usual(spec.density_kg_m3), "density of the grains"},
     };
 }
 
 std::vector<JobKey> contact_keys() {
     const ContactMaterial spec;
-    const char* softening = "every law but `\"brittle\"`, where it is refused";
+    const char* softening = "of laws that soften: every one but `\"brittle\"`, where it is refused";
     return {
         {"law", choice(contact_laws), usual_word(name(spec.law)), "how a contact softens ([laws](theory/contacts.md))"},
         {"Kn", quantity(stiffness_gradient), must, "normal stiffness per area"},
         {"eta", number(positive), words("must be given, or `kratio`"), "shear over normal stiffness, ks/kn"},
-        {"kratio", number(positive), words("must be given, or `eta`"), "kn/ks, in place of `eta`"},
+        {"kratio", number(positive), words("must be given, or `eta`"), "the inverse, kn/ks, in place of `eta`"},
         {"sigma_nt", quantity(stress), must, "tensile strength"},
         {"tau", quantity(stress), must, "cohesion"},
         {"mu", number(not_negative), must, "friction coefficient"},
@@ -201,12 +210,12 @@ std::vector<JobKey> numerics_keys() {
     return {
         {"kind", choice(numerics_kinds), usual_word(name(spec.kind)), "`\"adaptive\"`: finds its own loading rate; `\"paper\"`: fixed speed, local damping; `\"dynamic\"`: real masses"},
         {"accuracy", share_of_one(accuracies, "%"), usual(spec.accuracy),
-         "wanted of a strength: the peak is passed again, more slowly, until the estimated error is that", {}, nullptr, adaptive},
+         "relative accuracy wanted of a strength: the peak is passed again, more slowly, until the estimated error is that", {}, nullptr, adaptive},
         {"residual_target", number({0.0, 0.5, false, true, "greater than 0, at most 0.5"}), words("that of `accuracy`"),
          "for experts: the target of the unbalanced force itself, in place of `accuracy`", {}, nullptr, adaptive},
         {"damping", number(below_one), usual(spec.damping),
          "alpha of the local damping; with `\"adaptive\"` of what departs from the loading motion ([where it matters](validation/true-strengths.md))"},
-        {"speed", quantity(speed_per_step), words(fmt::format("`\"{:g} m/step\"`; with `\"dynamic\"` it must be given", kPaperSpeed)),
+        {"speed", quantity(speed_per_step), words(fmt::format("`\"{} m/step\"`; with `\"dynamic\"` it must be given", short_number(kPaperSpeed))),
          "of the platens: with `\"paper\"` a length per step, with `\"dynamic\"` a speed", {}, nullptr, not_adaptive, false, ", which finds its own speed"},
         {"mass_factor", number(positive), words("found by the program"), "for experts: multiplies the masses; judged before the run", {}, nullptr, not_dynamic},
         {"time_step", quantity(Dimension::time), words("found by the program"), "for experts: judged before the run", {}, nullptr, dynamic},
@@ -233,26 +242,26 @@ std::vector<JobKey> test_keys() {
     return {
         {"kind", choice(test_kinds), needed, "the method"},
         {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", {}, confined},
-        {"diameter", quantity(length), words("the specimen's width"), "of the disc", {}, own_disc},
+        {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", {}, own_disc},
         {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press", {}, own_disc},
-        {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad), "of each flat of a flattened disc, seen from the centre; from 20 degrees on cracks start in the centre", {},
+        {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad), "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre", {},
          own_disc},
         {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction), "the test ends when the stress has fallen to this fraction of the peak"},
         {"control", choice(load_controls), words("`\"dissipation\"` in compression with adaptive numerics, else `\"displacement\"`"),
          "what the platens keep constant behind the peak, with adaptive numerics: `\"displacement\"`; `\"dissipation\"`: the work of fracture and friction in a travel time of a wave; "
          "`\"lateral-strain\"`: the growth of the lateral strain, in compression ([theory](theory/loading.md)). The strength is the same"},
-        {"maximum_strain", share_of_one(inside_one), usual(spec.maximum_strain), "... or at this axial strain"},
-        {"maximum_stress", quantity(stress), none, "... or at this stress (under confinement: sigma1), of which the strength is then a lower bound"},
+        {"maximum_strain", share_of_one(inside_one), usual(spec.maximum_strain), "the test ends at this axial strain at the latest"},
+        {"maximum_stress", quantity(stress), none, "the test ends at this stress at the latest (under confinement: sigma1), and its strength is then a lower bound"},
         {"snapshots", integer(0, 1000), usual(spec.snapshots), "fields kept between the first crack and the end"},
         {"seeds", list_of(integer(0)), words("those of the run"), "the packings of this test"},
         {"plates", choice(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
          "`\"curved\"` for jaws whose arcs embrace the disc ([why](decisions/2026-11-27-brazilian-fixture.md)), or `\"flat\"`", {}, own_disc, nullptr, true},
         {"jaw_radius", number({1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}), usual(spec.jaw_radius),
-         "of curved plates, over the radius of the disc; 1.5 is ISRM's", {}, own_disc, nullptr, true},
-        {"plate_stiffness_factor", number(positive), usual(spec.plate_stiffness_factor), "stiffness of plates as a multiple of the contacts' `Kn`; of curved plates see `plate_Kn`", {},
+         "radius of curved plates, over that of the disc; 1.5 is ISRM's", {}, own_disc, nullptr, true},
+        {"plate_stiffness_factor", number(positive), words(fmt::format("{:g}; curved plates have a `plate_Kn`", spec.plate_stiffness_factor)), "stiffness of plates as a multiple of the contacts' `Kn`", {},
          nullptr, nullptr, true},
         {"plate_Kn", quantity(stiffness_gradient), words(usual_plate_Kn()),
-         "in its place: their stiffness itself, as of bearing strips or of the tape on curved jaws ([why](validation/brazilian-plates.md))", {}, nullptr, nullptr, true},
+         "stiffness of plates itself, in place of `plate_stiffness_factor`, as of bearing strips or of the tape on curved jaws ([why](validation/brazilian-plates.md))", {}, nullptr, nullptr, true},
         {"plate_mu", number(not_negative), words(usual_plate_mu()), "friction of plates", {}, not_glued, nullptr, true,
          ": its plates are glued on and hold in the normal direction only"},
         {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it", {}, confined, nullptr, true},
@@ -361,7 +370,7 @@ std::string value_text(const KeyValue& value, double si) {
     if (value.element.form == ValueForm::flag) return si != 0.0 ? "true" : "false";
     const std::string_view unit = unit_of(value);
     if (unit.empty()) return format_exact(si);
-    return fmt::format("\"{:.12g} {}\"", si / parse_quantity(fmt::format("1 {}", unit), value.element.dimension), unit);
+    return fmt::format("\"{} {}\"", short_number(si / parse_quantity(fmt::format("1 {}", unit), value.element.dimension)), unit);
 }
 
 }  // namespace
@@ -397,9 +406,9 @@ std::string allowed(const JobKey& key) {
     const std::string one = element_text(value.element);
     switch (value.shape) {
         case ValueShape::one: return one;
-        case ValueShape::list: return "a list of: " + one;
+        case ValueShape::list: return (value.element.form == ValueForm::choice ? "a list, each one of " : "a list, each ") + one;
         case ValueShape::one_or_list: return one + "; or a list of them";
-        case ValueShape::pairs: return fmt::format("a list of pairs of {} and {}", one, element_text(*value.second));
+        case ValueShape::pairs: return fmt::format("a list of pairs: {}; {}", one, element_text(*value.second));
         case ValueShape::tables: break;
     }
     return "a list of tables";
@@ -424,8 +433,8 @@ std::string kinds_that_take(const JobKey& key) {
 std::string applies_text(const JobKey& key) {
     std::string text = key.applies;
     const std::string kinds = kinds_that_take(key);
-    if (!kinds.empty()) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", kinds);
-    if (key.of_plates) text += text.empty() ? "where there are plates" : ", where there are plates";
+    if (!kinds.empty()) text += fmt::format("{}with `{}`", text.empty() ? "" : ", ", kinds);
+    if (key.of_plates) text += text.empty() ? "where plates load the specimen" : ", where plates load the specimen";
     return text;
 }
 

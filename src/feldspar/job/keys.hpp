@@ -62,7 +62,7 @@ struct JobKey {
     KeyValue value;
     KeyDefault usual;
     std::string meaning;                       ///< one sentence in Markdown, without the full stop; links count from docs/
-    std::string applies{};                     ///< where, in words: "flexible grains"; empty: everywhere. More follows from the next three
+    std::string applies{};                     ///< where, in words: "of flexible grains"; empty: everywhere. More follows from the next three
     bool (*method)(const TestMethod&) = nullptr;   ///< of [[test]]: methods that take it; null: all
     bool (*numerics)(NumericsKind) = nullptr;      ///< of [numerics]: kinds that take it; null: all
     bool of_plates = false;                        ///< of [[test]]: only where plates load the specimen
@@ -100,7 +100,7 @@ std::string allowed(const JobKey& key);
 /// What holds without it: a value as it would be written ("\"80 mm\"", 0.1), or words.
 std::string usual_text(const JobKey& key);
 
-/// Where the key applies, in words; empty: everywhere.
+/// Where the key applies, in words that follow "only"; empty: everywhere.
 std::string applies_text(const JobKey& key);
 
 /// "kind = \"biaxial\", \"brazilian\"": the methods, or kinds of numerics, that take the key.

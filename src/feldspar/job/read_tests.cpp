@@ -148,7 +148,7 @@ void read_plates(const JobTable& table, bool particles, TestSpec& test) {
         table.check({}, [&] { table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them"); });
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn");
     else if (test.plates != usual || table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m.reset();   // that of the usual plates
-    test.plate_stiffness_factor = table.number("plate_stiffness_factor");
+    test.plate_stiffness_factor = table.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (!method.glued) test.plate_mu = table.number("plate_mu", method.plate_mu);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates"));
 }
