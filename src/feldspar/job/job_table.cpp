@@ -23,6 +23,19 @@ std::vector<JobTable> JobTable::tables(std::string_view key, std::string_view wh
     return found;
 }
 
+void JobTable::suit(std::string_view key, std::string_view word, int decided_at) const {
+    std::vector<std::string_view> needed;
+    const std::string setting = std::string(key.substr(key.rfind('.') + 1)) + " = \"" + std::string(word) + "\"";
+    for (const JobKey& one : rows_->keys) {
+        if (one.when.key == key && !one.when.holds(word)) {
+            if (!word.empty()) refuse({one.name}, setting + std::string(one.elsewhere), "only with " + condition_text(one), decided_at);
+        } else if (one.usual.need != KeyNeed::none) {
+            needed.push_back(one.name);
+        }
+    }
+    require(needed);
+}
+
 double JobTable::quantity(std::string_view key, std::optional<double> otherwise) const {
     const JobKey& known = row(key);
     return TableReader::quantity(key, known.value.element.dimension, known.value.element.range, otherwise ? otherwise : known.usual.value);

@@ -56,6 +56,10 @@ public:
     double first_of(const toml::node& node, std::string_view key) const { return element_of(node, key, row(key).value.element); }
     double second_of(const toml::node& node, std::string_view key) const { return element_of(node, key, *row(key).value.second); }
 
+    /// Where `key` has `word`: refuses keys that only apply under its other words, and requires those that must be given now. An empty word stands for
+    /// one that is not known: then only what applies everywhere is required. @param decided_at  level of the table that gave the word (see refuse())
+    void suit(std::string_view key, std::string_view word, int decided_at = not_given) const;
+
     /// What the key may be, in words.
     std::string allowed(std::string_view key) const { return feldspar::allowed(row(key)); }
 

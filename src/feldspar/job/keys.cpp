@@ -64,12 +64,29 @@ KeyValue one_or_list_of(KeyValue value) { return {std::move(value.element), Valu
 KeyValue pairs_of(KeyValue first, KeyValue second) { return {std::move(first.element), ValueShape::pairs, std::move(second.element)}; }
 
 // What holds without it.
-const KeyDefault needed{.always_needed = true, .words = "must be given"}, must{.words = "must be given"}, none{.words = "none"};
+const KeyDefault needed{.need = KeyNeed::always, .words = "must be given"}, must{.need = KeyNeed::where_it_applies, .words = "must be given"}, none{.words = "none"};
 KeyDefault words(std::string text) { return {.words = std::move(text)}; }
 KeyDefault usual(double value) { return {.value = value}; }
 KeyDefault usual_word(std::string_view word) { return {.toml = fmt::format("\"{}\"", word)}; }
 
-// Which tests and numerics take it.
+// Where it applies.
+template <class Value>
+KeyCondition with(std::string_view key, std::initializer_list<Value> values) {
+    KeyCondition condition{key, {}};
+    for (const Value value : values) condition.words.emplace_back(name(value));
+    return condition;
+}
+template <class Value, std::size_t count, class Takes>
+KeyCondition where(std::string_view key, const std::array<Value, count>& values, Takes takes) {
+    KeyCondition condition{key, {}};
+    for (const Value value : values)
+        if (takes(value)) condition.words.emplace_back(name(value));
+    return condition;
+}
+KeyCondition methods_that_are(bool (*such)(const TestMethod&)) {
+    return where("kind", test_kinds, [&](TestKind kind) { return such(method_of(kind)); });
+}
+KeyCondition numerics_that_are(bool (*such)(NumericsKind)) { return where("kind", numerics_kinds, such); }
 bool own_disc(const TestMethod& method) { return method.specimen.own_disc; }
 bool confined(const TestMethod& method) { return method.specimen.confined; }
 bool not_glued(const TestMethod& method) { return !method.specimen.glued; }
@@ -114,12 +131,12 @@ std::vector<JobKey> file_keys() {
 
 std::vector<JobKey> specimen_keys() {
     const SpecimenSpec spec;
-    const char *rectangle = "with `shape = \"rectangle\"`", *polygon = "with `shape = \"polygon\"`";
+    const KeyCondition rectangle = with("shape", {Shape::rectangle}), disc = with("shape", {Shape::disc}), polygon = with("shape", {Shape::polygon});
     return {
         {"shape", choice(shapes), needed, "the outline: a rectangle (`width`, `height`), a disc (`diameter`) or a polygon (`vertices`, `edge_labels`)"},
         {"width", quantity(length), must, "across the load; the Brazilian test cuts its own disc of this diameter", rectangle},
         {"height", quantity(length), must, "in the direction of loading", rectangle},
-        {"diameter", quantity(length), must, "diameter of the disc", "with `shape = \"disc\"`"},
+        {"diameter", quantity(length), must, "diameter of the disc", disc},
         {"vertices", pairs_of(quantity(length, any_value), quantity(length, any_value)), must,
          "corners of the outline, x and y each, 3 to 10000; they may run either way round", polygon},
         {"edge_labels", list_of(text()), words("none; needed by tests that press on flat ends"),
@@ -139,12 +156,12 @@ std::vector<JobKey> grains_keys() {
         {"merge_length", quantity(length, not_negative, {"auto", "none"}), usual_word("auto"), "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
         {"triangles_per_grain", integer(0, 10000), usual(spec.triangles_per_grain), "0 for the standard mesh of about 15 triangles, or about so many"},
         {"particles_per_grain", number({7.0, 500.0, true, true, "from 7 to 500"}), usual(usual_particles_per_grain), "inner particles in a grain of mean area",
-         "with `kind = \"inner-particles\"`"},
+         with("model.kind", {GrainKind::inner_particles})},
     };
 }
 
 std::vector<JobKey> diameter_keys() {
-    const char *bounded_kinds = "with `distribution = \"uniform\"`, `\"log-normal\"`", *log_normal = "with `distribution = \"log-normal\"`";
+    const KeyCondition bounded_kinds = with("distribution", {GrainSizeKind::uniform, GrainSizeKind::log_normal}), log_normal = with("distribution", {GrainSizeKind::log_normal});
     return {
         {"distribution", choice(grain_size_kinds), needed, "how diameters are distributed"},
         {"minimum", quantity(length), must, "the smallest", bounded_kinds},
@@ -152,7 +169,7 @@ std::vector<JobKey> diameter_keys() {
         {"median", quantity(length), must, "half of the grains are smaller; between the smallest and the largest", log_normal},
         {"log_standard_deviation", number({0.0, 3.0, false, true, "greater than 0, at most 3"}), must, "standard deviation of the natural logarithm of the diameter", log_normal},
         {"curve", pairs_of(quantity(length), share_of_one(share)), must,
-         "sieves of increasing diameter and the share by mass that passes each, from 0 % to 100 %; it may have flat parts", "with `distribution = \"sieve\"`"},
+         "sieves of increasing diameter and the share by mass that passes each, from 0 % to 100 %; it may have flat parts", with("distribution", {GrainSizeKind::sieve})},
     };
 }
 
@@ -163,7 +180,7 @@ std::vector<JobKey> model_keys() {
          "`\"flexible\"`: grains of elastic triangles; `\"rigid\"`: three degrees of freedom a grain; `\"inner-particles\"`: grains filled with small rigid particles on unbreakable elastic contacts"},
         {"contact", choice(contact_kinds), usual_word(name(spec.contact)), "`\"lobatto3\"`: three points on a grain edge; `\"point\"`: one. Inner particles always have one"},
         {"normal", choice(contact_normals), usual_word(name(spec.normal)), "`\"centres\"`: from centre to centre; `\"edge\"`: that of the Laguerre edge, between inner particles of two grains"},
-        {"plane", choice(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", "of flexible grains"},
+        {"plane", choice(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", {}, false, {}, "of flexible grains"},
     };
 }
 
@@ -178,16 +195,19 @@ std::vector<JobKey> material_keys() {
 
 std::vector<JobKey> grain_keys() {
     const GrainMaterial spec;
+    const KeyCondition flexible = with("model.kind", {GrainKind::flexible});
+    constexpr std::string_view why_not = ": these grains have no elastic constants, they deform by Kn and eta of their contacts";
     return {
-        {"E", quantity(stress), must, "Young's modulus of the grains", "of flexible grains; refused for the others, which have no elastic constants: they deform by `Kn` and `eta`"},
-        {"nu", number(poisson), must, "Poisson's ratio of the grains", "of flexible grains; refused for the others"},
+        {"E", quantity(stress), must, "Young's modulus of the grains; other grains have no elastic constants, they deform by `Kn` and `eta`", flexible, false, why_not},
+        {"nu", number(poisson), must, "Poisson's ratio of the grains", flexible, false, why_not},
         {"density", quantity(density), usual(spec.density_kg_m3), "density of the grains"},
     };
 }
 
 std::vector<JobKey> contact_keys() {
     const ContactMaterial spec;
-    const char* softening = "of laws that soften: every one but `\"brittle\"`, where it is refused";
+    const KeyCondition softening = where("law", contact_laws, [](ContactLaw law) { return law != ContactLaw::brittle; });
+    constexpr std::string_view why_not = ", which does not soften";
     return {
         {"law", choice(contact_laws), usual_word(name(spec.law)), "how a contact softens ([laws](theory/contacts.md))"},
         {"Kn", quantity(stiffness_gradient), must, "normal stiffness per area"},
@@ -196,12 +216,12 @@ std::vector<JobKey> contact_keys() {
         {"sigma_nt", quantity(stress), must, "tensile strength"},
         {"tau", quantity(stress), must, "cohesion"},
         {"mu", number(not_negative), must, "friction coefficient"},
-        {"Gfn", quantity(fracture_energy), must, "fracture energy in tension", softening},
-        {"Gfs", quantity(fracture_energy), must, "fracture energy in shear", softening},
+        {"Gfn", quantity(fracture_energy), must, "fracture energy in tension", softening, false, why_not},
+        {"Gfs", quantity(fracture_energy), must, "fracture energy in shear", softening, false, why_not},
         {"shear_measure", choice(shear_measures), usual_word(name(spec.shear_measure)),
-         "damage counts the whole slip, or with `\"beyond-friction\"` only what friction does not carry", softening},
+         "damage counts the whole slip, or with `\"beyond-friction\"` only what friction does not carry", softening, false, why_not},
         {"tension_unloading", choice(tension_unloadings), usual_word(name(spec.tension_unloading)),
-         "with the initial stiffness, or with `\"secant\"` back to the origin", softening},
+         "with the initial stiffness, or with `\"secant\"` back to the origin", softening, false, why_not},
     };
 }
 
@@ -210,15 +230,15 @@ std::vector<JobKey> numerics_keys() {
     return {
         {"kind", choice(numerics_kinds), usual_word(name(spec.kind)), "`\"adaptive\"`: finds its own loading rate; `\"paper\"`: fixed speed, local damping; `\"dynamic\"`: real masses"},
         {"accuracy", share_of_one(accuracies, "%"), usual(spec.accuracy),
-         "relative accuracy wanted of a strength: the peak is passed again, more slowly, until the estimated error is that", {}, nullptr, adaptive},
+         "relative accuracy wanted of a strength: the peak is passed again, more slowly, until the estimated error is that", numerics_that_are(adaptive)},
         {"residual_target", number({0.0, 0.5, false, true, "greater than 0, at most 0.5"}), words("that of `accuracy`"),
-         "for experts: the target of the unbalanced force itself, in place of `accuracy`", {}, nullptr, adaptive},
+         "for experts: the target of the unbalanced force itself, in place of `accuracy`", numerics_that_are(adaptive)},
         {"damping", number(below_one), usual(spec.damping),
          "alpha of the local damping; with `\"adaptive\"` of what departs from the loading motion ([where it matters](validation/true-strengths.md))"},
         {"speed", quantity(speed_per_step), words(fmt::format("`\"{} m/step\"`; with `\"dynamic\"` it must be given", short_number(kPaperSpeed))),
-         "of the platens: with `\"paper\"` a length per step, with `\"dynamic\"` a speed", {}, nullptr, not_adaptive, false, ", which finds its own speed"},
-        {"mass_factor", number(positive), words("found by the program"), "for experts: multiplies the masses; judged before the run", {}, nullptr, not_dynamic},
-        {"time_step", quantity(Dimension::time), words("found by the program"), "for experts: judged before the run", {}, nullptr, dynamic},
+         "of the platens: with `\"paper\"` a length per step, with `\"dynamic\"` a speed", numerics_that_are(not_adaptive), false, ", which finds its own speed"},
+        {"mass_factor", number(positive), words("found by the program"), "for experts: multiplies the masses; judged before the run", numerics_that_are(not_dynamic)},
+        {"time_step", quantity(Dimension::time), words("found by the program"), "for experts: judged before the run", numerics_that_are(dynamic)},
         {"maximum_steps", integer(1), words("no limit"), "stop there with what there is"},
         {"confirm", flag(), usual(spec.confirm ? 1.0 : 0.0),
          "repeat each test at a third of the target, and once more at another damping, and report both changes of the strength"},
@@ -241,11 +261,11 @@ std::vector<JobKey> test_keys() {
     const TestSpec spec;
     return {
         {"kind", choice(test_kinds), needed, "the method"},
-        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", {}, confined},
-        {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", {}, own_disc},
-        {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press", {}, own_disc},
-        {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad), "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre", {},
-         own_disc},
+        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", methods_that_are(confined)},
+        {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
+        {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press", methods_that_are(own_disc)},
+        {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad), "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre",
+         methods_that_are(own_disc)},
         {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction), "the test ends when the stress has fallen to this fraction of the peak"},
         {"control", choice(load_controls), words("`\"dissipation\"` in compression with adaptive numerics, else `\"displacement\"`"),
          "what the platens keep constant behind the peak, with adaptive numerics: `\"displacement\"`; `\"dissipation\"`: the work of fracture and friction in a travel time of a wave; "
@@ -255,16 +275,15 @@ std::vector<JobKey> test_keys() {
         {"snapshots", integer(0, 1000), usual(spec.snapshots), "fields kept between the first crack and the end"},
         {"seeds", list_of(integer(0)), words("those of the run"), "the packings of this test"},
         {"plates", choice(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
-         "`\"curved\"` for jaws whose arcs embrace the disc ([why](decisions/2026-11-27-brazilian-fixture.md)), or `\"flat\"`", {}, own_disc, nullptr, true},
+         "`\"curved\"` for jaws whose arcs embrace the disc ([why](decisions/2026-11-27-brazilian-fixture.md)), or `\"flat\"`", methods_that_are(own_disc), true},
         {"jaw_radius", number({1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}), usual(spec.jaw_radius),
-         "radius of curved plates, over that of the disc; 1.5 is ISRM's", {}, own_disc, nullptr, true},
-        {"plate_stiffness_factor", number(positive), words(fmt::format("{:g}; curved plates have a `plate_Kn`", spec.plate_stiffness_factor)), "stiffness of plates as a multiple of the contacts' `Kn`", {},
-         nullptr, nullptr, true},
+         "radius of curved plates, over that of the disc; 1.5 is ISRM's", methods_that_are(own_disc), true},
+        {"plate_stiffness_factor", number(positive), words(fmt::format("{:g}; curved plates have a `plate_Kn`", spec.plate_stiffness_factor)), "stiffness of plates as a multiple of the contacts' `Kn`", {}, true},
         {"plate_Kn", quantity(stiffness_gradient), words(usual_plate_Kn()),
-         "stiffness of plates itself, in place of `plate_stiffness_factor`, as of bearing strips or of the tape on curved jaws ([why](validation/brazilian-plates.md))", {}, nullptr, nullptr, true},
-        {"plate_mu", number(not_negative), words(usual_plate_mu()), "friction of plates", {}, not_glued, nullptr, true,
+         "stiffness of plates itself, in place of `plate_stiffness_factor`, as of bearing strips or of the tape on curved jaws ([why](validation/brazilian-plates.md))", {}, true},
+        {"plate_mu", number(not_negative), words(usual_plate_mu()), "friction of plates", methods_that_are(not_glued), true,
          ": its plates are glued on and hold in the normal direction only"},
-        {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it", {}, confined, nullptr, true},
+        {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it", methods_that_are(confined), true},
     };
 }
 
@@ -419,21 +438,21 @@ std::string usual_text(const JobKey& key) {
     return key.usual.toml.empty() ? key.usual.words : key.usual.toml;
 }
 
-std::string kinds_that_take(const JobKey& key) {
-    std::vector<std::string> kinds;
-    if (key.method != nullptr)
-        for (const TestKind kind : test_kinds)
-            if (key.suits(method_of(kind))) kinds.emplace_back(name(kind));
-    if (key.numerics != nullptr)
-        for (const NumericsKind kind : numerics_kinds)
-            if (key.suits(kind)) kinds.emplace_back(name(kind));
-    return kinds.empty() ? "" : "kind = " + quoted(kinds);
+bool KeyCondition::holds(std::string_view word) const { return std::ranges::find(words, word) != words.end(); }
+
+std::string condition_text(const JobKey& key) {
+    if (key.when.key.empty()) return {};
+    const std::size_t dot = key.when.key.rfind('.');
+    return fmt::format("{} = {}", dot == std::string_view::npos ? key.when.key : key.when.key.substr(dot + 1), quoted(key.when.words));
 }
 
 std::string applies_text(const JobKey& key) {
     std::string text = key.applies;
-    const std::string kinds = kinds_that_take(key);
-    if (!kinds.empty()) text += fmt::format("{}with `{}`", text.empty() ? "" : ", ", kinds);
+    if (!key.when.key.empty()) {
+        const std::size_t dot = key.when.key.rfind('.');
+        const std::string table = dot == std::string_view::npos ? "" : fmt::format("[{}] ", key.when.key.substr(0, dot));
+        text += fmt::format("{}with `{}{}`", text.empty() ? "" : ", ", table, condition_text(key));
+    }
     if (key.of_plates) text += text.empty() ? "where plates load the specimen" : ", where plates load the specimen";
     return text;
 }

@@ -46,14 +46,28 @@ struct KeyValue {
     std::string_view unit{};              ///< in which people read it; empty: the usual one of its dimension
 };
 
+enum class KeyNeed {
+    none,
+    where_it_applies,   ///< must be given then, if no preset or table beneath gives it
+    always              ///< no table does without it
+};
+
 /// What holds for a job without the key.
 struct KeyDefault {
-    bool always_needed = false;      ///< no job does without it
+    KeyNeed need = KeyNeed::none;
     std::optional<double> value{};   ///< SI; of numbers and flags
     std::string toml{};              ///< of other values, as it would be written
     std::string words{};             ///< what is no value: "must be given", "found by the program"
 
     bool is_value() const { return value.has_value() || !toml.empty(); }
+};
+
+/// A key applies where another one has one of these words.
+struct KeyCondition {
+    std::string_view key{};             ///< of the same table, or of another: "model.kind"; empty: it applies everywhere
+    std::vector<std::string> words{};
+
+    bool holds(std::string_view word) const;
 };
 
 /// One key.
@@ -62,15 +76,11 @@ struct JobKey {
     KeyValue value;
     KeyDefault usual;
     std::string meaning;                       ///< one sentence in Markdown, without the full stop; links count from docs/
-    std::string applies{};                     ///< where, in words: "of flexible grains"; empty: everywhere. More follows from the next three
-    bool (*method)(const TestMethod&) = nullptr;   ///< of [[test]]: methods that take it; null: all
-    bool (*numerics)(NumericsKind) = nullptr;      ///< of [numerics]: kinds that take it; null: all
-    bool of_plates = false;                        ///< of [[test]]: only where plates load the specimen
-    std::string_view elsewhere{};                  ///< why others do not take it, to be added to "does not apply to kind = ..."
-    std::string_view same_as{};                    ///< another name of this key
-
-    bool suits(const TestMethod& m) const { return method == nullptr || method(m); }
-    bool suits(NumericsKind kind) const { return numerics == nullptr || numerics(kind); }
+    KeyCondition when{};                       ///< where it applies
+    bool of_plates = false;                    ///< of [[test]]: only where plates load the specimen
+    std::string_view elsewhere{};              ///< why it does not apply elsewhere, to be added to "does not apply to kind = ..."
+    std::string applies{};                     ///< in place of the condition: "of flexible grains"
+    std::string_view same_as{};                ///< another name of this key
 };
 
 /// The keys of one table.
@@ -103,8 +113,8 @@ std::string usual_text(const JobKey& key);
 /// Where the key applies, in words that follow "only"; empty: everywhere.
 std::string applies_text(const JobKey& key);
 
-/// "kind = \"biaxial\", \"brazilian\"": the methods, or kinds of numerics, that take the key.
-std::string kinds_that_take(const JobKey& key);
+/// "kind = \"biaxial\", \"brazilian\"": the words under which the key applies; empty: everywhere.
+std::string condition_text(const JobKey& key);
 
 /// Markdown as plain text: links lose their targets, code its marks.
 std::string without_markup(std::string_view markdown);

@@ -161,13 +161,9 @@ GrainMaterial read_grain(const MaterialTables& material, const ReadModel& read) 
     if (!material.grain) return grain;
     const JobTable& table = *material.grain;
     grain.density_kg_m3 = table.quantity("density");
-    if (!flexible) {
-        table.refuse({"E", "nu"}, kind_setting(read.model.kind) + ": these grains have no elastic constants",
-                     "density; the specimen deforms by Kn and eta of its contacts", read.decided_at);
-        return grain;
-    }
     if (!read.known) table.do_not_miss({"E", "nu"});
-    table.require({"E", "nu"});
+    else table.suit("model.kind", name(read.model.kind), read.decided_at);
+    if (!flexible) return grain;
     grain.E_Pa = table.quantity("E");
     Range range = table.rows().key("nu").value.element.range;
     if (read.model.plane == PlaneState::strain) range.words = "greater than -1 and less than 0.5 (at 0.5 the stiffness in plane strain is infinite)";
@@ -202,15 +198,9 @@ ContactMaterial read_contact(const MaterialTables& material) {
     }
     const JobTable& table = *material.contact;
     contact.law = table.choice("law", contact_laws);
-    if (!table.sound({"law"})) table.do_not_miss({"Gfn", "Gfs"});
-    const bool softens = contact.law != ContactLaw::brittle || !table.sound({"law"});
-    if (softens) {
-        table.require({"Kn", "sigma_nt", "tau", "mu", "Gfn", "Gfs"});
-    } else {
-        table.refuse({"Gfn", "Gfs", "shear_measure", "tension_unloading"}, "law = \"brittle\", which does not soften", {},
-                     table.level_of("law"));
-        table.require({"Kn", "sigma_nt", "tau", "mu"});
-    }
+    const bool known = table.sound({"law"}), softens = contact.law != ContactLaw::brittle || !known;
+    if (!known) table.do_not_miss({"Gfn", "Gfs"});
+    table.suit("law", known ? name(contact.law) : "", table.level_of("law"));
     contact.Kn_Pa_m = table.quantity("Kn");
     contact.eta = read_eta(table);
     contact.sigma_nt_Pa = table.quantity("sigma_nt");
@@ -218,14 +208,6 @@ ContactMaterial read_contact(const MaterialTables& material) {
     contact.mu = table.number("mu");
     if (softens) read_softening(table, contact);
     return contact;
-}
-
-void refuse_other_numerics(const JobTable& table, NumericsKind kind) {
-    if (!table.sound({"kind"})) return;
-    for (const JobKey& key : table.rows().keys)
-        if (!key.suits(kind))
-            table.refuse({key.name}, std::string("kind = \"") + name(kind) + "\"" + std::string(key.elsewhere), "only with " + kinds_that_take(key), table.level_of("kind"));
-    if (kind == NumericsKind::dynamic) table.require({"speed"});
 }
 
 void read_accuracy(const JobTable& table, NumericsSpec& numerics) {
@@ -244,7 +226,10 @@ NumericsSpec read_numerics(const std::optional<JobTable>& found) {
     if (!found) return numerics;
     const JobTable& table = *found;
     numerics.kind = table.choice("kind", numerics_kinds);
-    refuse_other_numerics(table, numerics.kind);
+    if (table.sound({"kind"})) {
+        table.suit("kind", name(numerics.kind), table.level_of("kind"));
+        if (numerics.kind == NumericsKind::dynamic) table.require({"speed"});
+    }
     const bool adaptive = numerics.kind == NumericsKind::adaptive, dynamic = numerics.kind == NumericsKind::dynamic;
     if (adaptive) read_accuracy(table, numerics);
     numerics.damping = table.number("damping");

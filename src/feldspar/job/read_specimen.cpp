@@ -15,19 +15,15 @@ constexpr double largest_grain_count = 5e6;  // what fits a large workstation; b
 constexpr std::size_t largest_vertex_count = 10000;
 
 void read_rectangle(const JobTable& table, OutlineSpec& outline) {
-    table.refuse({"diameter", "vertices", "edge_labels"}, "shape = \"rectangle\"", "width, height");
-    table.require({"width", "height"});
     outline.width_m = table.quantity("width");
     outline.height_m = table.quantity("height");
 }
 
 void read_disc(const JobTable& table, OutlineSpec& outline) {
-    table.refuse({"width", "height", "vertices", "edge_labels"}, "shape = \"disc\"", "diameter");
     outline.diameter_m = table.quantity("diameter");
 }
 
 void read_polygon(const JobTable& table, OutlineSpec& outline) {
-    table.refuse({"width", "height", "diameter"}, "shape = \"polygon\"", "vertices, edge_labels");
     table.pairs("vertices", "a point", "points such as [\"0 mm\", \"80 mm\"]", [&](const toml::node& x, const toml::node& y) {
         outline.vertices_m.push_back({table.first_of(x, "vertices"), table.second_of(y, "vertices")});
     });
@@ -59,6 +55,7 @@ OutlineSpec read_outline(const JobTable& table) {
         for (const char* key : {"width", "height", "diameter"}) table.quantity(key, 0.0);
         return outline;
     }
+    table.suit("shape", name(outline.shape));
     switch (outline.shape) {
         case Shape::rectangle:
             read_rectangle(table, outline);
@@ -74,7 +71,6 @@ OutlineSpec read_outline(const JobTable& table) {
 }
 
 void read_sieve(const JobTable& table, GrainSizeSpec& sizes) {
-    table.refuse({"minimum", "maximum", "median", "log_standard_deviation"}, "distribution = \"sieve\"", "curve");
     const std::string allowed = "points such as [\"2 mm\", \"0 %\"], diameters increasing, shares from 0 % to 100 % that never fall";
     table.pairs("curve", "a point of a sieve curve", allowed, [&](const toml::node& diameter, const toml::node& passing) {
         const SievePoint point{table.first_of(diameter, "curve"), table.second_of(passing, "curve")};
@@ -99,16 +95,10 @@ GrainSizeSpec read_grain_sizes(const JobTable& grains) {
         for (const char* key : {"minimum", "maximum", "median"}) table.quantity(key, 0.0);
         return sizes;
     }
+    table.suit("distribution", name(sizes.kind));
     if (sizes.kind == GrainSizeKind::sieve) {
         read_sieve(table, sizes);
         return sizes;
-    }
-    if (sizes.kind == GrainSizeKind::uniform) {
-        table.refuse({"median", "log_standard_deviation", "curve"}, "distribution = \"uniform\"", "minimum, maximum");
-        table.require({"minimum", "maximum"});
-    } else {
-        table.refuse({"curve"}, "distribution = \"log-normal\"", "median, log_standard_deviation, minimum, maximum");
-        table.require({"median", "log_standard_deviation", "minimum", "maximum"});
     }
     sizes.minimum_m = table.quantity("minimum");
     sizes.maximum_m = table.quantity("maximum");
@@ -217,7 +207,7 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     else if (*filled)
         spec.particles_per_grain = grains.number("particles_per_grain");
     else
-        grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with kind = \"inner-particles\"");
+        grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with " + condition_text(grains.rows().key("particles_per_grain")));
     if (table.sound({"shape", "width", "height", "diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
     read_merge_length(grains, spec);
 

@@ -121,16 +121,12 @@ LoadControl read_control(const JobTable& table, TestKind kind, const std::vector
     return control;
 }
 
-// Keys that are other methods', and those of plates where none load the specimen.
-void refuse_foreign_keys(const JobTable& table, const TestMethod& method, bool plates) {
-    const std::string setting = "kind = \"" + std::string(name(method.kind)) + "\"";
-    for (const JobKey& key : table.rows().keys) {
-        if (!key.suits(method)) {
-            table.refuse({key.name}, setting + std::string(key.elsewhere), "only with " + kinds_that_take(key));
-        } else if (key.of_plates && !plates) {
-            table.refuse({key.name}, setting + " of flexible grains", "only with " + kinds_that_take(table.rows().key("plates")) + ", or with rigid grains or inner particles, which are loaded by plates");
-        }
-    }
+// Keys of plates where none load the specimen. Those that are another method's are refused already.
+void refuse_plates(const JobTable& table, const TestMethod& method) {
+    for (const JobKey& key : table.rows().keys)
+        if (key.of_plates && (key.when.key.empty() || key.when.holds(name(method.kind))))
+            table.refuse({key.name}, "kind = \"" + std::string(name(method.kind)) + "\" of flexible grains",
+                         "only with " + condition_text(table.rows().key("plates")) + ", or with rigid grains or inner particles, which are loaded by plates");
 }
 
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
@@ -162,7 +158,8 @@ struct ReadTest {
 ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants, const Known& known) {
     const TestMethod& method = method_of(table.choice("kind", test_kinds));
     const bool kind_known = table.sound({"kind"}), own_disc = method.specimen.own_disc;
-    if (kind_known) refuse_foreign_keys(table, method, own_disc || !known.kinds || has_particles(method.kind, variants));
+    if (kind_known) table.suit("kind", name(method.kind));
+    if (kind_known && known.kinds && !own_disc && !has_particles(method.kind, variants)) refuse_plates(table, method);
     const bool flattened = kind_known && own_disc && is_flattened(table);
     TestSpec test = usual_test(method.kind, flattened);
     if (known.outline) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });

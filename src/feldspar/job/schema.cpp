@@ -103,7 +103,7 @@ Json object_of(const KeyTable& table) {
     Json properties = Json::object(), needed = Json::array();
     for (const JobKey& key : table.keys) {
         properties[std::string(key.name)] = property_of(key);
-        if (key.usual.always_needed) needed.push_back(key.name);
+        if (key.usual.need == KeyNeed::always) needed.push_back(key.name);
     }
     Json object{{"type", "object"}, {"description", sentence(table.meaning)}, {"properties", std::move(properties)}, {"additionalProperties", false}};
     if (!needed.empty()) object["required"] = std::move(needed);

@@ -92,7 +92,8 @@ public:
     Mistakes* mistakes() const { return mistakes_; }
 
     /// Every one of `keys` must be there: a mistake that names those that are missing.
-    void require(std::initializer_list<std::string_view> keys) const;
+    void require(std::span<const std::string_view> keys) const;
+    void require(std::initializer_list<std::string_view> keys) const { require(std::span(keys.begin(), keys.size())); }
     /// A mistake for each of `keys` that is given; `setting` is what it contradicts ("shape = \"disc\""). A key from a table
     /// below the one that made the setting (`decided_at`) is not a mistake: the setting has put it aside.
     void refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed = {},

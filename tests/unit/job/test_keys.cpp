@@ -142,8 +142,9 @@ TEST(Keys, OfATestSayWhichMethodsTakeThem) {
     EXPECT_EQ(applies_text(job_key("test", "sigma3")), "with `kind = \"biaxial\"`");
     EXPECT_EQ(applies_text(job_key("test", "flat_angle")), "with `kind = \"brazilian\"`");
     EXPECT_EQ(applies_text(job_key("test", "stop_fraction")), "");
-    EXPECT_TRUE(job_key("test", "plate_mu").suits(methods::biaxial));
-    EXPECT_FALSE(job_key("test", "plate_mu").suits(methods::direct_tension));
+    EXPECT_TRUE(job_key("test", "plate_mu").when.holds("biaxial"));
+    EXPECT_FALSE(job_key("test", "plate_mu").when.holds("direct-tension"));
+    EXPECT_EQ(applies_text(job_key("material.grain", "E")), "with `[model] kind = \"flexible\"`");
 }
 
 TEST(Schema, HasEveryKeyOfEveryTable) {
