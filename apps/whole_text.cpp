@@ -19,11 +19,10 @@ void write_whole(const std::string& text, const std::string& path, const std::st
     std::FILE* file = std::fopen(path.c_str(), "wx");  // x: never an existing file
     if (file == nullptr) {
         const bool exists = errno == EEXIST;
-        throw InputError({{}, 0, 0, option},
-                         fmt::format("'{}' {}", path,
-                                     exists ? "exists already and is not overwritten"
-                                            : fmt::format("cannot be made: {}", std::strerror(errno))),
-                         "the name of a new file in a directory that exists");
+        throw InputError(
+            {{}, 0, 0, option},
+            fmt::format("'{}' {}", path, exists ? "exists already and is not overwritten" : fmt::format("cannot be made: {}", std::strerror(errno))),
+            "the name of a new file in a directory that exists");
     }
     bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();
     whole = std::fclose(file) == 0 && whole;

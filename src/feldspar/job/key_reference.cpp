@@ -27,7 +27,8 @@ std::string allowed_cell(const JobKey& key) {
 }  // namespace
 
 std::string key_reference(const KeyTable& table) {
-    std::string text = table.path.empty() ? "| key | meaning | allowed | default |\n" : fmt::format("| key of `{}` | meaning | allowed | default |\n", table.head);
+    std::string text =
+        table.path.empty() ? "| key | meaning | allowed | default |\n" : fmt::format("| key of `{}` | meaning | allowed | default |\n", table.head);
     text += "|---|---|---|---|\n";
     for (const JobKey& key : table.keys) {
         const std::string applies = applies_text(key), usual = usual_text(key);
@@ -39,7 +40,9 @@ std::string key_reference(const KeyTable& table) {
 
 std::string key_reference() {
     std::string text = "# Keys of job files\n";
-    for (const KeyTable& table : job_tables()) text += fmt::format("\n## {}: {}\n\n{}", table.head, table.meaning, key_reference(table));
+    for (const KeyTable& table : job_tables())
+        text += fmt::format("\n## {}\n\n{}", table.path.empty() ? "The file" : fmt::format("{}: {}", table.head, without_markup(table.meaning)),
+                            key_reference(table));
     return text;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <regex>
 #include <stdexcept>
 #include <utility>
 
@@ -20,7 +21,7 @@ using enum Dimension;
 
 constexpr double infinite = std::numeric_limits<double>::infinity(), degree = std::numbers::pi / 180.0;
 
-constexpr double usual_particles_per_grain = 26.36;   // 42966 in 1630 grains, as in the paper
+constexpr double usual_particles_per_grain = 26.36;  // 42966 in 1630 grains, as in the paper
 constexpr double usual_flat_angle_rad = 20.0 * degree;
 
 constexpr Range below_one{0.0, 1.0, true, false, "0 or greater and less than 1"};
@@ -64,7 +65,8 @@ KeyValue one_or_list_of(KeyValue value) { return {std::move(value.element), Valu
 KeyValue pairs_of(KeyValue first, KeyValue second) { return {std::move(first.element), ValueShape::pairs, std::move(second.element)}; }
 
 // What holds without it.
-const KeyDefault needed{.need = KeyNeed::always, .words = "must be given"}, must{.need = KeyNeed::where_it_applies, .words = "must be given"}, none{.words = "none"};
+const KeyDefault needed{.need = KeyNeed::always, .words = "must be given"}, must{.need = KeyNeed::where_it_applies, .words = "must be given"},
+    none{.words = "none"};
 KeyDefault words(std::string text) { return {.words = std::move(text)}; }
 KeyDefault usual(double value) { return {.value = value}; }
 KeyDefault usual_word(std::string_view word) { return {.toml = fmt::format("\"{}\"", word)}; }
@@ -140,10 +142,12 @@ std::vector<JobKey> specimen_keys() {
         {"vertices", pairs_of(quantity(length, any_value), quantity(length, any_value)), must,
          "corners of the outline, x and y each, 3 to 10000; they may run either way round", polygon},
         {"edge_labels", list_of(text()), words("none; needed by tests that press on flat ends"),
-         "one label an edge, edge i from vertex i to vertex i + 1: `\"top\"` on the upper end and `\"bottom\"` on the lower one, both within 10 degrees of horizontal; the load acts along y",
+         "one label an edge, edge i from vertex i to vertex i + 1: `\"top\"` on the upper end and `\"bottom\"` on the lower one, both within 10 degrees of "
+         "horizontal; the load acts along y",
          polygon},
         {"thickness", quantity(length), usual(spec.thickness_m), "out of plane; scales forces, not stresses"},
-        {"packing", text("a packing saved by an earlier run, its path relative to the job file"), words("a new one for each seed"), "a packing that is loaded instead of made"},
+        {"packing", text("a packing saved by an earlier run, its path relative to the job file"), words("a new one for each seed"),
+         "a packing that is loaded instead of made"},
         {"grains", table("specimen.grains"), needed, "sizes of the grains and what is in them"},
     };
 }
@@ -151,9 +155,11 @@ std::vector<JobKey> specimen_keys() {
 std::vector<JobKey> grains_keys() {
     const SpecimenSpec spec;
     return {
-        {"diameter", table("specimen.grains.diameter"), needed, "the distribution of diameters; of discs, which the cells exceed ([by how much](theory/specimen.md))"},
+        {"diameter", table("specimen.grains.diameter"), needed,
+         "the distribution of diameters; of discs, which the cells exceed ([by how much](theory/specimen.md))"},
         {"porosity", number(below_one), usual(spec.porosity), "sets the number of grains only: the grains fill the plane"},
-        {"merge_length", quantity(length, not_negative, {"auto", "none"}), usual_word("auto"), "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
+        {"merge_length", quantity(length, not_negative, {"auto", "none"}), usual_word("auto"),
+         "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
         {"triangles_per_grain", integer(0, 10000), usual(spec.triangles_per_grain), "0 for the standard mesh of about 15 triangles, or about so many"},
         {"particles_per_grain", number({7.0, 500.0, true, true, "from 7 to 500"}), usual(usual_particles_per_grain), "inner particles in a grain of mean area",
          with("model.kind", {GrainKind::inner_particles})},
@@ -161,15 +167,18 @@ std::vector<JobKey> grains_keys() {
 }
 
 std::vector<JobKey> diameter_keys() {
-    const KeyCondition bounded_kinds = with("distribution", {GrainSizeKind::uniform, GrainSizeKind::log_normal}), log_normal = with("distribution", {GrainSizeKind::log_normal});
+    const KeyCondition bounded_kinds = with("distribution", {GrainSizeKind::uniform, GrainSizeKind::log_normal}),
+                       log_normal = with("distribution", {GrainSizeKind::log_normal});
     return {
         {"distribution", choice(grain_size_kinds), needed, "how diameters are distributed"},
         {"minimum", quantity(length), must, "the smallest", bounded_kinds},
         {"maximum", quantity(length), must, "the largest", bounded_kinds},
-        {"median", quantity(length), must, "half of the grains are smaller; between the smallest and the largest", log_normal},
-        {"log_standard_deviation", number({0.0, 3.0, false, true, "greater than 0, at most 3"}), must, "standard deviation of the natural logarithm of the diameter", log_normal},
+        {"median", quantity(length), must, "the median, between the smallest and the largest", log_normal},
+        {"log_standard_deviation", number({0.0, 3.0, false, true, "greater than 0, at most 3"}), must,
+         "standard deviation of the natural logarithm of the diameter", log_normal},
         {"curve", pairs_of(quantity(length), share_of_one(share)), must,
-         "sieves of increasing diameter and the share by mass that passes each, from 0 % to 100 %; it may have flat parts", with("distribution", {GrainSizeKind::sieve})},
+         "sieves of increasing diameter and the share by mass that passes each, from 0 % to 100 %; it may have flat parts",
+         with("distribution", {GrainSizeKind::sieve})},
     };
 }
 
@@ -177,9 +186,12 @@ std::vector<JobKey> model_keys() {
     const ModelSpec spec;
     return {
         {"kind", choice(grain_kinds), usual_word(name(spec.kind)),
-         "`\"flexible\"`: grains of elastic triangles; `\"rigid\"`: three degrees of freedom a grain; `\"inner-particles\"`: grains filled with small rigid particles on unbreakable elastic contacts"},
-        {"contact", choice(contact_kinds), usual_word(name(spec.contact)), "`\"lobatto3\"`: three points on a grain edge; `\"point\"`: one. Inner particles always have one"},
-        {"normal", choice(contact_normals), usual_word(name(spec.normal)), "`\"centres\"`: from centre to centre; `\"edge\"`: that of the Laguerre edge, between inner particles of two grains"},
+         "`\"flexible\"`: grains of elastic triangles; `\"rigid\"`: three degrees of freedom a grain; `\"inner-particles\"`: grains filled with small rigid "
+         "particles on unbreakable elastic contacts"},
+        {"contact", choice(contact_kinds), usual_word(name(spec.contact)),
+         "`\"lobatto3\"`: three points on a grain edge; `\"point\"`: one. Inner particles always have one"},
+        {"normal", choice(contact_normals), usual_word(name(spec.normal)),
+         "`\"centres\"`: from centre to centre; `\"edge\"`: that of the Laguerre edge, between inner particles of two grains"},
         {"plane", choice(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", {}, false, {}, "of flexible grains"},
     };
 }
@@ -198,7 +210,8 @@ std::vector<JobKey> grain_keys() {
     const KeyCondition flexible = with("model.kind", {GrainKind::flexible});
     constexpr std::string_view why_not = ": these grains have no elastic constants, they deform by Kn and eta of their contacts";
     return {
-        {"E", quantity(stress), must, "Young's modulus of the grains; other grains have no elastic constants, they deform by `Kn` and `eta`", flexible, false, why_not},
+        {"E", quantity(stress), must, "Young's modulus of the grains; other grains have no elastic constants, they deform by `Kn` and `eta`", flexible, false,
+         why_not},
         {"nu", number(poisson), must, "Poisson's ratio of the grains", flexible, false, why_not},
         {"density", quantity(density), usual(spec.density_kg_m3), "density of the grains"},
     };
@@ -228,7 +241,8 @@ std::vector<JobKey> contact_keys() {
 std::vector<JobKey> numerics_keys() {
     const NumericsSpec spec;
     return {
-        {"kind", choice(numerics_kinds), usual_word(name(spec.kind)), "`\"adaptive\"`: finds its own loading rate; `\"paper\"`: fixed speed, local damping; `\"dynamic\"`: real masses"},
+        {"kind", choice(numerics_kinds), usual_word(name(spec.kind)),
+         "`\"adaptive\"`: finds its own loading rate; `\"paper\"`: fixed speed, local damping; `\"dynamic\"`: real masses"},
         {"accuracy", share_of_one(accuracies, "%"), usual(spec.accuracy),
          "relative accuracy wanted of a strength: the peak is passed again, more slowly, until the estimated error is that", numerics_that_are(adaptive)},
         {"residual_target", number({0.0, 0.5, false, true, "greater than 0, at most 0.5"}), words("that of `accuracy`"),
@@ -236,8 +250,10 @@ std::vector<JobKey> numerics_keys() {
         {"damping", number(below_one), usual(spec.damping),
          "alpha of the local damping; with `\"adaptive\"` of what departs from the loading motion ([where it matters](validation/true-strengths.md))"},
         {"speed", quantity(speed_per_step), words(fmt::format("`\"{} m/step\"`; with `\"dynamic\"` it must be given", short_number(kPaperSpeed))),
-         "of the platens: with `\"paper\"` a length per step, with `\"dynamic\"` a speed", numerics_that_are(not_adaptive), false, ", which finds its own speed"},
-        {"mass_factor", number(positive), words("found by the program"), "for experts: multiplies the masses; judged before the run", numerics_that_are(not_dynamic)},
+         "of the platens: with `\"paper\"` a length per step, with `\"dynamic\"` a speed", numerics_that_are(not_adaptive), false,
+         ", which finds its own speed"},
+        {"mass_factor", number(positive), words("found by the program"), "for experts: multiplies the masses; judged before the run",
+         numerics_that_are(not_dynamic)},
         {"time_step", quantity(Dimension::time), words("found by the program"), "for experts: judged before the run", numerics_that_are(dynamic)},
         {"maximum_steps", integer(1), words("no limit"), "stop there with what there is"},
         {"confirm", flag(), usual(spec.confirm ? 1.0 : 0.0),
@@ -263,27 +279,42 @@ std::vector<JobKey> test_keys() {
         {"kind", choice(test_kinds), needed, "the method"},
         {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", methods_that_are(confined)},
         {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
-        {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press", methods_that_are(own_disc)},
-        {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad), "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre",
+        {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
          methods_that_are(own_disc)},
+        {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad),
+         "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre", methods_that_are(own_disc)},
         {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction), "the test ends when the stress has fallen to this fraction of the peak"},
         {"control", choice(load_controls), words("`\"dissipation\"` in compression with adaptive numerics, else `\"displacement\"`"),
-         "what the platens keep constant behind the peak, with adaptive numerics: `\"displacement\"`; `\"dissipation\"`: the work of fracture and friction in a travel time of a wave; "
+         "what the platens keep constant behind the peak, with adaptive numerics: `\"displacement\"`; `\"dissipation\"`: the work of fracture and friction in "
+         "a travel time of a wave; "
          "`\"lateral-strain\"`: the growth of the lateral strain, in compression ([theory](theory/loading.md)). The strength is the same"},
         {"maximum_strain", share_of_one(inside_one), usual(spec.maximum_strain), "the test ends at this axial strain at the latest"},
-        {"maximum_stress", quantity(stress), none, "the test ends at this stress at the latest (under confinement: sigma1), and its strength is then a lower bound"},
+        {"maximum_stress", quantity(stress), none,
+         "the test ends at this stress at the latest (under confinement: sigma1), and its strength is then a lower bound"},
         {"snapshots", integer(0, 1000), usual(spec.snapshots), "fields kept between the first crack and the end"},
         {"seeds", list_of(integer(0)), words("those of the run"), "the packings of this test"},
         {"plates", choice(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
-         "`\"curved\"` for jaws whose arcs embrace the disc ([why](decisions/2026-11-27-brazilian-fixture.md)), or `\"flat\"`", methods_that_are(own_disc), true},
+         "`\"curved\"` for jaws whose arcs embrace the disc ([why](decisions/2026-11-27-brazilian-fixture.md)), or `\"flat\"`", methods_that_are(own_disc),
+         true},
         {"jaw_radius", number({1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}), usual(spec.jaw_radius),
          "radius of curved plates, over that of the disc; 1.5 is ISRM's", methods_that_are(own_disc), true},
-        {"plate_stiffness_factor", number(positive), words(fmt::format("{:g}; curved plates have a `plate_Kn`", spec.plate_stiffness_factor)), "stiffness of plates as a multiple of the contacts' `Kn`", {}, true},
-        {"plate_Kn", quantity(stiffness_gradient), words(usual_plate_Kn()),
-         "stiffness of plates itself, in place of `plate_stiffness_factor`, as of bearing strips or of the tape on curved jaws ([why](validation/brazilian-plates.md))", {}, true},
+        {"plate_stiffness_factor",
+         number(positive),
+         words(fmt::format("{:g}; curved plates have a `plate_Kn`", spec.plate_stiffness_factor)),
+         "stiffness of plates as a multiple of the contacts' `Kn`",
+         {},
+         true},
+        {"plate_Kn",
+         quantity(stiffness_gradient),
+         words(usual_plate_Kn()),
+         "stiffness of plates itself, in place of `plate_stiffness_factor`, as of bearing strips or of the tape on curved jaws "
+         "([why](validation/brazilian-plates.md))",
+         {},
+         true},
         {"plate_mu", number(not_negative), words(usual_plate_mu()), "friction of plates", methods_that_are(not_glued), true,
          ": its plates are glued on and hold in the normal direction only"},
-        {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it", methods_that_are(confined), true},
+        {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it",
+         methods_that_are(confined), true},
     };
 }
 
@@ -292,7 +323,8 @@ std::vector<JobKey> run_keys() {
         {"seeds", list_of(integer(0)), {.toml = "[1]"}, "one packing each"},
         {"seed", integer(0), words("1"), "in place of `seeds`: a single packing"},
         {"threads", integer(1, 256, {"auto"}), usual_word("auto"), "of the whole program; `\"auto\"`: one for each core that it may use"},
-        {"at_once", integer(1, 256, {"auto"}), usual_word("auto"), "at most so many tests side by side, never more than threads; `\"auto\"`: as suits their size"},
+        {"at_once", integer(1, 256, {"auto"}), usual_word("auto"),
+         "at most so many tests side by side, never more than threads; `\"auto\"`: as suits their size"},
     };
 }
 
@@ -317,26 +349,33 @@ std::vector<JobKey> laboratory_keys() {
                 keys.push_back(std::move(same));
             }
     }
-    keys.push_back({"confined", pairs_of(quantity(stress), quantity(stress)), none, "strengths under confinement: pairs of \u03c3\u2083 and \u03c3\u2081, shown beside envelopes"});
+    keys.push_back({"confined", pairs_of(quantity(stress), quantity(stress)), none,
+                    "strengths under confinement: pairs of \u03c3\u2083 and \u03c3\u2081, shown beside envelopes"});
     return keys;
 }
 
 std::vector<KeyTable> all_tables() {
-    return {
-        {"specimen", "[specimen]", "the specimen", specimen_keys()},
-        {"specimen.grains", "[specimen.grains]", "sizes of the grains and what is in them", grains_keys()},
-        {"specimen.grains.diameter", "[specimen.grains] diameter", "the distribution of diameters", diameter_keys()},
-        {"model", "[model]", "how grains and contacts are modelled", model_keys()},
-        {"material", "[material]", "the rock", material_keys()},
-        {"material.grain", "[material.grain]", "the grains", grain_keys()},
-        {"material.contact", "[material.contact]", "the contacts between grains", contact_keys()},
-        {"numerics", "[numerics]", "how a test is loaded and how accurate its strength is to be", numerics_keys()},
-        {"variant", "[[variant]]", "one model of the packings", variant_keys()},
-        {"test", "[[test]]", "a test, on every packing", test_keys()},
-        {"", "the file", "a job", file_keys()},
-        {"run", "[run]", "packings and threads", run_keys()},
-        {"laboratory", "[laboratory]", "what a laboratory measured, shown beside the results", laboratory_keys()},
+    std::vector<KeyTable> tables{
+        {"", "the file", file_keys()},
+        {"specimen", "[specimen]", specimen_keys()},
+        {"specimen.grains", "[specimen.grains]", grains_keys()},
+        {"specimen.grains.diameter", "[specimen.grains] diameter", diameter_keys()},
+        {"model", "[model]", model_keys()},
+        {"material", "[material]", material_keys()},
+        {"material.grain", "[material.grain]", grain_keys()},
+        {"material.contact", "[material.contact]", contact_keys()},
+        {"numerics", "[numerics]", numerics_keys()},
+        {"variant", "[[variant]]", variant_keys()},
+        {"test", "[[test]]", test_keys()},
+        {"run", "[run]", run_keys()},
+        {"laboratory", "[laboratory]", laboratory_keys()},
     };
+    // a table means what the first key means behind which it stands
+    for (KeyTable& table : tables)
+        for (const KeyTable& outer : tables)
+            for (const JobKey& key : outer.keys)
+                if (key.value.element.form == ValueForm::table && key.value.element.table == table.path && table.meaning.empty()) table.meaning = key.meaning;
+    return tables;
 }
 
 // Words that stand in quotes in a file.
@@ -457,7 +496,9 @@ std::string applies_text(const JobKey& key) {
     return text;
 }
 
-std::string without_markup(std::string_view markdown) {
+std::string without_markup(std::string_view marked) {
+    static const std::regex link_in_brackets(R"( ?\(\[[^\]]*\]\([^)]*\)\))");
+    const std::string markdown = std::regex_replace(std::string(marked), link_in_brackets, "");
     std::string text;
     bool code = false;
     for (std::size_t i = 0; i < markdown.size(); ++i) {
@@ -466,7 +507,7 @@ std::string without_markup(std::string_view markdown) {
             code = !code;
         } else if (code || (c != '[' && c != ']')) {
             text += c;
-        } else if (markdown.substr(i, 2) == "](") {
+        } else if (markdown.compare(i, 2, "](") == 0) {
             i = std::min(markdown.find(')', i), markdown.size());
         }
     }

@@ -77,7 +77,8 @@ Json type_of(const KeyValue& value) {
 }
 
 std::string sentence(std::string text) {
-    if (!text.empty() && text.front() >= 'a' && text.front() <= 'z' && (text.size() < 2 || text[1] < 'A' || text[1] > 'Z')) text.front() = static_cast<char>(text.front() - 'a' + 'A');
+    if (!text.empty() && text.front() >= 'a' && text.front() <= 'z' && (text.size() < 2 || text[1] < 'A' || text[1] > 'Z'))
+        text.front() = static_cast<char>(text.front() - 'a' + 'A');
     return text + ".";
 }
 
@@ -94,7 +95,7 @@ std::string description_of(const JobKey& key) {
 Json property_of(const JobKey& key) {
     const std::string description = description_of(key);
     Json property = type_of(key.value);
-    if (property.contains("$ref")) property = {{"allOf", Json::array({property})}};   // what stands beside a reference is not read
+    if (property.contains("$ref")) property = {{"allOf", Json::array({property})}};  // what stands beside a reference is not read
     property["description"] = description;
     return property;
 }
@@ -105,7 +106,8 @@ Json object_of(const KeyTable& table) {
         properties[std::string(key.name)] = property_of(key);
         if (key.usual.need == KeyNeed::always) needed.push_back(key.name);
     }
-    Json object{{"type", "object"}, {"description", sentence(table.meaning)}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+    Json object{
+        {"type", "object"}, {"description", sentence(without_markup(table.meaning))}, {"properties", std::move(properties)}, {"additionalProperties", false}};
     if (!needed.empty()) object["required"] = std::move(needed);
     return object;
 }

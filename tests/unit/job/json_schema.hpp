@@ -36,9 +36,27 @@ private:
     }
 
     void check(const Json& schema, const Json& value, const std::string& place, std::vector<std::string>& found) const {
-        static const std::set<std::string> known{"$schema",  "$ref",     "title",     "description", "definitions", "type",  "properties", "additionalProperties",
-                                                 "required", "items",    "minItems",  "additionalItems", "enum",    "pattern", "minLength", "minimum",
-                                                 "maximum",  "exclusiveMinimum", "exclusiveMaximum", "anyOf", "allOf"};
+        static const std::set<std::string> known{"$schema",
+                                                 "$ref",
+                                                 "title",
+                                                 "description",
+                                                 "definitions",
+                                                 "type",
+                                                 "properties",
+                                                 "additionalProperties",
+                                                 "required",
+                                                 "items",
+                                                 "minItems",
+                                                 "additionalItems",
+                                                 "enum",
+                                                 "pattern",
+                                                 "minLength",
+                                                 "minimum",
+                                                 "maximum",
+                                                 "exclusiveMinimum",
+                                                 "exclusiveMaximum",
+                                                 "anyOf",
+                                                 "allOf"};
         for (const auto& [word, meaning] : schema.items())
             if (!known.contains(word)) throw std::logic_error("unknown word " + word);
         const auto fault = [&](const std::string& what) { found.push_back((place.empty() ? "the file" : place) + ": " + what); };
@@ -61,13 +79,16 @@ private:
         if (schema.contains("type") && !is_type(value, schema["type"])) return fault("is no " + schema["type"].get<std::string>());
         if (schema.contains("enum") && std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end()) fault("is not one of the words");
         if (value.is_string()) {
-            if (schema.contains("pattern") && !std::regex_search(value.get<std::string>(), std::regex(schema["pattern"].get<std::string>()))) fault("does not fit the pattern");
+            if (schema.contains("pattern") && !std::regex_search(value.get<std::string>(), std::regex(schema["pattern"].get<std::string>())))
+                fault("does not fit the pattern");
             if (value.get<std::string>().size() < schema.value("minLength", 0u)) fault("is too short");
         }
         if (value.is_number()) {
             const double number = value.get<double>();
-            if (schema.contains("minimum") && (schema.value("exclusiveMinimum", false) ? number <= schema["minimum"] : number < schema["minimum"])) fault("is too small");
-            if (schema.contains("maximum") && (schema.value("exclusiveMaximum", false) ? number >= schema["maximum"] : number > schema["maximum"])) fault("is too large");
+            if (schema.contains("minimum") && (schema.value("exclusiveMinimum", false) ? number <= schema["minimum"] : number < schema["minimum"]))
+                fault("is too small");
+            if (schema.contains("maximum") && (schema.value("exclusiveMaximum", false) ? number >= schema["maximum"] : number > schema["maximum"]))
+                fault("is too large");
         }
         if (value.is_array()) check_array(schema, value, place, found);
         if (value.is_object()) check_object(schema, value, place, found);
@@ -79,9 +100,12 @@ private:
         const Json& items = schema["items"];
         for (std::size_t i = 0; i < value.size(); ++i) {
             const std::string at = place + "[" + std::to_string(i + 1) + "]";
-            if (items.is_object()) check(items, value[i], at, found);
-            else if (i < items.size()) check(items[i], value[i], at, found);
-            else if (!schema.value("additionalItems", true)) found.push_back(at + ": is too many");
+            if (items.is_object())
+                check(items, value[i], at, found);
+            else if (i < items.size())
+                check(items[i], value[i], at, found);
+            else if (!schema.value("additionalItems", true))
+                found.push_back(at + ": is too many");
         }
     }
 
@@ -90,8 +114,10 @@ private:
             if (!value.contains(key)) found.push_back(place + ": lacks " + key.get<std::string>());
         if (!schema.contains("properties")) return;
         for (const auto& [key, inside] : value.items()) {
-            if (schema["properties"].contains(key)) check(schema["properties"][key], inside, place.empty() ? key : place + "." + key, found);
-            else if (!schema.value("additionalProperties", true)) found.push_back(place + ": unknown key " + key);
+            if (schema["properties"].contains(key))
+                check(schema["properties"][key], inside, place.empty() ? key : place + "." + key, found);
+            else if (!schema.value("additionalProperties", true))
+                found.push_back(place + ": unknown key " + key);
         }
     }
 

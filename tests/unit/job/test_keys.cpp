@@ -93,7 +93,7 @@ TEST(Keys, DefaultsOfTheRowsAreThoseOfAJobThatSaysNothing) {
                 try {
                     EXPECT_EQ(resolved_toml(read_tree(with, base, "job")), resolved_toml(read_tree(without, base, "job"))) << table.head << " " << key.name;
                     shown = true;
-                } catch (const InputError&) {   // this job has no such key
+                } catch (const InputError&) {  // this job has no such key
                 }
             }
             EXPECT_TRUE(shown) << table.head << " " << key.name << " = " << usual_text(key) << " is taken by none of the jobs";
@@ -115,7 +115,8 @@ TEST(Keys, AReaderTellsTheKeysOfItsRows) {
             ADD_FAILURE() << table.head << " takes any key";
         } catch (const InputError& error) {
             bool told = false;
-            for (const InputError& mistake : each_mistake(error)) told = told || (mistake.problem() == "unknown key" && mistake.allowed() == listed(table.names()));
+            for (const InputError& mistake : each_mistake(error))
+                told = told || (mistake.problem() == "unknown key" && mistake.allowed() == listed(table.names()));
             EXPECT_TRUE(told) << table.head << ": " << error.what();
         }
     }
@@ -145,6 +146,11 @@ TEST(Keys, OfATestSayWhichMethodsTakeThem) {
     EXPECT_TRUE(job_key("test", "plate_mu").when.holds("biaxial"));
     EXPECT_FALSE(job_key("test", "plate_mu").when.holds("direct-tension"));
     EXPECT_EQ(applies_text(job_key("material.grain", "E")), "with `[model] kind = \"flexible\"`");
+}
+
+TEST(Keys, AreToldWithoutMarkup) {
+    EXPECT_EQ(without_markup("of `[run] seeds` ([why](a.md)), see [laws](theory/b.md)"), "of [run] seeds, see laws");
+    EXPECT_EQ(without_markup("plain, 2 (of 3)"), "plain, 2 (of 3)");
 }
 
 TEST(Schema, HasEveryKeyOfEveryTable) {
@@ -216,7 +222,8 @@ TEST(JobReference, HasTheTablesOfTheRows) {
         EXPECT_TRUE(text == wanted) << "the tables of docs/job.md are not those of src/feldspar/job/keys.cpp. To write them anew:\n"
                                        "    FELDSPAR_RECORD=1 build/release/test_job --gtest_filter='JobReference.*'";
     }
-    for (const KeyTable& table : job_tables()) EXPECT_NE(wanted.find(key_reference(table)), std::string::npos) << "docs/job.md has no place for the keys of " << table.head;
+    for (const KeyTable& table : job_tables())
+        EXPECT_NE(wanted.find(key_reference(table)), std::string::npos) << "docs/job.md has no place for the keys of " << table.head;
 }
 
 TEST(JobReference, RefusesMarksWithoutATableOrAnEnd) {
