@@ -104,6 +104,9 @@ const KeyTable& job_table(std::string_view path);
 /// Short for job_table(path).key(name).
 const JobKey& job_key(std::string_view path, std::string_view name);
 
+/// A value as it is written in a file, in the unit in which people read it: "\"80 mm\"", 0.1, true.
+std::string as_written(const KeyValue& value, double si);
+
 /// What may stand behind a key, in words: "a length, greater than zero", "\"curved\", \"flat\"".
 std::string allowed(const JobKey& key);
 
