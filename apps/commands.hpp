@@ -136,6 +136,9 @@ ExitCode new_command(const std::string& kind, const std::optional<std::string>& 
 /// Prints the materials that jobs may name.
 ExitCode presets_command();
 
+/// Prints the keys of jobs as a JSON Schema, or as tables in Markdown, or writes them to a new file.
+ExitCode schema_command(bool markdown, const std::optional<std::string>& out);
+
 /// Reads the job and applies the command line to it.
 Job job_with_options(const JobOptions& options);
 

@@ -298,12 +298,25 @@ void add_new(CommandLine& line) {
     });
 }
 
+struct SchemaOptions {
+    std::optional<std::string> file;
+    bool markdown = false;
+};
+
+void add_schema(CommandLine& line) {
+    const auto options = std::make_shared<SchemaOptions>();
+    CLI::App& command = line.add("schema", "print every key of job files as a JSON Schema, by which editors complete and check them (docs/job.md)");
+    command.add_flag("--markdown", options->markdown, "as tables to be read instead");
+    command.add_option("--out", options->file, "write it to this new file instead")->type_name("FILE");
+    line.does(command, [options] { return schema_command(options->markdown, options->file); });
+}
+
 }  // namespace
 }  // namespace feldspar
 
 int main(int argc, char** argv) {
     using namespace feldspar;
     CommandLine line(joined(argc, argv));
-    for (auto* add : {add_run, add_check, add_new, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
+    for (auto* add : {add_run, add_check, add_new, add_schema, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
     return line.run(argc, argv);
 }

@@ -12,7 +12,7 @@ TEST(CommandLine, HelpAndVersion) {
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
     EXPECT_NE(help.out.find("feldspar run"), std::string::npos);
-    for (const char* command : {"run", "check", "new", "envelope", "converge"}) EXPECT_EQ(run_program(place.path(), {command, "--help"}).code, 0);
+    for (const char* command : {"run", "check", "new", "schema", "envelope", "converge"}) EXPECT_EQ(run_program(place.path(), {command, "--help"}).code, 0);
     const Outcome version = run_program(place.path(), {"--version"});
     EXPECT_EQ(version.code, 0);
     EXPECT_EQ(version.out.rfind("feldspar 0.", 0), 0u) << version.out;
@@ -30,6 +30,8 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
                                                       {"new", "triaxial"},
                                                       {"new", "biaxial", "--presets"},
                                                       {"new", "--presets", "--out", "x.toml"},
+                                                      {"schema", "job.toml"},
+                                                      {"schema", "--out"},
                                                       {"run", "job.toml", "--fast"},
                                                       {"run", "job.toml", "--threads", "0"},
                                                       {"run", "job.toml", "--threads", "many"},
@@ -99,6 +101,20 @@ TEST(CommandLine, PrintsThePresets) {
     EXPECT_EQ(printed.code, 0);
     for (const char* part : {"augig-inner-particles", "augig-table7", "Table 2", "1.08e4 GPa/m"})
         EXPECT_NE(printed.out.find(part), std::string::npos) << part;
+}
+
+TEST(CommandLine, PrintsTheKeysOfJobsAsSchemaAndAsTables) {
+    const TemporaryFolder place;
+    const Outcome schema = run_program(place.path(), {"schema"});
+    EXPECT_EQ(schema.code, 0);
+    EXPECT_NE(schema.out.find("\"$schema\": \"http://json-schema.org/draft-04/schema#\""), std::string::npos);
+    EXPECT_EQ(run_program(place.path(), {"schema", "--out", "feldspar.schema.json"}).code, 0);
+    EXPECT_EQ(read_text(place / "feldspar.schema.json"), schema.out);
+    EXPECT_EQ(run_program(place.path(), {"schema", "--out", "feldspar.schema.json"}).code, 2);
+    EXPECT_EQ(read_text(place / "feldspar.schema.json"), schema.out);
+    const Outcome tables = run_program(place.path(), {"schema", "--markdown"});
+    EXPECT_EQ(tables.code, 0);
+    EXPECT_NE(tables.out.find("| `sigma_nt` | tensile strength |"), std::string::npos);
 }
 
 std::string job_of_two_variants() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,11 +20,13 @@ public:
 protected:
     /// @param file      stands for the file in messages
     /// @param known     all keys and tables that the file may have; @param required  those that it must have
-    FileReader(toml::table tree, std::string file, std::initializer_list<std::string_view> known, std::initializer_list<std::string_view> required,
-               int level = 0)
+    FileReader(toml::table tree, std::string file, std::span<const std::string_view> known, std::initializer_list<std::string_view> required, int level = 0)
         : tree_(std::move(tree)), mistakes_(file), root_(tree_, "", std::move(file), known, level, &mistakes_) {
         root_.require(required);
     }
+    FileReader(toml::table tree, std::string file, std::initializer_list<std::string_view> known, std::initializer_list<std::string_view> required,
+               int level = 0)
+        : FileReader(std::move(tree), std::move(file), std::span(known.begin(), known.size()), required, level) {}
     ~FileReader() = default;
 
     /// @throws InputError for one mistake, InputErrors for several

@@ -21,13 +21,12 @@ std::string name_from_stem(const std::filesystem::path& file) {
     return stem.empty() ? "job" : stem.substr(0, 100);
 }
 
-std::string read_name(const TableReader& root, const std::filesystem::path& file) {
+std::string read_name(const JobTable& root, const std::filesystem::path& file) {
     if (!root.has("name")) return name_from_stem(file);
     const std::string given = root.text("name");
     root.check({"name"}, [&] {
         if (given.front() == '.' || given.size() > 100 || !std::all_of(given.begin(), given.end(), fits_file_name))
-            root.fail("name", shown(*root.find("name")) + " cannot name a directory",
-                      "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+            root.fail("name", shown(*root.find("name")) + " cannot name a directory", root.allowed("name"));
     });
     return given;
 }
@@ -44,54 +43,51 @@ SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double fla
 }
 
 // A packing that is loaded has no other seeds.
-void check_one_packing(const TableReader& root, const Job& job) {
+void check_one_packing(const JobTable& root, const Job& job) {
     if (!root.sound({"run", "test", "specimen.packing"})) return;
     if (job.specimen.packing_file.empty()) return;
     bool several = job.seeds.size() > 1;
     for (const TestSpec& test : job.tests)
         several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
     if (!several) return;
-    root.check({}, [&] {
-        root.table("specimen",
-                   {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
-            .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
-    });
+    root.check({}, [&] { root.table("specimen").fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing"); });
 }
 
 // The parts of a job in the order in which one asks for another.
 class JobReader : private FileReader {
 public:
     JobReader(toml::table tree, const std::string& text, const std::string& name)
-        : FileReader(std::move(tree), name, {"name", "specimen", "model", "material", "numerics", "variant", "test", "run", "laboratory"}, {}, job_level) {
+        : FileReader(std::move(tree), name, job_table("").names(), {}, job_level) {
         job_.file = name;
         job_.text = text;
     }
 
     Job read() {
-        job_.name = read_name(root_, job_.file);
-        if (root_.has("variant"))
-            root_.require({"specimen", "test"});
+        const JobTable root(root_, job_table(""));
+        job_.name = read_name(root, job_.file);
+        if (root.has("variant"))
+            root.require({"specimen", "test"});
         else
-            root_.require({"specimen", "material", "test"});
+            root.require({"specimen", "material", "test"});
 
-        const RunSettings run = read_run(root_);
+        const RunSettings run = read_run(root);
         job_.seeds = run.seeds;
         job_.threads = run.threads;
         job_.at_once = run.at_once;
-        job_.variants = read_variants(root_);
+        job_.variants = read_variants(root);
         std::optional<bool> filled;
-        if (kinds_known(root_, job_.variants))
+        if (kinds_known(root, job_.variants))
             filled = std::any_of(job_.variants.begin(), job_.variants.end(),
                                  [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
-        job_.specimen = read_specimen(root_, job_.file.parent_path(), filled);
-        TestList tests = read_tests(root_, job_.specimen, job_.variants, job_.seeds);
+        job_.specimen = read_specimen(root, job_.file.parent_path(), filled);
+        TestList tests = read_tests(root, job_.specimen, job_.variants, job_.seeds);
         job_.tests = std::move(tests.tests);
         if (tests.brazilian_diameter_m) job_.brazilian_specimen = disc_of(job_.specimen, *tests.brazilian_diameter_m, tests.flat_angle_rad);
-        check_variants(root_, job_);
-        job_.laboratory = read_laboratory(root_);
-        job_.laboratory_confined = read_laboratory_confined(root_);
+        check_variants(root, job_);
+        job_.laboratory = read_laboratory(root);
+        job_.laboratory_confined = read_laboratory_confined(root);
 
-        check_one_packing(root_, job_);
+        check_one_packing(root, job_);
         finish();
         return std::move(job_);
     }

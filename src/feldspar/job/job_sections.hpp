@@ -9,7 +9,7 @@
 #include "feldspar/model/spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/job/job.hpp"
-#include "feldspar/job/toml_reader.hpp"
+#include "feldspar/job/job_table.hpp"
 
 namespace feldspar {
 
@@ -18,7 +18,7 @@ Job read_tree(toml::table tree, const std::string& text, const std::string& name
 
 /// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles; nothing if a
 /// mistake in the models leaves that open.
-SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, std::optional<bool> filled);
+SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled);
 
 /// [model], [material] and [numerics] of the job, or of one of its variants, whose tables lie over the job's.
 struct Physics {
@@ -27,16 +27,16 @@ struct Physics {
     ContactMaterial contact;
     NumericsSpec numerics;
 };
-Physics read_physics(const TableReader& root, const TableReader* variant);
+Physics read_physics(const JobTable& root, const JobTable* variant);
 
 /// What kinds of grains the job and its variants have was read without a mistake.
 bool kinds_known(const TableReader& root, const std::vector<Variant>& variants);
 
 /// [[variant]]: always one at least; a job without the list has one without a name.
-std::vector<Variant> read_variants(const TableReader& root);
+std::vector<Variant> read_variants(const JobTable& root);
 
 /// A mistake for each variant whose seeds or tests are not the job's, or which would run nothing.
-void check_variants(const TableReader& root, const Job& job);
+void check_variants(const JobTable& root, const Job& job);
 
 /// The levels of tables that lie over each other; a preset's is one more than that of the table that names it.
 inline constexpr int variant_level = 0;
@@ -48,7 +48,7 @@ struct TestList {
     std::optional<double> brazilian_diameter_m;  ///< present if there is a Brazilian test
     double flat_angle_rad = 0.0;                 ///< of the flats of its disc; 0 = a whole disc
 };
-TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
+TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                     const std::vector<std::uint64_t>& run_seeds);
 
 /// [run]: seeds, threads and tests at once.
@@ -57,12 +57,12 @@ struct RunSettings {
     int threads = 0;
     int at_once = 0;
 };
-RunSettings read_run(const TableReader& root);
+RunSettings read_run(const JobTable& root);
 
 /// [laboratory], in SI.
-std::map<std::string, double> read_laboratory(const TableReader& root);
+std::map<std::string, double> read_laboratory(const JobTable& root);
 /// Its list `confined`.
-std::vector<ConfinedStrength> read_laboratory_confined(const TableReader& root);
+std::vector<ConfinedStrength> read_laboratory_confined(const JobTable& root);
 
 /// `tests` of a table: kinds of test, each once; none if the key is not there.
 std::vector<TestKind> read_kinds(const TableReader& table);

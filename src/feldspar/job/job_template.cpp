@@ -1,9 +1,13 @@
 #include "feldspar/job/job_template.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/job/keys.hpp"
 #include "feldspar/job/toml_reader.hpp"
 
 namespace feldspar {
@@ -11,6 +15,7 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory"};
 
+// A line "#= key" shows a key that may be left out, with the default and the sentence of its row (keys.hpp).
 constexpr const char* common_head = R"(#
 #   feldspar check JOB.toml     builds everything, prints counts, memory and expected time, and stops
 #   feldspar run   JOB.toml     runs it; results go to a new directory
@@ -30,8 +35,8 @@ diameter = { distribution = "uniform", minimum = "2 mm", maximum = "4 mm" }
 # diameter = { distribution = "log-normal", median = "3 mm", log_standard_deviation = 0.2, minimum = "2 mm", maximum = "5 mm" }
 # diameter = { distribution = "sieve", curve = [["2 mm", "0 %"], ["3 mm", "40 %"], ["4 mm", "100 %"]] }   # by mass passing
 porosity = 0.10                     # sets the number of grains only: the grains fill the plane
-# merge_length = "auto"             # shorter grain edges are merged: mean diameter / 12; or a length, or "none"
-# triangles_per_grain = 0           # 0: the standard mesh of about 15 triangles; or about so many
+#= merge_length
+#= triangles_per_grain
 
 [model]
 kind = "flexible"                   # grains of elastic triangles; also "rigid" and "inner-particles", which take no E and nu
@@ -52,21 +57,21 @@ tau = "29.75 MPa"                   # cohesion
 mu = 0.40                           # friction coefficient
 Gfn = "20 N/m"                      # fracture energy in tension (leave out for "brittle")
 Gfs = "800 N/m"                     # fracture energy in shear (leave out for "brittle")
-# shear_measure = "total"           # damage counts the whole slip; "beyond-friction": only what friction does not carry
-# tension_unloading = "elastic"     # with the initial stiffness; "secant": back to the origin
+#= shear_measure
+#= tension_unloading
 
 [numerics]
 kind = "adaptive"                   # finds its own loading rate; also "paper" (fixed speed, local damping), "dynamic" (real masses)
 accuracy = "1 %"                    # wanted of a strength: 0.05 % to 10 %; looser is faster
-# confirm = false                   # true: repeat each test at a third of the target, and at another damping, and report the changes
+#= confirm
 # maximum_steps = 2000000           # stop there with what there is (no limit unless given)
 )";
 
 constexpr const char* common_test =
-    R"(# stop_fraction = 0.8               # the test ends when the stress has fallen to this fraction of the peak
-# maximum_strain = 0.05             # ... or at this axial strain
+    R"(#= stop_fraction
+#= maximum_strain
 # maximum_stress = "300 MPa"        # ... or at this stress, if one is given: the strength is then known to be higher
-# snapshots = 8                     # fields kept between the first crack and the end
+#= snapshots
 # seeds = [1, 2, 3]                 # the packings of this test, if not all of [run]
 )";
 
@@ -129,22 +134,43 @@ kind = "brazilian"                  # a disc pressed between two jaws: gives the
 )") + other_control + common_test;
 }
 
+constexpr std::size_t comment_column = 36;
+
+std::string shown_default(const JobKey& key) {
+    std::string line = fmt::format("# {} = {}", key.name, usual_text(key));
+    line.resize(std::max(line.size() + 1, comment_column), ' ');
+    return line + "# " + without_markup(key.meaning);
+}
+
+// The lines "#= key" written out.
+std::string with_defaults(const std::string& text) {
+    std::istringstream lines(text);
+    std::string written;
+    const KeyTable* table = &job_table("");
+    for (std::string line; std::getline(lines, line);) {
+        for (const KeyTable& one : job_tables())
+            if (line.starts_with(one.head)) table = &one;
+        written += (line.starts_with("#= ") ? shown_default(table->key(line.substr(3))) : line) + "\n";
+    }
+    return written;
+}
+
+std::string unfinished_template(std::string_view kind) {
+    if (kind == "uniaxial-compression") return "# A uniaxial compression test.\n" + std::string(common_head) + uniaxial_test() + common_end;
+    if (kind == "direct-tension") return "# A direct tension test.\n" + std::string(common_head) + tension_test() + common_end;
+    if (kind == "brazilian") return "# A Brazilian test.\n" + std::string(common_head) + brazilian_test() + common_end;
+    if (kind == "biaxial")  // the envelope needs the uniaxial point
+        return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" + std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
+    if (kind == "laboratory")
+        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() +
+               biaxial_test() + common_end;
+    throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(kinds), did_you_mean(kind, kinds));
+}
+
 }  // namespace
 
 std::vector<std::string_view> job_template_kinds() { return {kinds.begin(), kinds.end()}; }
 
-std::string job_template(std::string_view kind) {
-    if (kind == "uniaxial-compression")
-        return "# A uniaxial compression test.\n" + std::string(common_head) + uniaxial_test() + common_end;
-    if (kind == "direct-tension") return "# A direct tension test.\n" + std::string(common_head) + tension_test() + common_end;
-    if (kind == "brazilian") return "# A Brazilian test.\n" + std::string(common_head) + brazilian_test() + common_end;
-    if (kind == "biaxial")  // the envelope needs the uniaxial point
-        return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" +
-               std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
-    if (kind == "laboratory")
-        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" +
-               std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() + biaxial_test() + common_end;
-    throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(kinds), did_you_mean(kind, kinds));
-}
+std::string job_template(std::string_view kind) { return with_defaults(unfinished_template(kind)); }
 
 }  // namespace feldspar

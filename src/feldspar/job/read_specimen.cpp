@@ -4,6 +4,7 @@
 
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/words.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/specimen/outline.hpp"
 
@@ -13,34 +14,19 @@ namespace {
 constexpr double largest_grain_count = 5e6;  // what fits a large workstation; beyond it a unit was probably mistaken
 constexpr std::size_t largest_vertex_count = 10000;
 
-constexpr double usual_particles_per_grain = 26.36;  // 42966 in 1630 grains, as in the paper
-
-const Range particles_range{7.0, 500.0, true, true, "from 7 to 500"};
-const Range porosity_range{0.0, 1.0, true, false, "0 or greater and less than 1"};
-
-void read_rectangle(const TableReader& table, OutlineSpec& outline) {
-    table.refuse({"diameter", "vertices", "edge_labels"}, "shape = \"rectangle\"", "width, height");
-    table.require({"width", "height"});
-    outline.width_m = table.quantity("width", Dimension::length, positive);
-    outline.height_m = table.quantity("height", Dimension::length, positive);
+void read_rectangle(const JobTable& table, OutlineSpec& outline) {
+    outline.width_m = table.quantity("width");
+    outline.height_m = table.quantity("height");
 }
 
-void read_disc(const TableReader& table, OutlineSpec& outline) {
-    table.refuse({"width", "height", "vertices", "edge_labels"}, "shape = \"disc\"", "diameter");
-    outline.diameter_m = table.quantity("diameter", Dimension::length, positive);
+void read_disc(const JobTable& table, OutlineSpec& outline) {
+    outline.diameter_m = table.quantity("diameter");
 }
 
-void read_polygon(const TableReader& table, OutlineSpec& outline) {
-    table.refuse({"width", "height", "diameter"}, "shape = \"polygon\"", "vertices, edge_labels");
-    const toml::array& vertices = table.array("vertices");
-    for (const toml::node& vertex : vertices)
-        table.check({}, [&] {
-            const toml::array* pair = vertex.as_array();
-            if (pair == nullptr || pair->size() != 2)
-                table.fail_at(vertex, "vertices", shown(vertex) + " is not a point", "points such as [\"0 mm\", \"80 mm\"]");
-            outline.vertices_m.push_back({table.quantity_of(*pair->get(0), "vertices", Dimension::length, any_value),
-                                          table.quantity_of(*pair->get(1), "vertices", Dimension::length, any_value)});
-        });
+void read_polygon(const JobTable& table, OutlineSpec& outline) {
+    table.pairs("vertices", "a point", "points such as [\"0 mm\", \"80 mm\"]", [&](const toml::node& x, const toml::node& y) {
+        outline.vertices_m.push_back({table.first_of(x, "vertices"), table.second_of(y, "vertices")});
+    });
     table.check({"vertices"}, [&] {
         if (outline.vertices_m.size() > largest_vertex_count) table.fail("vertices", "the outline has more than 10000 vertices");
         if (outline.vertices_m.size() < 3) table.fail("vertices", "an outline needs at least three vertices");
@@ -62,14 +48,14 @@ void read_polygon(const TableReader& table, OutlineSpec& outline) {
     });
 }
 
-OutlineSpec read_outline(const TableReader& table) {
+OutlineSpec read_outline(const JobTable& table) {
     OutlineSpec outline;
-    outline.shape =
-        table.choice<Shape>("shape", {{"rectangle", Shape::rectangle}, {"disc", Shape::disc}, {"polygon", Shape::polygon}});
+    outline.shape = table.choice("shape", shapes);
     if (!table.sound({"shape"})) {   // what is there can be looked at nevertheless
-        for (const char* key : {"width", "height", "diameter"}) table.quantity(key, Dimension::length, positive, 0.0);
+        for (const char* key : {"width", "height", "diameter"}) table.quantity(key, 0.0);
         return outline;
     }
+    table.suit("shape", name(outline.shape));
     switch (outline.shape) {
         case Shape::rectangle:
             read_rectangle(table, outline);
@@ -84,22 +70,16 @@ OutlineSpec read_outline(const TableReader& table) {
     return outline;
 }
 
-void read_sieve(const TableReader& table, GrainSizeSpec& sizes) {
-    table.refuse({"minimum", "maximum", "median", "log_standard_deviation"}, "distribution = \"sieve\"", "curve");
+void read_sieve(const JobTable& table, GrainSizeSpec& sizes) {
     const std::string allowed = "points such as [\"2 mm\", \"0 %\"], diameters increasing, shares from 0 % to 100 % that never fall";
-    for (const toml::node& row : table.array("curve"))
-        table.check({}, [&] {
-            const toml::array* pair = row.as_array();
-            if (pair == nullptr || pair->size() != 2)
-                table.fail_at(row, "curve", shown(row) + " is not a point of a sieve curve", allowed);
-            const SievePoint point{table.quantity_of(*pair->get(0), "curve", Dimension::length, positive),
-                                   table.fraction_of(*pair->get(1), "curve", {0.0, 1.0, true, true, "from 0 % to 100 %"})};
-            if (!sizes.sieve.empty() && point.diameter_m <= sizes.sieve.back().diameter_m)
-                table.fail_at(*pair->get(0), "curve", shown(*pair->get(0)) + " is not larger than the sieve before it", allowed);
-            if (!sizes.sieve.empty() && point.passing < sizes.sieve.back().passing)
-                table.fail_at(*pair->get(1), "curve", shown(*pair->get(1)) + " is less than passes the sieve before it", allowed);
-            sizes.sieve.push_back(point);
-        });
+    table.pairs("curve", "a point of a sieve curve", allowed, [&](const toml::node& diameter, const toml::node& passing) {
+        const SievePoint point{table.first_of(diameter, "curve"), table.second_of(passing, "curve")};
+        if (!sizes.sieve.empty() && point.diameter_m <= sizes.sieve.back().diameter_m)
+            table.fail_at(diameter, "curve", shown(diameter) + " is not larger than the sieve before it", allowed);
+        if (!sizes.sieve.empty() && point.passing < sizes.sieve.back().passing)
+            table.fail_at(passing, "curve", shown(passing) + " is less than passes the sieve before it", allowed);
+        sizes.sieve.push_back(point);
+    });
     table.check({"curve"}, [&] {
         if (sizes.sieve.size() < 2) table.fail("curve", "a sieve curve needs at least two points", allowed);
         if (sizes.sieve.front().passing != 0.0) table.fail("curve", "nothing may pass the first sieve", allowed);
@@ -107,38 +87,28 @@ void read_sieve(const TableReader& table, GrainSizeSpec& sizes) {
     });
 }
 
-GrainSizeSpec read_grain_sizes(const TableReader& grains) {
-    const TableReader table =
-        grains.table("diameter", {"distribution", "minimum", "maximum", "median", "log_standard_deviation", "curve"});
+GrainSizeSpec read_grain_sizes(const JobTable& grains) {
+    const JobTable table = grains.table("diameter");
     GrainSizeSpec sizes;
-    sizes.kind = table.choice<GrainSizeKind>(
-        "distribution",
-        {{"uniform", GrainSizeKind::uniform}, {"log-normal", GrainSizeKind::log_normal}, {"sieve", GrainSizeKind::sieve}});
+    sizes.kind = table.choice("distribution", grain_size_kinds);
     if (!table.sound({"distribution"})) {
-        for (const char* key : {"minimum", "maximum", "median"}) table.quantity(key, Dimension::length, positive, 0.0);
+        for (const char* key : {"minimum", "maximum", "median"}) table.quantity(key, 0.0);
         return sizes;
     }
+    table.suit("distribution", name(sizes.kind));
     if (sizes.kind == GrainSizeKind::sieve) {
         read_sieve(table, sizes);
         return sizes;
     }
-    if (sizes.kind == GrainSizeKind::uniform) {
-        table.refuse({"median", "log_standard_deviation", "curve"}, "distribution = \"uniform\"", "minimum, maximum");
-        table.require({"minimum", "maximum"});
-    } else {
-        table.refuse({"curve"}, "distribution = \"log-normal\"", "median, log_standard_deviation, minimum, maximum");
-        table.require({"median", "log_standard_deviation", "minimum", "maximum"});
-    }
-    sizes.minimum_m = table.quantity("minimum", Dimension::length, positive);
-    sizes.maximum_m = table.quantity("maximum", Dimension::length, positive);
+    sizes.minimum_m = table.quantity("minimum");
+    sizes.maximum_m = table.quantity("maximum");
     table.check({"minimum", "maximum"}, [&] {
         if (sizes.maximum_m < sizes.minimum_m)
             table.fail("maximum", shown(*table.find("maximum")) + " is less than the minimum, " + shown(*table.find("minimum")));
     });
     if (sizes.kind == GrainSizeKind::log_normal) {
-        sizes.median_m = table.quantity("median", Dimension::length, positive);
-        sizes.log_standard_deviation =
-            table.number("log_standard_deviation", {0.0, 3.0, false, true, "greater than 0, at most 3"});
+        sizes.median_m = table.quantity("median");
+        sizes.log_standard_deviation = table.number("log_standard_deviation");
         table.check({"minimum", "median", "maximum"}, [&] {
             if (!(sizes.minimum_m < sizes.median_m && sizes.median_m < sizes.maximum_m))
                 table.fail("median", shown(*table.find("median")) + " does not lie between the minimum and the maximum");
@@ -179,7 +149,7 @@ double smallest_extent_m(const OutlineSpec& outline) {
 namespace {
 
 // What the grains' sizes and the outline must be to each other.
-void check_sizes(const TableReader& grains, const SpecimenSpec& spec) {
+void check_sizes(const JobTable& grains, const SpecimenSpec& spec) {
     const double largest = largest_diameter_m(spec.grain_sizes);
     const double extent = smallest_extent_m(spec.outline);
     if (largest > 0.5 * extent)
@@ -196,7 +166,7 @@ void check_sizes(const TableReader& grains, const SpecimenSpec& spec) {
                     "at most " + std::to_string(static_cast<long long>(largest_grain_count)) + " grains");
 }
 
-void read_merge_length(const TableReader& grains, SpecimenSpec& spec) {
+void read_merge_length(const JobTable& grains, SpecimenSpec& spec) {
     const toml::node* merge = grains.find("merge_length");
     if (merge == nullptr) return;
     const toml::value<std::string>* word = merge->as_string();
@@ -210,7 +180,7 @@ void read_merge_length(const TableReader& grains, SpecimenSpec& spec) {
             !std::any_of(word->get().begin(), word->get().end(), [](char c) { return c >= '0' && c <= '9'; }))
             grains.fail("merge_length", shown(*merge) + " is not a merge length",
                         "\"auto\" (mean diameter / 12), \"none\", or a length such as \"0.25 mm\"");
-        spec.merge_length_m = grains.quantity("merge_length", Dimension::length, not_negative);
+        spec.merge_length_m = grains.quantity("merge_length");
     });
     grains.check({"merge_length", "diameter"}, [&] {
         if (*spec.merge_length_m >= 0.5 * typical_diameter_m(spec.grain_sizes))
@@ -221,25 +191,23 @@ void read_merge_length(const TableReader& grains, SpecimenSpec& spec) {
 
 }  // namespace
 
-SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, std::optional<bool> filled) {
-    const TableReader table = root.table(
-        "specimen", {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"});
+SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled) {
+    const JobTable table = root.table("specimen");
     table.require({"shape", "grains"});
     SpecimenSpec spec;
     spec.outline = read_outline(table);
-    spec.thickness_m = table.quantity("thickness", Dimension::length, positive, spec.thickness_m);
+    spec.thickness_m = table.quantity("thickness");
 
-    const TableReader grains =
-        table.table("grains", {"diameter", "porosity", "merge_length", "triangles_per_grain", "particles_per_grain"});
+    const JobTable grains = table.table("grains");
     spec.grain_sizes = read_grain_sizes(grains);
-    spec.porosity = grains.number("porosity", porosity_range, spec.porosity);
-    spec.triangles_per_grain = static_cast<int>(grains.integer("triangles_per_grain", 0, 10000, 0));
+    spec.porosity = grains.number("porosity");
+    spec.triangles_per_grain = static_cast<int>(grains.integer("triangles_per_grain"));
     if (!filled)
-        grains.number("particles_per_grain", particles_range, usual_particles_per_grain);
+        grains.number("particles_per_grain");
     else if (*filled)
-        spec.particles_per_grain = grains.number("particles_per_grain", particles_range, usual_particles_per_grain);
+        spec.particles_per_grain = grains.number("particles_per_grain");
     else
-        grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with kind = \"inner-particles\"");
+        grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with " + condition_text(grains.rows().key("particles_per_grain")));
     if (table.sound({"shape", "width", "height", "diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
     read_merge_length(grains, spec);
 
@@ -250,7 +218,7 @@ SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path&
             std::error_code ignored;
             if (!std::filesystem::is_regular_file(spec.packing_file, ignored))
                 table.fail("packing", "there is no file " + shown(*table.find("packing")),
-                           "a packing saved by an earlier run, its path relative to the job file");
+                           table.allowed("packing"));
         });
     }
     return spec;

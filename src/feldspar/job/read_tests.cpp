@@ -1,18 +1,16 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/words.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 namespace {
-
-constexpr long long largest_seed = std::numeric_limits<long long>::max();
 
 // Of a confined specimen's width, as a share of the narrowest: the pressure on sloping sides then adds at most this share of sigma3 to the
 // axial stress.
@@ -30,7 +28,7 @@ struct Known {
 };
 
 // Platens need a flat top and bottom.
-void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& outline) {
+void check_outline(const JobTable& table, TestKind kind, const OutlineSpec& outline) {
     if (method_of(kind).specimen.own_disc || outline.shape == Shape::rectangle) return;
     if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) {
         const SectionWidths widths = section_widths(make_outline(outline));
@@ -47,12 +45,12 @@ void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& o
 }
 
 // The Brazilian test makes its own disc, of the specimen's width unless the test says otherwise.
-double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen, const Known& known) {
+double brazilian_diameter(const JobTable& table, const SpecimenSpec& specimen, const Known& known) {
     if (!known.outline) table.do_not_miss({"diameter"});
     if (!table.has("diameter") && specimen.outline.shape == Shape::polygon)
         table.check({"diameter"}, [&] { table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)"); });
     const double usual = specimen.outline.shape == Shape::disc ? specimen.outline.diameter_m : specimen.outline.width_m;
-    const double diameter = table.quantity("diameter", Dimension::length, positive, usual);
+    const double diameter = table.quantity("diameter", usual);
     if (!known.grain_sizes) return diameter;
     table.check({"diameter"}, [&] {
         const double largest = largest_diameter_m(specimen.grain_sizes);
@@ -65,17 +63,13 @@ double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen
     return diameter;
 }
 
-// Angles that (P31) was computed for, and that laboratories use.
-const Range flat_angle_range{10.0 * std::numbers::pi / 180.0, 40.0 * std::numbers::pi / 180.0, true, true, "from 10 to 40 degrees (20 to 30 are usual)"};
-constexpr double usual_flat_angle_rad = 20.0 * std::numbers::pi / 180.0;
-
 // The disc may be whole, or have two flats, on which flat plates press.
-bool is_flattened(const TableReader& table) {
-    return table.has("disc") && table.choice<bool>("disc", {{"whole", false}, {"flattened", true}});
+bool is_flattened(const JobTable& table) {
+    return table.choice("disc", disc_forms) == DiscForm::flattened;
 }
 
 // Angle over which a flat is seen from the centre; 0: of a whole disc.
-double read_flats(const TableReader& table, bool flattened, const SpecimenSpec& specimen, double diameter_m, const Known& known, const TestSpec& test) {
+double read_flats(const JobTable& table, bool flattened, const SpecimenSpec& specimen, double diameter_m, const Known& known, const TestSpec& test) {
     if (!flattened) {
         if (table.sound({"disc"})) table.refuse({"flat_angle"}, "a whole disc", "disc = \"flattened\"");
         return 0.0;
@@ -83,7 +77,7 @@ double read_flats(const TableReader& table, bool flattened, const SpecimenSpec& 
     table.check({"plates", "disc"}, [&] {
         if (test.plates == PlateShape::curved) table.fail("plates", "curved jaws do not fit the flats of a flattened disc", "plates = \"flat\", or disc = \"whole\"");
     });
-    const double angle_rad = table.quantity("flat_angle", Dimension::angle, flat_angle_range, usual_flat_angle_rad);
+    const double angle_rad = table.quantity("flat_angle");
     const double width_m = diameter_m * std::sin(0.5 * angle_rad), largest_m = largest_diameter_m(specimen.grain_sizes);
     table.check({"flat_angle", "disc", "diameter"}, [&] {
         if (known.outline && known.grain_sizes && width_m < largest_m)
@@ -94,14 +88,12 @@ double read_flats(const TableReader& table, bool flattened, const SpecimenSpec& 
     return angle_rad;
 }
 
-std::vector<double> confining_stresses(const TableReader& table) {
+std::vector<double> confining_stresses(const JobTable& table) {
     const toml::array* list = table.find("sigma3") == nullptr ? nullptr : table.find("sigma3")->as_array();
-    const Range range{0.0, std::numeric_limits<double>::infinity(), false, true,
-                      "greater than zero (for zero: kind = \"uniaxial-compression\")"};
-    if (list == nullptr) return {table.quantity("sigma3", Dimension::stress, range)};
+    if (list == nullptr) return {table.quantity("sigma3")};
     if (list->empty()) table.check({}, [&] { table.fail("sigma3", "the list is empty", "one stress or more"); });
     std::vector<double> values;
-    for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, "sigma3", Dimension::stress, range)); });
+    for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, "sigma3")); });
     return values;
 }
 
@@ -112,7 +104,7 @@ bool has_particles(TestKind kind, const std::vector<Variant>& variants) {
 }
 
 // Which motion of the platens follows the branch behind the strength. Fixed speeds know none.
-LoadControl read_control(const TableReader& table, TestKind kind, const std::vector<Variant>& variants) {
+LoadControl read_control(const JobTable& table, TestKind kind, const std::vector<Variant>& variants) {
     const bool adaptive = std::any_of(variants.begin(), variants.end(), [&](const Variant& variant) {
         return variant.runs(kind) && variant.numerics.kind == NumericsKind::adaptive;
     });
@@ -129,34 +121,32 @@ LoadControl read_control(const TableReader& table, TestKind kind, const std::vec
     return control;
 }
 
+// Keys of plates where none load the specimen. Those that are another method's are refused already.
+void refuse_plates(const JobTable& table, const TestMethod& method) {
+    for (const JobKey& key : table.rows().keys)
+        if (key.of_plates && (key.when.key.empty() || key.when.holds(name(method.kind))))
+            table.refuse({key.name}, "kind = \"" + std::string(name(method.kind)) + "\" of flexible grains",
+                         "only with " + condition_text(table.rows().key("plates")) + ", or with rigid grains or inner particles, which are loaded by plates");
+}
+
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
-void read_plates(const TableReader& table, bool particles, const Known& known, TestSpec& test) {
-    const std::string setting = "kind = \"" + std::string(name(test.kind)) + "\"";
+void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     const MethodSpecimen& method = method_of(test).specimen;
-    if (!method.own_disc && !particles && known.kinds)
-        table.refuse({"plate_stiffness_factor", "plate_Kn", "plate_mu", "membrane_plates"}, setting + " of flexible grains",
-                     "only with kind = \"brazilian\", or with rigid grains or inner particles, which are loaded by plates");
-    if (method.glued)
-        table.refuse({"plate_mu"}, setting + ": its plates are glued on and hold in the normal direction only",
-                     "plate_stiffness_factor");
-    if (!method.confined)
-        table.refuse({"membrane_plates"}, setting, "only with kind = \"biaxial\", which has a membrane");
-    if (!method.own_disc) table.refuse({"plates", "jaw_radius"}, setting, "only with kind = \"brazilian\"");
     if (!method.own_disc && !particles) return;
     const PlateShape usual = test.plates;
     if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
     if (table.has("jaw_radius")) {
         if (test.plates != PlateShape::curved)
             table.check({"plates", "disc"}, [&] { table.fail("jaw_radius", "given for flat plates", "plates = \"curved\", which is for a whole disc"); });
-        test.jaw_radius = table.number("jaw_radius", {1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}, test.jaw_radius);
+        test.jaw_radius = table.number("jaw_radius");
     }
     if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
         table.check({}, [&] { table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them"); });
-    if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn", Dimension::stiffness_gradient, positive);
+    if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn");
     else if (test.plates != usual || table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m.reset();   // that of the usual plates
-    test.plate_stiffness_factor = table.number("plate_stiffness_factor", positive, test.plate_stiffness_factor);
-    if (!method.glued) test.plate_mu = table.number("plate_mu", not_negative, method.plate_mu);
-    test.membrane_plates = static_cast<int>(table.integer("membrane_plates", 1, 1000, test.membrane_plates));
+    test.plate_stiffness_factor = table.number("plate_stiffness_factor", test.plate_stiffness_factor);
+    if (!method.glued) test.plate_mu = table.number("plate_mu", method.plate_mu);
+    test.membrane_plates = static_cast<int>(table.integer("membrane_plates"));
 }
 
 struct ReadTest {
@@ -165,32 +155,29 @@ struct ReadTest {
     double flat_angle_rad = 0.0;
 };
 
-ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants, const Known& known) {
+ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants, const Known& known) {
     const TestMethod& method = method_of(table.choice("kind", test_kinds));
     const bool kind_known = table.sound({"kind"}), own_disc = method.specimen.own_disc;
-    const std::string setting = "kind = \"" + std::string(name(method.kind)) + "\"";
-    if (kind_known && !own_disc) table.refuse({"diameter", "disc", "flat_angle"}, setting, "only with kind = \"brazilian\"");
-    if (kind_known && !method.specimen.confined) table.refuse({"sigma3"}, setting, "only with kind = \"biaxial\"");
+    if (kind_known) table.suit("kind", name(method.kind));
+    if (kind_known && known.kinds && !own_disc && !has_particles(method.kind, variants)) refuse_plates(table, method);
     const bool flattened = kind_known && own_disc && is_flattened(table);
     TestSpec test = usual_test(method.kind, flattened);
     if (known.outline) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
 
-    test.stop_fraction =
-        table.fraction("stop_fraction", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.stop_fraction);
+    test.stop_fraction = table.fraction("stop_fraction");
     test.control = read_control(table, test.kind, variants);
-    test.maximum_strain =
-        table.fraction("maximum_strain", {0.0, 1.0, false, false, "greater than 0 and less than 1"}, test.maximum_strain);
-    if (table.has("maximum_stress")) test.maximum_stress_Pa = table.quantity("maximum_stress", Dimension::stress, positive);
-    test.snapshots = static_cast<int>(table.integer("snapshots", 0, 1000, test.snapshots));
+    test.maximum_strain = table.fraction("maximum_strain");
+    if (table.has("maximum_stress")) test.maximum_stress_Pa = table.quantity("maximum_stress");
+    test.snapshots = static_cast<int>(table.integer("snapshots"));
     if (table.has("seeds"))
         for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
     if (!kind_known) {
-        table.quantity("diameter", Dimension::length, positive, 0.0);
-        table.quantity("plate_Kn", Dimension::stiffness_gradient, positive, 0.0);
+        table.quantity("diameter", 0.0);
+        table.quantity("plate_Kn", 0.0);
         if (table.has("sigma3")) (void)confining_stresses(table);
         return {};
     }
-    read_plates(table, has_particles(test.kind, variants), known, test);
+    read_plates(table, has_particles(test.kind, variants), test);
 
     ReadTest result;
     if (own_disc) {
@@ -215,10 +202,11 @@ ReadTest read_one(const TableReader& table, const SpecimenSpec& specimen, const 
 }  // namespace
 
 std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_view key) {
+    const auto [lowest, highest] = whole_numbers(job_key("run", "seeds"));
     std::vector<std::uint64_t> seeds;
     for (const toml::node& node : table.array(key))
         table.check({}, [&] {
-            const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, 0, largest_seed));
+            const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, lowest, highest));
             if (std::find(seeds.begin(), seeds.end(), seed) != seeds.end())
                 table.fail_at(node, key, "the seed " + std::to_string(seed) + " is given twice", "each seed once");
             seeds.push_back(seed);
@@ -227,7 +215,7 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
     return seeds;
 }
 
-TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
+TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                     const std::vector<std::uint64_t>& run_seeds) {
     TestList result;
     if (!root.has("test")) return result;   // a mistake that is noted
@@ -235,10 +223,7 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
         root.sound({"specimen.shape", "specimen.width", "specimen.height", "specimen.diameter", "specimen.vertices", "specimen.edge_labels"}),
         root.sound({"specimen.grains.diameter"}), kinds_known(root, variants)};
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
-    for (const TableReader& table : root.tables("test", "a test",
-                                                {"kind", "sigma3", "stop_fraction", "control", "maximum_strain", "maximum_stress", "diameter", "disc", "flat_angle",
-                                                 "plates", "jaw_radius", "plate_stiffness_factor", "plate_Kn",
-                                                 "plate_mu", "membrane_plates", "snapshots", "seeds"})) {
+    for (const JobTable& table : root.tables("test", "a test")) {
         ReadTest read = read_one(table, specimen, variants, known);
         if (read.diameter_m && std::isfinite(*read.diameter_m)) {
             table.check({"diameter", "disc", "flat_angle"}, [&] {
@@ -277,26 +262,26 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
 
 namespace {
 
-// "auto", here 0, or a number of `things` from 1 to 256.
-int read_number_or_auto(const TableReader& table, const char* key, const char* things) {
+// "auto", here 0, or a number of `things`.
+int read_number_or_auto(const JobTable& table, const char* key, const char* things) {
     const toml::node* node = table.find(key);
     if (node == nullptr || (node->is_string() && node->as_string()->get() == "auto")) return 0;
     if (!node->is_integer()) {
-        table.check({}, [&] { table.fail(key, shown(*node) + " is not a number of " + things, "\"auto\", or a whole number from 1 to 256"); });
+        table.check({}, [&] { table.fail(key, shown(*node) + " is not a number of " + things, table.allowed(key)); });
         return 0;
     }
-    return static_cast<int>(table.integer(key, 1, 256));
+    return static_cast<int>(table.integer(key));
 }
 
 }  // namespace
 
-RunSettings read_run(const TableReader& root) {
+RunSettings read_run(const JobTable& root) {
     RunSettings run;
     if (!root.has("run")) return run;
-    const TableReader table = root.table("run", {"seeds", "seed", "threads", "at_once"});
+    const JobTable table = root.table("run");
     if (table.has("seeds") && table.has("seed")) table.check({}, [&] { table.fail("seed", "given beside seeds", "seeds = [1, 2, 3], or seed = 1"); });
     if (table.has("seeds")) run.seeds = read_seed_list(table, "seeds");
-    if (table.has("seed")) run.seeds = {static_cast<std::uint64_t>(table.integer("seed", 0, largest_seed))};
+    if (table.has("seed")) run.seeds = {static_cast<std::uint64_t>(table.integer("seed"))};
     run.threads = read_number_or_auto(table, "threads", "threads");
     run.at_once = read_number_or_auto(table, "at_once", "tests at once");
     return run;

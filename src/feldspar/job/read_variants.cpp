@@ -12,7 +12,7 @@ constexpr std::size_t longest_name = 60;
 
 bool is_plain(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
-std::string read_variant_name(const TableReader& table) {
+std::string read_variant_name(const JobTable& table) {
     const std::string given = table.text("name");
     if (!table.sound({"name"})) return given;
     const bool fits = std::all_of(given.begin(), given.end(), [](char c) {
@@ -20,20 +20,19 @@ std::string read_variant_name(const TableReader& table) {
     });
     if (!fits || given.size() > longest_name || variant_stem(given).empty() || given.front() == ' ' || given.back() == ' ')
         table.check({}, [&] {
-            table.fail("name", shown(*table.find("name")) + " cannot name a variant",
-                       "up to 60 letters, digits, blanks and , . - _ % ( ) + =, with a letter or digit among them");
+            table.fail("name", shown(*table.find("name")) + " cannot name a variant", table.allowed("name"));
         });
     return given;
 }
 
-std::vector<TableReader> variant_tables(const TableReader& root) {
-    std::vector<TableReader> tables = root.tables("variant", "a variant", {"name", "seeds", "tests", "model", "material", "numerics"}, variant_level);
+std::vector<JobTable> variant_tables(const JobTable& root) {
+    std::vector<JobTable> tables = root.tables("variant", "a variant", variant_level);
     if (tables.size() > largest_variant_count)
         root.check({"variant"}, [&] { root.fail("variant", std::to_string(tables.size()) + " variants are more than a report can show", "at most 50"); });
     return tables;
 }
 
-Variant read_variant(const TableReader& root, const TableReader* table) {
+Variant read_variant(const JobTable& root, const JobTable* table) {
     Variant variant;
     if (table != nullptr) {
         variant.name = read_variant_name(*table);
@@ -49,7 +48,7 @@ Variant read_variant(const TableReader& root, const TableReader* table) {
     return variant;
 }
 
-void check_variant(const TableReader& table, const Variant& variant, const Job& job) {
+void check_variant(const JobTable& table, const Variant& variant, const Job& job) {
     for (std::uint64_t seed : variant.seeds)
         if (std::find(job.seeds.begin(), job.seeds.end(), seed) == job.seeds.end())
             table.fail("seeds", "the seed " + std::to_string(seed) + " is not one of the run's", "some of [run] seeds");
@@ -107,11 +106,11 @@ bool kinds_known(const TableReader& root, const std::vector<Variant>& variants) 
     return root.sound({"model.kind"});
 }
 
-std::vector<Variant> read_variants(const TableReader& root) {
+std::vector<Variant> read_variants(const JobTable& root) {
     if (!root.has("variant")) return {read_variant(root, nullptr)};
     std::vector<Variant> variants;
     std::map<std::string, std::string> taken;  // stem -> name
-    for (const TableReader& table : variant_tables(root)) {
+    for (const JobTable& table : variant_tables(root)) {
         Variant variant = read_variant(root, &table);
         table.check({"name"}, [&] {
             const auto [other, fresh] = taken.emplace(variant.stem, variant.name);
@@ -127,9 +126,9 @@ std::vector<Variant> read_variants(const TableReader& root) {
     return variants;
 }
 
-void check_variants(const TableReader& root, const Job& job) {
+void check_variants(const JobTable& root, const Job& job) {
     if (!root.has("variant") || !root.sound({"test", "run"})) return;
-    const std::vector<TableReader> tables = variant_tables(root);
+    const std::vector<JobTable> tables = variant_tables(root);
     for (std::size_t i = 0; i < tables.size(); ++i) tables[i].check({"seeds", "tests"}, [&] { check_variant(tables[i], job.variants[i], job); });
 }
 

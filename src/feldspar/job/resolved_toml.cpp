@@ -6,7 +6,8 @@
 
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/job.hpp"
-#include "feldspar/lab/rock_properties.hpp"
+#include "feldspar/job/keys.hpp"
+#include "feldspar/job/words.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -26,17 +27,25 @@ std::string quote(const std::string& text) {
 
 std::string si(double value, Dimension dimension) { return quote(format_si(value, dimension)); }
 
-// A key's line: key = value.
+// The lines of a table: key = value. Keys and their dimensions are those of the rows (keys.hpp).
 class Lines {
 public:
-    void head(const std::string& title) { text_ += (text_.empty() ? "" : "\n") + title + "\n"; }
-    void raw(const std::string& key, const std::string& value) { text_ += key + " = " + value + "\n"; }
-    void word(const std::string& key, const std::string& value) { raw(key, quote(value)); }
-    void number(const std::string& key, double value) { raw(key, format_exact(value)); }
-    void quantity(const std::string& key, double value, Dimension dimension) { raw(key, si(value, dimension)); }
+    /// @param path  of the table among job_tables(); @param title  its head, or that of a variant's own table
+    void head(std::string_view path, const std::string& title) {
+        table_ = &job_table(path);
+        text_ += (text_.empty() ? "" : "\n") + title + "\n";
+    }
+    void head(std::string_view path) { head(path, std::string(job_table(path).head)); }
+    void raw(std::string_view key, const std::string& value) { text_ += std::string(table_->key(key).name) + " = " + value + "\n"; }
+    void word(std::string_view key, const std::string& value) { raw(key, quote(value)); }
+    void number(std::string_view key, double value) { raw(key, format_exact(value)); }
+    void quantity(std::string_view key, double value) { quantity(key, value, table_->key(key).value.element.dimension); }
+    /// Of a key whose dimension another one decides.
+    void quantity(std::string_view key, double value, Dimension dimension) { raw(key, si(value, dimension)); }
     std::string take() { return std::move(text_); }
 
 private:
+    const KeyTable* table_ = &job_table("");
     std::string text_;
 };
 
@@ -46,18 +55,16 @@ std::string list(const Items& items) {
 }
 
 void write_outline(Lines& out, const OutlineSpec& outline) {
+    out.word("shape", name(outline.shape));
     switch (outline.shape) {
         case Shape::rectangle:
-            out.word("shape", "rectangle");
-            out.quantity("width", outline.width_m, Dimension::length);
-            out.quantity("height", outline.height_m, Dimension::length);
+            out.quantity("width", outline.width_m);
+            out.quantity("height", outline.height_m);
             break;
         case Shape::disc:
-            out.word("shape", "disc");
-            out.quantity("diameter", outline.diameter_m, Dimension::length);
+            out.quantity("diameter", outline.diameter_m);
             break;
         case Shape::polygon: {
-            out.word("shape", "polygon");
             std::vector<std::string> items;
             for (Vec2 v : outline.vertices_m)
                 items.push_back(fmt::format("[{}, {}]", si(v.x, Dimension::length), si(v.y, Dimension::length)));
@@ -90,11 +97,11 @@ std::string grain_sizes(const GrainSizeSpec& sizes) {
 }
 
 void write_specimen(Lines& out, const SpecimenSpec& specimen) {
-    out.head("[specimen]");
+    out.head("specimen");
     write_outline(out, specimen.outline);
-    out.quantity("thickness", specimen.thickness_m, Dimension::length);
+    out.quantity("thickness", specimen.thickness_m);
     if (!specimen.packing_file.empty()) out.word("packing", std::filesystem::absolute(specimen.packing_file).string());
-    out.head("[specimen.grains]");
+    out.head("specimen.grains");
     out.raw("diameter", grain_sizes(specimen.grain_sizes));
     out.number("porosity", specimen.porosity);
     if (!specimen.merge_length_m)
@@ -102,13 +109,13 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
     else if (*specimen.merge_length_m == 0.0)
         out.word("merge_length", "none");
     else
-        out.quantity("merge_length", *specimen.merge_length_m, Dimension::length);
+        out.quantity("merge_length", *specimen.merge_length_m);
     out.raw("triangles_per_grain", std::to_string(specimen.triangles_per_grain));
     if (specimen.particles_per_grain > 0.0) out.number("particles_per_grain", specimen.particles_per_grain);
 }
 
-void write_model(Lines& out, const ModelSpec& model, const std::string& head) {
-    out.head(head);
+void write_model(Lines& out, const ModelSpec& model, const std::string& place) {
+    out.head("model", "[" + place + "model]");
     out.word("kind", name(model.kind));
     out.word("contact", name(model.contact));
     out.word("normal", name(model.normal));
@@ -117,28 +124,28 @@ void write_model(Lines& out, const ModelSpec& model, const std::string& head) {
 
 void write_materials(Lines& out, const Variant& variant, const std::string& place) {
     const ContactMaterial& contact = variant.contact;
-    out.head("[" + place + ".grain]");
+    out.head("material.grain", "[" + place + "material.grain]");
     if (variant.model.kind == GrainKind::flexible) {
-        out.quantity("E", variant.grain.E_Pa, Dimension::stress);
+        out.quantity("E", variant.grain.E_Pa);
         out.number("nu", variant.grain.nu);
     }
-    out.quantity("density", variant.grain.density_kg_m3, Dimension::density);
-    out.head("[" + place + ".contact]");
+    out.quantity("density", variant.grain.density_kg_m3);
+    out.head("material.contact", "[" + place + "material.contact]");
     out.word("law", name(contact.law));
-    out.quantity("Kn", contact.Kn_Pa_m, Dimension::stiffness_gradient);
+    out.quantity("Kn", contact.Kn_Pa_m);
     out.number("eta", contact.eta);
-    out.quantity("sigma_nt", contact.sigma_nt_Pa, Dimension::stress);
-    out.quantity("tau", contact.tau_Pa, Dimension::stress);
+    out.quantity("sigma_nt", contact.sigma_nt_Pa);
+    out.quantity("tau", contact.tau_Pa);
     out.number("mu", contact.mu);
     if (contact.law == ContactLaw::brittle) return;
-    out.quantity("Gfn", contact.Gfn_J_m2, Dimension::fracture_energy);
-    out.quantity("Gfs", contact.Gfs_J_m2, Dimension::fracture_energy);
-    out.word("shear_measure", contact.shear_measure == ShearMeasure::total ? "total" : "beyond-friction");
-    out.word("tension_unloading", contact.tension_unloading == TensionUnloading::elastic ? "elastic" : "secant");
+    out.quantity("Gfn", contact.Gfn_J_m2);
+    out.quantity("Gfs", contact.Gfs_J_m2);
+    out.word("shear_measure", name(contact.shear_measure));
+    out.word("tension_unloading", name(contact.tension_unloading));
 }
 
-void write_numerics(Lines& out, const NumericsSpec& numerics, const std::string& head) {
-    out.head(head);
+void write_numerics(Lines& out, const NumericsSpec& numerics, const std::string& place) {
+    out.head("numerics", "[" + place + "numerics]");
     out.word("kind", name(numerics.kind));
     if (numerics.kind == NumericsKind::adaptive) {
         if (numerics.residual_target)
@@ -151,7 +158,7 @@ void write_numerics(Lines& out, const NumericsSpec& numerics, const std::string&
         out.quantity("speed", *numerics.speed_m,
                      numerics.kind == NumericsKind::paper ? Dimension::speed_per_step : Dimension::speed);
     if (numerics.mass_factor) out.number("mass_factor", *numerics.mass_factor);
-    if (numerics.time_step_s) out.quantity("time_step", *numerics.time_step_s, Dimension::time);
+    if (numerics.time_step_s) out.quantity("time_step", *numerics.time_step_s);
     if (numerics.maximum_steps) out.raw("maximum_steps", std::to_string(*numerics.maximum_steps));
     out.raw("confirm", numerics.confirm ? "true" : "false");
 }
@@ -163,25 +170,25 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
     if (!particles && !method_of(test).specimen.own_disc) return;
     if (method_of(test).specimen.own_disc) out.word("plates", name(test.plates));
     if (test.plates == PlateShape::curved) out.number("jaw_radius", test.jaw_radius);
-    if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m, Dimension::stiffness_gradient);
+    if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m);
     else out.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (test.plate_mu) out.number("plate_mu", *test.plate_mu);
     if (method_of(test).specimen.confined) out.raw("membrane_plates", std::to_string(test.membrane_plates));
 }
 
 void write_test(Lines& out, const TestSpec& test, const Job& job) {
-    out.head("[[test]]");
+    out.head("test");
     out.word("kind", name(test.kind));
-    if (method_of(test).specimen.confined) out.quantity("sigma3", test.sigma3_Pa, Dimension::stress);
+    if (method_of(test).specimen.confined) out.quantity("sigma3", test.sigma3_Pa);
     out.number("stop_fraction", test.stop_fraction);
     out.word("control", name(test.control));
     out.number("maximum_strain", test.maximum_strain);
-    if (test.maximum_stress_Pa) out.quantity("maximum_stress", *test.maximum_stress_Pa, Dimension::stress);
-    if (method_of(test).specimen.own_disc) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m, Dimension::length);
+    if (test.maximum_stress_Pa) out.quantity("maximum_stress", *test.maximum_stress_Pa);
+    if (method_of(test).specimen.own_disc) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m);
     // whole discs are left unwritten: identities of their runs stay as they were
     if (method_of(test).specimen.own_disc && job.brazilian_specimen.outline.flat_angle_rad > 0.0) {
-        out.word("disc", "flattened");
-        out.quantity("flat_angle", job.brazilian_specimen.outline.flat_angle_rad, Dimension::angle);
+        out.word("disc", name(DiscForm::flattened));
+        out.quantity("flat_angle", job.brazilian_specimen.outline.flat_angle_rad);
     }
     write_plates(out, test, job);
     out.raw("snapshots", std::to_string(test.snapshots));
@@ -190,13 +197,13 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
 
 // The physics of one variant under `place`: "" for the job's own tables, "variant." for a list.
 void write_physics(Lines& out, const Variant& variant, const std::string& place) {
-    write_model(out, variant.model, "[" + place + "model]");
-    write_materials(out, variant, place + "material");
-    write_numerics(out, variant.numerics, "[" + place + "numerics]");
+    write_model(out, variant.model, place);
+    write_materials(out, variant, place);
+    write_numerics(out, variant.numerics, place);
 }
 
 void write_variant(Lines& out, const Variant& variant) {
-    out.head("[[variant]]");
+    out.head("variant");
     out.word("name", variant.name);
     if (!variant.seeds.empty()) out.raw("seeds", list(variant.seeds));
     std::vector<std::string> kinds;
@@ -207,9 +214,9 @@ void write_variant(Lines& out, const Variant& variant) {
 
 void write_laboratory(Lines& out, const Job& job) {
     if (job.laboratory.empty() && job.laboratory_confined.empty()) return;
-    out.head("[laboratory]");
+    out.head("laboratory");
     for (const auto& [key, value] : job.laboratory) {
-        if (const auto dimension = rock_property(key)->unit.written) out.quantity(key, value, *dimension);
+        if (job_key("laboratory", key).value.element.form == ValueForm::quantity) out.quantity(key, value);
         else out.number(key, value);
     }
     if (job.laboratory_confined.empty()) return;
@@ -230,7 +237,7 @@ std::string resolved_toml(const Job& job) {
     else
         write_physics(out, job.variants.front(), "");
     for (const TestSpec& test : job.tests) write_test(out, test, job);
-    out.head("[run]");
+    out.head("run");
     out.raw("seeds", list(job.seeds));
     out.raw("threads", job.threads == 0 ? "\"auto\"" : std::to_string(job.threads));
     out.raw("at_once", job.at_once == 0 ? "\"auto\"" : std::to_string(job.at_once));

@@ -186,7 +186,7 @@ InputError TableReader::missing(std::span<const std::string_view> keys) const {
     return InputError(std::move(place), (keys.size() == 1 ? "missing key: " : "missing keys: ") + listed(keys));
 }
 
-void TableReader::require(std::initializer_list<std::string_view> keys) const {
+void TableReader::require(std::span<const std::string_view> keys) const {
     std::vector<std::string_view> absent;
     for (std::string_view key : keys)
         if (!has(key) && is_sound(key)) absent.push_back(key);

@@ -19,24 +19,10 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/mistakes.hpp"
+#include "feldspar/job/range.hpp"
 #include "feldspar/job/toml_include.hpp"
 
 namespace feldspar {
-
-/// The allowed values of a number, with the words that say so.
-struct Range {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-    bool low_allowed = true;
-    bool high_allowed = true;
-    std::string_view words = "any finite number";
-
-    bool contains(double v) const { return (low_allowed ? v >= low : v > low) && (high_allowed ? v <= high : v < high); }
-};
-
-inline constexpr Range any_value{};
-inline constexpr Range positive{0.0, std::numeric_limits<double>::infinity(), false, true, "greater than zero"};
-inline constexpr Range not_negative{0.0, std::numeric_limits<double>::infinity(), true, true, "zero or greater"};
 
 /// The candidate that `word` was probably meant to be (optimal string alignment distance, case ignored), or "" when none is near.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
@@ -106,7 +92,8 @@ public:
     Mistakes* mistakes() const { return mistakes_; }
 
     /// Every one of `keys` must be there: a mistake that names those that are missing.
-    void require(std::initializer_list<std::string_view> keys) const;
+    void require(std::span<const std::string_view> keys) const;
+    void require(std::initializer_list<std::string_view> keys) const { require(std::span(keys.begin(), keys.size())); }
     /// A mistake for each of `keys` that is given; `setting` is what it contradicts ("shape = \"disc\""). A key from a table
     /// below the one that made the setting (`decided_at`) is not a mistake: the setting has put it aside.
     void refuse(std::initializer_list<std::string_view> keys, const std::string& setting, const std::string& allowed = {},

@@ -1,0 +1,404 @@
+#include "feldspar/job/keys.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "feldspar/job/presets.hpp"
+#include "feldspar/job/words.hpp"
+#include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/rock_properties.hpp"
+
+namespace feldspar {
+namespace {
+
+using enum Dimension;
+
+constexpr double infinite = std::numeric_limits<double>::infinity(), degree = std::numbers::pi / 180.0;
+
+constexpr double usual_particles_per_grain = 26.36;  // 42966 in 1630 grains, as in the paper
+constexpr double usual_flat_angle_rad = 20.0 * degree;
+
+constexpr Range below_one{0.0, 1.0, true, false, "0 or greater and less than 1"};
+constexpr Range inside_one{0.0, 1.0, false, false, "greater than 0 and less than 1"};
+constexpr Range share{0.0, 1.0, true, true, "from 0 % to 100 %"};
+constexpr Range poisson{-1.0, 0.5, false, false, "greater than -1 and less than 0.5"};
+constexpr Range below_right_angle{0.0, 90.0 * degree, true, false, "from 0 to less than 90 deg"};
+// angles that (P31) was computed for, and that laboratories use
+constexpr Range flat_angles{10.0 * degree, 40.0 * degree, true, true, "from 10 to 40 degrees (20 to 30 are usual)"};
+// a hair wider than stated, for 0.05 % is not the same double as 0.0005
+constexpr Range accuracies{0.0005 * (1.0 - 1e-12), 0.1 * (1.0 + 1e-12), true, true, "from 0.05 % to 10 %"};
+constexpr Range confining{0.0, infinite, false, true, "greater than zero (for zero: kind = \"uniaxial-compression\")"};
+
+// What stands behind a key.
+KeyValue quantity(Dimension dimension, const Range& range = positive, std::vector<std::string> words = {}) {
+    return {{ValueForm::quantity, dimension, range, std::move(words)}};
+}
+KeyValue number(const Range& range) { return {{ValueForm::number, fraction, range}}; }
+KeyValue share_of_one(const Range& range, std::string_view unit = "") { return {{ValueForm::fraction, fraction, range}, ValueShape::one, {}, unit}; }
+KeyValue integer(double low, double high = infinite, std::vector<std::string> words = {}) {
+    return {{ValueForm::integer, fraction, {low, high, true, true, {}}, std::move(words)}};
+}
+KeyValue flag() { return {{ValueForm::flag}}; }
+KeyValue text(std::string_view allowed = "text in quotes") { return {{ValueForm::text, fraction, {.words = allowed}}}; }
+KeyValue choice(std::vector<std::string> words) { return {{ValueForm::choice, fraction, any_value, std::move(words)}}; }
+template <class Value, std::size_t count>
+KeyValue choice(const std::array<Value, count>& values) {
+    std::vector<std::string> words;
+    for (const Value value : values) words.emplace_back(name(value));
+    return choice(std::move(words));
+}
+KeyValue choice(std::span<const Preset> presets) {
+    std::vector<std::string> words;
+    for (const Preset& preset : presets) words.emplace_back(preset.name);
+    return choice(std::move(words));
+}
+KeyValue table(std::string_view path) { return {{ValueForm::table, fraction, any_value, {}, path}}; }
+KeyValue tables(std::string_view path) { return {table(path).element, ValueShape::tables}; }
+KeyValue list_of(KeyValue value) { return {std::move(value.element), ValueShape::list}; }
+KeyValue one_or_list_of(KeyValue value) { return {std::move(value.element), ValueShape::one_or_list}; }
+KeyValue pairs_of(KeyValue first, KeyValue second) { return {std::move(first.element), ValueShape::pairs, std::move(second.element)}; }
+
+// What holds without it.
+const KeyDefault needed{.need = KeyNeed::always, .words = "must be given"}, must{.need = KeyNeed::where_it_applies, .words = "must be given"},
+    none{.words = "none"};
+KeyDefault words(std::string text) { return {.words = std::move(text)}; }
+KeyDefault usual(double value) { return {.value = value}; }
+KeyDefault usual_word(std::string_view word) { return {.toml = fmt::format("\"{}\"", word)}; }
+
+// Where it applies.
+template <class Value>
+KeyCondition with(std::string_view key, std::initializer_list<Value> values) {
+    KeyCondition condition{key, {}};
+    for (const Value value : values) condition.words.emplace_back(name(value));
+    return condition;
+}
+template <class Value, std::size_t count, class Takes>
+KeyCondition where(std::string_view key, const std::array<Value, count>& values, Takes takes) {
+    KeyCondition condition{key, {}};
+    for (const Value value : values)
+        if (takes(value)) condition.words.emplace_back(name(value));
+    return condition;
+}
+KeyCondition methods_that_are(bool (*such)(const TestMethod&)) {
+    return where("kind", test_kinds, [&](TestKind kind) { return such(method_of(kind)); });
+}
+KeyCondition numerics_that_are(bool (*such)(NumericsKind)) { return where("kind", numerics_kinds, such); }
+bool own_disc(const TestMethod& method) { return method.specimen.own_disc; }
+bool confined(const TestMethod& method) { return method.specimen.confined; }
+bool not_glued(const TestMethod& method) { return !method.specimen.glued; }
+bool adaptive(NumericsKind kind) { return kind == NumericsKind::adaptive; }
+bool not_adaptive(NumericsKind kind) { return kind != NumericsKind::adaptive; }
+bool dynamic(NumericsKind kind) { return kind == NumericsKind::dynamic; }
+bool not_dynamic(NumericsKind kind) { return kind != NumericsKind::dynamic; }
+
+// The stiffness and friction of plates that tests have unless a job says otherwise.
+std::string usual_plate_Kn() {
+    for (const TestKind kind : test_kinds)
+        if (const auto Kn = usual_test(kind).plate_Kn_Pa_m)
+            return fmt::format("curved plates: `{}`, a layer of masking tape", as_written(quantity(stiffness_gradient), *Kn));
+    return "none";
+}
+std::string usual_plate_mu() {
+    std::string text;
+    for (const TestKind kind : test_kinds)
+        if (const double mu = method_of(kind).specimen.plate_mu; mu > 0.0) text += fmt::format("{:g} with `kind = \"{}\"`, ", mu, name(kind));
+    return text + "else 0";
+}
+
+std::vector<JobKey> file_keys() {
+    return {
+        {"name", text("up to 100 letters, digits, '-', '_' and '.', not beginning with '.'"), words("the file's name"), "names the directory of the results"},
+        {"specimen", table("specimen"), needed, "the specimen"},
+        {"model", table("model"), words("its defaults"), "how grains and contacts are modelled"},
+        {"material", table("material"), must, "the rock"},
+        {"numerics", table("numerics"), words("its defaults"), "how a test is loaded and how accurate its strength is to be"},
+        {"variant", tables("variant"), words("the job is one model"), "several models of the same packings, to be compared"},
+        {"test", tables("test"), needed, "the tests"},
+        {"run", table("run"), words("its defaults"), "packings and threads"},
+        {"laboratory", table("laboratory"), none, "what a laboratory measured, shown beside the results"},
+    };
+}
+
+std::vector<JobKey> specimen_keys() {
+    const SpecimenSpec spec;
+    const KeyCondition rectangle = with("shape", {Shape::rectangle}), disc = with("shape", {Shape::disc}), polygon = with("shape", {Shape::polygon});
+    return {
+        {"shape", choice(shapes), needed, "the outline: a rectangle (`width`, `height`), a disc (`diameter`) or a polygon (`vertices`, `edge_labels`)"},
+        {"width", quantity(length), must, "across the load; the Brazilian test cuts its own disc of this diameter", rectangle},
+        {"height", quantity(length), must, "in the direction of loading", rectangle},
+        {"diameter", quantity(length), must, "diameter of the disc", disc},
+        {"vertices", pairs_of(quantity(length, any_value), quantity(length, any_value)), must,
+         "corners of the outline, x and y each, 3 to 10000; they may run either way round", polygon},
+        {"edge_labels", list_of(text()), words("none; needed by tests that press on flat ends"),
+         "one label an edge, edge i from vertex i to vertex i + 1: `\"top\"` on the upper end and `\"bottom\"` on the lower one, both within 10 degrees of "
+         "horizontal; the load acts along y",
+         polygon},
+        {"thickness", quantity(length), usual(spec.thickness_m), "out of plane; scales forces, not stresses"},
+        {"packing", text("a packing saved by an earlier run, its path relative to the job file"), words("a new one for each seed"),
+         "a packing that is loaded instead of made"},
+        {"grains", table("specimen.grains"), needed, "sizes of the grains and what is in them"},
+    };
+}
+
+std::vector<JobKey> grains_keys() {
+    const SpecimenSpec spec;
+    return {
+        {"diameter", table("specimen.grains.diameter"), needed,
+         "the distribution of diameters; of discs, which the cells exceed ([by how much](theory/specimen.md))"},
+        {"porosity", number(below_one), usual(spec.porosity), "sets the number of grains only: the grains fill the plane"},
+        {"merge_length", quantity(length, not_negative, {"auto", "none"}), usual_word("auto"),
+         "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
+        {"triangles_per_grain", integer(0, 10000), usual(spec.triangles_per_grain), "0 for the standard mesh of about 15 triangles, or about so many"},
+        {"particles_per_grain", number({7.0, 500.0, true, true, "from 7 to 500"}), usual(usual_particles_per_grain), "inner particles in a grain of mean area",
+         with("model.kind", {GrainKind::inner_particles})},
+    };
+}
+
+std::vector<JobKey> diameter_keys() {
+    const KeyCondition bounded_kinds = with("distribution", {GrainSizeKind::uniform, GrainSizeKind::log_normal}),
+                       log_normal = with("distribution", {GrainSizeKind::log_normal});
+    return {
+        {"distribution", choice(grain_size_kinds), needed, "how diameters are distributed"},
+        {"minimum", quantity(length), must, "the smallest", bounded_kinds},
+        {"maximum", quantity(length), must, "the largest", bounded_kinds},
+        {"median", quantity(length), must, "the median, between the smallest and the largest", log_normal},
+        {"log_standard_deviation", number({0.0, 3.0, false, true, "greater than 0, at most 3"}), must,
+         "standard deviation of the natural logarithm of the diameter", log_normal},
+        {"curve", pairs_of(quantity(length), share_of_one(share)), must,
+         "sieves of increasing diameter and the share by mass that passes each, from 0 % to 100 %; it may have flat parts",
+         with("distribution", {GrainSizeKind::sieve})},
+    };
+}
+
+std::vector<JobKey> model_keys() {
+    const ModelSpec spec;
+    return {
+        {"kind", choice(grain_kinds), usual_word(name(spec.kind)),
+         "`\"flexible\"`: grains of elastic triangles; `\"rigid\"`: three degrees of freedom a grain; `\"inner-particles\"`: grains filled with small rigid "
+         "particles on unbreakable elastic contacts"},
+        {"contact", choice(contact_kinds), usual_word(name(spec.contact)),
+         "`\"lobatto3\"`: three points on a grain edge; `\"point\"`: one. Inner particles always have one"},
+        {"normal", choice(contact_normals), usual_word(name(spec.normal)),
+         "`\"centres\"`: from centre to centre; `\"edge\"`: that of the Laguerre edge, between inner particles of two grains"},
+        {"plane", choice(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", {}, false, {}, "of flexible grains"},
+    };
+}
+
+std::vector<JobKey> material_keys() {
+    return {
+        {"elastic_preset", choice(elastic_presets()), none, "stiffnesses of the literature by name ([below](#presets)), under what the tables give"},
+        {"strength_preset", choice(strength_presets()), none, "a law and its strengths by name ([below](#presets)), under what the tables give"},
+        {"grain", table("material.grain"), words("that of presets; must be given of flexible grains"), "the grains"},
+        {"contact", table("material.contact"), words("that of presets; else it must be given"), "the contacts between grains"},
+    };
+}
+
+std::vector<JobKey> grain_keys() {
+    const GrainMaterial spec;
+    const KeyCondition flexible = with("model.kind", {GrainKind::flexible});
+    constexpr std::string_view why_not = ": these grains have no elastic constants, they deform by Kn and eta of their contacts";
+    return {
+        {"E", quantity(stress), must, "Young's modulus of the grains; other grains have no elastic constants, they deform by `Kn` and `eta`", flexible, false,
+         why_not},
+        {"nu", number(poisson), must, "Poisson's ratio of the grains", flexible, false, why_not},
+        {"density", quantity(density), usual(spec.density_kg_m3), "density of the grains"},
+    };
+}
+
+std::vector<JobKey> contact_keys() {
+    const ContactMaterial spec;
+    const KeyCondition softening = where("law", contact_laws, [](ContactLaw law) { return law != ContactLaw::brittle; });
+    constexpr std::string_view why_not = ", which does not soften";
+    return {
+        {"law", choice(contact_laws), usual_word(name(spec.law)), "how a contact softens ([laws](theory/contacts.md))"},
+        {"Kn", quantity(stiffness_gradient), must, "normal stiffness per area"},
+        {"eta", number(positive), words("must be given, or `kratio`"), "shear over normal stiffness, ks/kn"},
+        {"kratio", number(positive), words("must be given, or `eta`"), "the inverse, kn/ks, in place of `eta`"},
+        {"sigma_nt", quantity(stress), must, "tensile strength"},
+        {"tau", quantity(stress), must, "cohesion"},
+        {"mu", number(not_negative), must, "friction coefficient"},
+        {"Gfn", quantity(fracture_energy), must, "fracture energy in tension", softening, false, why_not},
+        {"Gfs", quantity(fracture_energy), must, "fracture energy in shear", softening, false, why_not},
+        {"shear_measure", choice(shear_measures), usual_word(name(spec.shear_measure)),
+         "damage counts the whole slip, or with `\"beyond-friction\"` only what friction does not carry", softening, false, why_not},
+        {"tension_unloading", choice(tension_unloadings), usual_word(name(spec.tension_unloading)),
+         "with the initial stiffness, or with `\"secant\"` back to the origin", softening, false, why_not},
+    };
+}
+
+std::vector<JobKey> numerics_keys() {
+    const NumericsSpec spec;
+    return {
+        {"kind", choice(numerics_kinds), usual_word(name(spec.kind)),
+         "`\"adaptive\"`: finds its own loading rate; `\"paper\"`: fixed speed, local damping; `\"dynamic\"`: real masses"},
+        {"accuracy", share_of_one(accuracies, "%"), usual(spec.accuracy),
+         "relative accuracy wanted of a strength: the peak is passed again, more slowly, until the estimated error is that", numerics_that_are(adaptive)},
+        {"residual_target", number({0.0, 0.5, false, true, "greater than 0, at most 0.5"}), words("that of `accuracy`"),
+         "for experts: the target of the unbalanced force itself, in place of `accuracy`", numerics_that_are(adaptive)},
+        {"damping", number(below_one), usual(spec.damping),
+         "alpha of the local damping; with `\"adaptive\"` of what departs from the loading motion ([where it matters](validation/true-strengths.md))"},
+        {"speed", quantity(speed_per_step), words(fmt::format("`{}`; with `\"dynamic\"` it must be given", as_written(quantity(speed_per_step), kPaperSpeed))),
+         "of the platens: with `\"paper\"` a length per step, with `\"dynamic\"` a speed", numerics_that_are(not_adaptive), false,
+         ", which finds its own speed"},
+        {"mass_factor", number(positive), words("found by the program"), "for experts: multiplies the masses; judged before the run",
+         numerics_that_are(not_dynamic)},
+        {"time_step", quantity(Dimension::time), words("found by the program"), "for experts: judged before the run", numerics_that_are(dynamic)},
+        {"maximum_steps", integer(1), words("no limit"), "stop there with what there is"},
+        {"confirm", flag(), usual(spec.confirm ? 1.0 : 0.0),
+         "repeat each test at a third of the target, and once more at another damping, and report both changes of the strength"},
+    };
+}
+
+std::vector<JobKey> variant_keys() {
+    return {
+        {"name", text("up to 60 letters, digits, blanks and , . - _ % ( ) + =, with a letter or digit among them"), needed,
+         "the files of the variant begin with it, so no two may differ only in blanks and signs"},
+        {"seeds", list_of(integer(0)), words("all"), "some of `[run] seeds`"},
+        {"tests", list_of(choice(test_kinds)), words("all"), "kinds of test that the job has"},
+        {"model", table("model"), words("the job's own"), "keys of `[model]`"},
+        {"material", table("material"), words("the job's own"), "keys of `[material]`"},
+        {"numerics", table("numerics"), words("the job's own"), "keys of `[numerics]`"},
+    };
+}
+
+std::vector<JobKey> test_keys() {
+    const TestSpec spec;
+    return {
+        {"kind", choice(test_kinds), needed, "the method"},
+        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", methods_that_are(confined)},
+        {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
+        {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
+         methods_that_are(own_disc)},
+        {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad),
+         "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre", methods_that_are(own_disc)},
+        {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction), "the test ends when the stress has fallen to this fraction of the peak"},
+        {"control", choice(load_controls), words("`\"dissipation\"` in compression with adaptive numerics, else `\"displacement\"`"),
+         "what the platens keep constant behind the peak, with adaptive numerics: `\"displacement\"`; `\"dissipation\"`: the work of fracture and friction in "
+         "a travel time of a wave; "
+         "`\"lateral-strain\"`: the growth of the lateral strain, in compression ([theory](theory/loading.md)). The strength is the same"},
+        {"maximum_strain", share_of_one(inside_one), usual(spec.maximum_strain), "the test ends at this axial strain at the latest"},
+        {"maximum_stress", quantity(stress), none,
+         "the test ends at this stress at the latest (under confinement: sigma1), and its strength is then a lower bound"},
+        {"snapshots", integer(0, 1000), usual(spec.snapshots), "fields kept between the first crack and the end"},
+        {"seeds", list_of(integer(0)), words("those of the run"), "the packings of this test"},
+        {"plates", choice(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
+         "`\"curved\"` for jaws whose arcs embrace the disc ([why](decisions/2026-11-27-brazilian-fixture.md)), or `\"flat\"`", methods_that_are(own_disc),
+         true},
+        {"jaw_radius", number({1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}), usual(spec.jaw_radius),
+         "radius of curved plates, over that of the disc; 1.5 is ISRM's", methods_that_are(own_disc), true},
+        {"plate_stiffness_factor",
+         number(positive),
+         words(fmt::format("{:g}; curved plates have a `plate_Kn`", spec.plate_stiffness_factor)),
+         "stiffness of plates as a multiple of the contacts' `Kn`",
+         {},
+         true},
+        {"plate_Kn",
+         quantity(stiffness_gradient),
+         words(usual_plate_Kn()),
+         "stiffness of plates itself, in place of `plate_stiffness_factor`, as of bearing strips or of the tape on curved jaws "
+         "([why](validation/brazilian-plates.md))",
+         {},
+         true},
+        {"plate_mu", number(not_negative), words(usual_plate_mu()), "friction of plates", methods_that_are(not_glued), true,
+         ": its plates are glued on and hold in the normal direction only"},
+        {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it",
+         methods_that_are(confined), true},
+    };
+}
+
+std::vector<JobKey> run_keys() {
+    return {
+        {"seeds", list_of(integer(0)), {.toml = "[1]"}, "one packing each"},
+        {"seed", integer(0), words("1"), "in place of `seeds`: a single packing"},
+        {"threads", integer(1, 256, {"auto"}), usual_word("auto"), "of the whole program; `\"auto\"`: one for each core that it may use"},
+        {"at_once", integer(1, 256, {"auto"}), usual_word("auto"),
+         "at most so many tests side by side, never more than threads; `\"auto\"`: as suits their size"},
+    };
+}
+
+// What a laboratory reports, by the table of properties (lab/rock_properties.hpp), with the short names that papers use.
+std::vector<JobKey> laboratory_keys() {
+    const auto value_of = [](const RockProperty& property) {
+        if (!property.unit.written) return number(property.name == "nu" ? poisson : positive);
+        const Dimension dimension = *property.unit.written;
+        KeyValue value = quantity(dimension, dimension == angle ? below_right_angle : positive);
+        value.unit = property.unit.user;
+        return value;
+    };
+    constexpr std::pair<std::string_view, std::string_view> short_names[]{{"cohesion", "c"}, {"friction_angle", "phi"}, {"hoek_brown_mi", "mi"}};
+    std::vector<JobKey> keys;
+    for (const RockProperty& property : rock_properties()) {
+        if (property.laboratory.empty() || !property.reported()) continue;
+        keys.push_back({property.name, value_of(property), none, property.label});
+        for (const auto& [name, alias] : short_names)
+            if (name == property.name) {
+                JobKey same{alias, value_of(property), none, fmt::format("the same as `{}`", name)};
+                same.same_as = property.name;
+                keys.push_back(std::move(same));
+            }
+    }
+    keys.push_back({"confined", pairs_of(quantity(stress), quantity(stress)), none,
+                    "strengths under confinement: pairs of \u03c3\u2083 and \u03c3\u2081, shown beside envelopes"});
+    return keys;
+}
+
+std::vector<KeyTable> all_tables() {
+    std::vector<KeyTable> tables{
+        {"", "the file", file_keys()},
+        {"specimen", "[specimen]", specimen_keys()},
+        {"specimen.grains", "[specimen.grains]", grains_keys()},
+        {"specimen.grains.diameter", "[specimen.grains] diameter", diameter_keys()},
+        {"model", "[model]", model_keys()},
+        {"material", "[material]", material_keys()},
+        {"material.grain", "[material.grain]", grain_keys()},
+        {"material.contact", "[material.contact]", contact_keys()},
+        {"numerics", "[numerics]", numerics_keys()},
+        {"variant", "[[variant]]", variant_keys()},
+        {"test", "[[test]]", test_keys()},
+        {"run", "[run]", run_keys()},
+        {"laboratory", "[laboratory]", laboratory_keys()},
+    };
+    // a table means what the first key means behind which it stands
+    for (KeyTable& table : tables)
+        for (const KeyTable& outer : tables)
+            for (const JobKey& key : outer.keys)
+                if (key.value.element.form == ValueForm::table && key.value.element.table == table.path && table.meaning.empty()) table.meaning = key.meaning;
+    return tables;
+}
+
+}  // namespace
+
+std::vector<std::string_view> KeyTable::names() const {
+    std::vector<std::string_view> found;
+    for (const JobKey& key : keys) found.push_back(key.name);
+    return found;
+}
+
+const JobKey& KeyTable::key(std::string_view name) const {
+    const auto found = std::ranges::find(keys, name, &JobKey::name);
+    if (found == keys.end()) throw std::logic_error(fmt::format("job/keys.cpp has no key '{}' of {}", name, head));
+    return *found;
+}
+
+std::span<const KeyTable> job_tables() {
+    static const std::vector<KeyTable> all = all_tables();
+    return all;
+}
+
+const KeyTable& job_table(std::string_view path) {
+    const std::span<const KeyTable> all = job_tables();
+    const auto found = std::ranges::find(all, path, &KeyTable::path);
+    if (found == all.end()) throw std::logic_error(fmt::format("job/keys.cpp has no table '{}'", path));
+    return *found;
+}
+
+const JobKey& job_key(std::string_view path, std::string_view name) { return job_table(path).key(name); }
+
+bool KeyCondition::holds(std::string_view word) const { return std::ranges::find(words, word) != words.end(); }
+
+}  // namespace feldspar

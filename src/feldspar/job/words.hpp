@@ -1,0 +1,40 @@
+// The words of job files for what has no name() where it is defined: outlines, distributions of sizes, details of softening.
+#pragma once
+
+#include <array>
+
+#include "feldspar/model/spec.hpp"
+#include "feldspar/specimen/specimen.hpp"
+
+namespace feldspar {
+
+inline constexpr std::array shapes{Shape::rectangle, Shape::disc, Shape::polygon};
+inline constexpr std::array grain_size_kinds{GrainSizeKind::uniform, GrainSizeKind::log_normal, GrainSizeKind::sieve};
+inline constexpr std::array shear_measures{ShearMeasure::total, ShearMeasure::beyond_friction};
+inline constexpr std::array tension_unloadings{TensionUnloading::elastic, TensionUnloading::secant};
+
+inline const char* name(Shape shape) {
+    switch (shape) {
+        case Shape::rectangle: return "rectangle";
+        case Shape::disc: return "disc";
+        case Shape::polygon: return "polygon";
+    }
+    return "?";
+}
+inline const char* name(GrainSizeKind kind) {
+    switch (kind) {
+        case GrainSizeKind::uniform: return "uniform";
+        case GrainSizeKind::log_normal: return "log-normal";
+        case GrainSizeKind::sieve: return "sieve";
+    }
+    return "?";
+}
+inline const char* name(ShearMeasure measure) { return measure == ShearMeasure::total ? "total" : "beyond-friction"; }
+inline const char* name(TensionUnloading unloading) { return unloading == TensionUnloading::elastic ? "elastic" : "secant"; }
+
+/// The disc of a Brazilian test.
+enum class DiscForm { whole, flattened };
+inline constexpr std::array disc_forms{DiscForm::whole, DiscForm::flattened};
+inline const char* name(DiscForm form) { return form == DiscForm::whole ? "whole" : "flattened"; }
+
+}  // namespace feldspar
