@@ -80,6 +80,9 @@ OutlineSpec read_outline(const TableReader& table) {
         case Shape::polygon:
             read_polygon(table, outline);
             break;
+        case Shape::half_disc:
+        case Shape::ring:
+            break;
     }
     return outline;
 }

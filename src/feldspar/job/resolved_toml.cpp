@@ -67,6 +67,9 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
             if (!items.empty()) out.raw("edge_labels", fmt::format("[{}]", fmt::join(items, ", ")));
             break;
         }
+        case Shape::half_disc:
+        case Shape::ring:
+            break;
     }
 }
 
