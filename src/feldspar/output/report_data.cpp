@@ -201,6 +201,10 @@ Json specimens_json(std::span<const TestResult> results) {
         if (outline.shape == Shape::rectangle)
             shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
         if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
+        if (outline.shape == Shape::half_disc) shape = fmt::format("half disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
+        if (outline.shape == Shape::ring) shape = fmt::format("ring, diameters {:.6g} and {:.6g} mm", outline.diameter_m * 1e3, outline.hole_diameter_m * 1e3);
+        if (!outline.holes.empty()) shape += fmt::format(", {} {}", outline.holes.size(), outline.holes.size() == 1 ? "hole" : "holes");
+        if (!outline.notches.empty()) shape += fmt::format(", {} {}", outline.notches.size(), outline.notches.size() == 1 ? "notch" : "notches");
         if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", outline.flat_angle_rad * 180.0 / std::numbers::pi);
         list.push_back({{"for", brazilian ? "Brazilian test" : "compression and tension"},
                         {"shape", shape},
