@@ -20,8 +20,6 @@ void require_length(double value, const char* key) {
     }
 }
 
-constexpr double least_cosine = 0.984807753012208;   // of 10 degrees
-
 struct Extremes {
     double least = std::numeric_limits<double>::infinity(), most = 0.0;
 };
@@ -47,19 +45,6 @@ Extremes extreme_widths(const Outline& outline, double low, double high) {
             extremes.least = std::min(extremes.least, std::max(0.0, width));
             extremes.most = std::max(extremes.most, width);
         }
-    }
-    for (const Cutout& cut : outline.cutouts) {   // one across the load leaves that much less of the section
-        if (!cut.is_cut()) continue;
-        const Vec2 a = cut.vertices[0], b = cut.vertices[1];
-        const double y = 0.5 * (a.y + b.y);
-        if (std::abs(b.x - a.x) < least_cosine * norm(b - a) || y <= low || y >= high) continue;
-        const double box_height = high - low, above = std::min(y + 1e-6 * box_height, high);
-        const double thin = 1e-9 * box_height;   // as a slit of next to no width
-        Cutout slit;
-        slit.vertices = {{std::min(a.x, b.x), above - thin}, {std::max(a.x, b.x), above - thin}, {std::max(a.x, b.x), above + thin}, {std::min(a.x, b.x), above + thin}};
-        std::vector<Cutout> with_it = outline.cutouts;
-        with_it.push_back(slit);
-        extremes.least = std::min(extremes.least, width_at(outline.vertices, with_it, above));
     }
     return extremes;
 }
@@ -145,6 +130,7 @@ std::optional<EndFault> end_fault(const OutlineSpec& spec) {
     }
     if (first_top < 0 || first_bottom < 0) return {};
     const std::string allowed = "\"top\" on the upper end and \"bottom\" on the lower one, both within 10 degrees of horizontal; y points up, and the load acts along it";
+    constexpr double least_cosine = 0.984807753012208;   // of 10 degrees
     const double turn = signed_area(corners) > 0.0 ? 1.0 : -1.0;
     for (int k = 0; k < n; ++k) {
         const bool top = spec.edge_labels[k] == top_label;

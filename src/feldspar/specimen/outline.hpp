@@ -57,6 +57,7 @@ struct EndFault {
 std::optional<EndFault> end_fault(const OutlineSpec& spec);
 
 /// Widths of the sections across the load, which acts along y (m). Of a section that the outline, holes or slits cut into pieces, their sum.
+/// A cut without width takes nothing of it: it carries pressure.
 struct SectionWidths {
     double narrowest = 0.0;          ///< between the ends
     double widest = 0.0;
