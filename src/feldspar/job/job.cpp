@@ -52,8 +52,7 @@ void check_one_packing(const TableReader& root, const Job& job) {
         several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
     if (!several) return;
     root.check({}, [&] {
-        root.table("specimen",
-                   {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"})
+        root.table("specimen", specimen_keys)
             .fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
     });
 }

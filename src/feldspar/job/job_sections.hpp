@@ -2,8 +2,10 @@
 // read_job().
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "feldspar/model/spec.hpp"
@@ -19,6 +21,15 @@ Job read_tree(toml::table tree, const std::string& text, const std::string& name
 /// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles; nothing if a
 /// mistake in the models leaves that open.
 SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, std::optional<bool> filled);
+
+/// All keys of [specimen].
+inline constexpr std::array<std::string_view, 13> specimen_keys{"shape", "width", "height", "diameter", "hole_diameter", "vertices", "edge_labels",
+                                                                "holes", "notches", "labels", "thickness", "grains", "packing"};
+
+/// `holes`, `notches` and `labels` of [specimen].
+void read_cutouts(const TableReader& table, OutlineSpec& outline);
+/// Whether holes and notches fit the outline, the grains and each other.
+void check_cutouts(const TableReader& table, const SpecimenSpec& specimen);
 
 /// [model], [material] and [numerics] of the job, or of one of its variants, whose tables lie over the job's.
 struct Physics {
@@ -74,7 +85,7 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
 double largest_diameter_m(const GrainSizeSpec& sizes);
 double typical_diameter_m(const GrainSizeSpec& sizes);
 
-/// The smallest extent of an outline: rectangle and polygon by their sides along the axes, disc by its diameter.
+/// The smallest extent of an outline: its sides along the axes; disc by its diameter.
 double smallest_extent_m(const OutlineSpec& outline);
 
 }  // namespace feldspar

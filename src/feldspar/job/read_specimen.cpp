@@ -19,19 +19,30 @@ const Range particles_range{7.0, 500.0, true, true, "from 7 to 500"};
 const Range porosity_range{0.0, 1.0, true, false, "0 or greater and less than 1"};
 
 void read_rectangle(const TableReader& table, OutlineSpec& outline) {
-    table.refuse({"diameter", "vertices", "edge_labels"}, "shape = \"rectangle\"", "width, height");
+    table.refuse({"diameter", "hole_diameter", "vertices", "edge_labels"}, "shape = \"rectangle\"", "width, height");
     table.require({"width", "height"});
     outline.width_m = table.quantity("width", Dimension::length, positive);
     outline.height_m = table.quantity("height", Dimension::length, positive);
 }
 
-void read_disc(const TableReader& table, OutlineSpec& outline) {
-    table.refuse({"width", "height", "vertices", "edge_labels"}, "shape = \"disc\"", "diameter");
+void read_disc(const TableReader& table, OutlineSpec& outline, const std::string& setting) {
+    table.refuse({"width", "height", "hole_diameter", "vertices", "edge_labels"}, setting, "diameter");
     outline.diameter_m = table.quantity("diameter", Dimension::length, positive);
 }
 
+void read_ring(const TableReader& table, OutlineSpec& outline) {
+    table.refuse({"width", "height", "vertices", "edge_labels"}, "shape = \"ring\"", "diameter, hole_diameter");
+    table.require({"diameter", "hole_diameter"});
+    outline.diameter_m = table.quantity("diameter", Dimension::length, positive);
+    outline.hole_diameter_m = table.quantity("hole_diameter", Dimension::length, positive);
+    table.check({"diameter", "hole_diameter"}, [&] {
+        if (outline.hole_diameter_m >= outline.diameter_m)
+            table.fail("hole_diameter", shown(*table.find("hole_diameter")) + " is not less than the diameter, " + shown(*table.find("diameter")));
+    });
+}
+
 void read_polygon(const TableReader& table, OutlineSpec& outline) {
-    table.refuse({"width", "height", "diameter"}, "shape = \"polygon\"", "vertices, edge_labels");
+    table.refuse({"width", "height", "diameter", "hole_diameter"}, "shape = \"polygon\"", "vertices, edge_labels");
     const toml::array& vertices = table.array("vertices");
     for (const toml::node& vertex : vertices)
         table.check({}, [&] {
@@ -65,9 +76,13 @@ void read_polygon(const TableReader& table, OutlineSpec& outline) {
 OutlineSpec read_outline(const TableReader& table) {
     OutlineSpec outline;
     outline.shape =
-        table.choice<Shape>("shape", {{"rectangle", Shape::rectangle}, {"disc", Shape::disc}, {"polygon", Shape::polygon}});
+        table.choice<Shape>("shape", {{"rectangle", Shape::rectangle},
+                                      {"disc", Shape::disc},
+                                      {"polygon", Shape::polygon},
+                                      {"half-disc", Shape::half_disc},
+                                      {"ring", Shape::ring}});
     if (!table.sound({"shape"})) {   // what is there can be looked at nevertheless
-        for (const char* key : {"width", "height", "diameter"}) table.quantity(key, Dimension::length, positive, 0.0);
+        for (const char* key : {"width", "height", "diameter", "hole_diameter"}) table.quantity(key, Dimension::length, positive, 0.0);
         return outline;
     }
     switch (outline.shape) {
@@ -75,13 +90,16 @@ OutlineSpec read_outline(const TableReader& table) {
             read_rectangle(table, outline);
             break;
         case Shape::disc:
-            read_disc(table, outline);
+            read_disc(table, outline, "shape = \"disc\"");
+            break;
+        case Shape::half_disc:
+            read_disc(table, outline, "shape = \"half-disc\"");
+            break;
+        case Shape::ring:
+            read_ring(table, outline);
             break;
         case Shape::polygon:
             read_polygon(table, outline);
-            break;
-        case Shape::half_disc:
-        case Shape::ring:
             break;
     }
     return outline;
@@ -153,7 +171,7 @@ GrainSizeSpec read_grain_sizes(const TableReader& grains) {
 // An upper estimate is enough here: the specimen counts exactly.
 double rough_area_m2(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return outline.width_m * outline.height_m;
-    if (outline.shape == Shape::disc) return 0.25 * std::numbers::pi * outline.diameter_m * outline.diameter_m;
+    if (outline.shape != Shape::polygon) return 0.25 * std::numbers::pi * outline.diameter_m * outline.diameter_m;
     return std::abs(signed_area(outline.vertices_m));
 }
 
@@ -172,11 +190,9 @@ double typical_diameter_m(const GrainSizeSpec& sizes) {
 double smallest_extent_m(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return std::min(outline.width_m, outline.height_m);
     if (outline.shape == Shape::disc) return outline.diameter_m;
-    const auto [left, right] =
-        std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; });
-    const auto [low, high] =
-        std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.y < b.y; });
-    return std::min(right->x - left->x, high->y - low->y);
+    if (outline.shape == Shape::ring) return 0.5 * (outline.diameter_m - outline.hole_diameter_m);
+    const Box box = bounding_box(outline);
+    return std::min(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
 }
 
 namespace {
@@ -225,11 +241,11 @@ void read_merge_length(const TableReader& grains, SpecimenSpec& spec) {
 }  // namespace
 
 SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path& folder, std::optional<bool> filled) {
-    const TableReader table = root.table(
-        "specimen", {"shape", "width", "height", "diameter", "vertices", "edge_labels", "thickness", "grains", "packing"});
+    const TableReader table = root.table("specimen", specimen_keys);
     table.require({"shape", "grains"});
     SpecimenSpec spec;
     spec.outline = read_outline(table);
+    read_cutouts(table, spec.outline);
     spec.thickness_m = table.quantity("thickness", Dimension::length, positive, spec.thickness_m);
 
     const TableReader grains =
@@ -243,7 +259,8 @@ SpecimenSpec read_specimen(const TableReader& root, const std::filesystem::path&
         spec.particles_per_grain = grains.number("particles_per_grain", particles_range, usual_particles_per_grain);
     else
         grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with kind = \"inner-particles\"");
-    if (table.sound({"shape", "width", "height", "diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
+    if (table.sound({"shape", "width", "height", "diameter", "hole_diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
+    check_cutouts(table, spec);
     read_merge_length(grains, spec);
 
     if (table.has("packing")) {

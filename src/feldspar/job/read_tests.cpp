@@ -31,7 +31,14 @@ struct Known {
 
 // Platens need a flat top and bottom.
 void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& outline) {
-    if (method_of(kind).specimen.own_disc || outline.shape == Shape::rectangle) return;
+    if (method_of(kind).specimen.own_disc) {
+        if ((outline.shape == Shape::disc || outline.shape == Shape::ring) && outline.is_cut())
+            table.fail("kind", "'" + std::string(name(kind)) + "' cuts its own whole disc: the holes and notches of the specimen would not be in it", "a disc without holes and notches");
+        return;
+    }
+    if (method_of(kind).specimen.confined && outline.is_cut())
+        table.fail("kind", "'" + std::string(name(kind)) + "' presses on every side, those of holes and notches too", "a specimen without holes and notches");
+    if (outline.shape == Shape::rectangle) return;
     if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) {
         const SectionWidths widths = section_widths(make_outline(outline));
         if (method_of(kind).specimen.confined && widths.widest > (1.0 + most_confined_taper) * widths.narrowest)
@@ -41,7 +48,7 @@ void check_outline(const TableReader& table, TestKind kind, const OutlineSpec& o
                        "a rectangle, or a polygon whose width varies by a tenth at most");
         return;
     }
-    const std::string shape = outline.shape == Shape::disc ? "a disc" : "a polygon without edges labelled \"top\" and \"bottom\"";
+    const std::string shape = outline.shape == Shape::disc ? "a disc" : outline.shape == Shape::half_disc ? "a half disc" : outline.shape == Shape::ring ? "a ring" : "a polygon without edges labelled \"top\" and \"bottom\"";
     table.fail("kind", "'" + std::string(name(kind)) + "' presses on flat ends, which " + shape + " has not",
                "shape = \"rectangle\", or a polygon with edges labelled \"top\" and \"bottom\"");
 }
@@ -51,7 +58,7 @@ double brazilian_diameter(const TableReader& table, const SpecimenSpec& specimen
     if (!known.outline) table.do_not_miss({"diameter"});
     if (!table.has("diameter") && specimen.outline.shape == Shape::polygon)
         table.check({"diameter"}, [&] { table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)"); });
-    const double usual = specimen.outline.shape == Shape::disc ? specimen.outline.diameter_m : specimen.outline.width_m;
+    const double usual = specimen.outline.shape == Shape::rectangle ? specimen.outline.width_m : specimen.outline.diameter_m;
     const double diameter = table.quantity("diameter", Dimension::length, positive, usual);
     if (!known.grain_sizes) return diameter;
     table.check({"diameter"}, [&] {
@@ -232,7 +239,8 @@ TestList read_tests(const TableReader& root, const SpecimenSpec& specimen, const
     TestList result;
     if (!root.has("test")) return result;   // a mistake that is noted
     const Known known{
-        root.sound({"specimen.shape", "specimen.width", "specimen.height", "specimen.diameter", "specimen.vertices", "specimen.edge_labels"}),
+        root.sound({"specimen.shape", "specimen.width", "specimen.height", "specimen.diameter", "specimen.hole_diameter", "specimen.vertices", "specimen.edge_labels",
+                    "specimen.holes", "specimen.notches"}),
         root.sound({"specimen.grains.diameter"}), kinds_known(root, variants)};
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const TableReader& table : root.tables("test", "a test",

@@ -45,6 +45,50 @@ std::string list(const Items& items) {
     return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
+std::string point(Vec2 p) { return fmt::format("[{}, {}]", si(p.x, Dimension::length), si(p.y, Dimension::length)); }
+
+std::string points(const std::vector<Vec2>& all) {
+    std::vector<std::string> items;
+    for (const Vec2 p : all) items.push_back(point(p));
+    return list(items);
+}
+
+void write_cutouts(Lines& out, const OutlineSpec& outline) {
+    std::vector<std::string> items;
+    const auto label = [](const std::string& given) { return given.empty() ? std::string() : ", label = " + quote(given); };
+    for (const HoleSpec& hole : outline.holes) {
+        const std::string shape = hole.vertices_m.empty() ? fmt::format("centre = {}, diameter = {}", point(hole.centre_m), si(hole.diameter_m, Dimension::length))
+                                                          : fmt::format("vertices = {}", points(hole.vertices_m));
+        items.push_back(fmt::format("{{ {}{} }}", shape, label(hole.label)));
+    }
+    if (!items.empty()) out.raw("holes", list(items));
+    items.clear();
+    for (const NotchSpec& notch : outline.notches)
+        items.push_back(fmt::format("{{ from = {}, to = {}, width = {}{} }}", point(notch.from_m), point(notch.to_m), si(notch.width_m, Dimension::length), label(notch.label)));
+    if (!items.empty()) out.raw("notches", list(items));
+}
+
+void write_place_labels(Lines& out, const OutlineSpec& outline) {
+    std::vector<std::string> items;
+    for (const PlaceLabelSpec& label : outline.labels) {
+        const std::string within = si(label.within_m, Dimension::length);
+        std::string place;
+        switch (label.kind) {
+            case PlaceKind::disc:
+                place = fmt::format("at = {}, within = {}", point(label.a_m), within);
+                break;
+            case PlaceKind::box:
+                place = fmt::format("box = {}", points({label.a_m, label.b_m}));
+                break;
+            case PlaceKind::line:
+                place = fmt::format("line = {}, within = {}", points({label.a_m, label.b_m}), within);
+                break;
+        }
+        items.push_back(fmt::format("{{ name = {}, {} }}", quote(label.name), place));
+    }
+    if (!items.empty()) out.raw("labels", list(items));
+}
+
 void write_outline(Lines& out, const OutlineSpec& outline) {
     switch (outline.shape) {
         case Shape::rectangle:
@@ -68,9 +112,17 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
             break;
         }
         case Shape::half_disc:
+            out.word("shape", "half-disc");
+            out.quantity("diameter", outline.diameter_m, Dimension::length);
+            break;
         case Shape::ring:
+            out.word("shape", "ring");
+            out.quantity("diameter", outline.diameter_m, Dimension::length);
+            out.quantity("hole_diameter", outline.hole_diameter_m, Dimension::length);
             break;
     }
+    write_cutouts(out, outline);
+    write_place_labels(out, outline);
 }
 
 std::string grain_sizes(const GrainSizeSpec& sizes) {
