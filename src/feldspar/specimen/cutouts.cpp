@@ -206,21 +206,33 @@ private:
     /// The rectangle or the cut, reaching out of the rock at open ends.
     void shape_notch(Cutout& cutout, const NotchSpec& notch) const {
         const Vec2 along = (1.0 / norm(notch.to_m - notch.from_m)) * (notch.to_m - notch.from_m);
-        const double out = notch.width_m + bridge_;
-        const Vec2 from = notch.from_m - (cutout.tips[0] ? 0.0 : out) * along, to = notch.to_m + (cutout.tips[1] ? 0.0 : out) * along;
+        const Vec2 across = 0.5 * notch.width_m * rot90(along);
+        const Vec2 from = cutout.tips[0] ? notch.from_m : moved_out(notch.from_m, -along, across, cutout.name), to = cutout.tips[1] ? notch.to_m : moved_out(notch.to_m, along, across, cutout.name);
         if (notch.width_m == 0.0) {
             cutout.vertices = {from, to};
             cutout.packed_around = false;
             return;
         }
-        const Vec2 half = 0.5 * notch.width_m * rot90(along);
         cutout.slit = true;
-        cutout.vertices = {from - half, to - half, to + half, from + half};
+        cutout.vertices = {from - across, to - across, to + across, from + across};
         cutout.packed_around = notch.width_m > grains_.mean_m;
         cutout.area_m2 = common_area(outer_, cutout.vertices);
         for (const Cutout& hole : outline_.cutouts) {
             if (!hole.slit && !hole.is_cut()) cutout.area_m2 -= common_area(hole.vertices, cutout.vertices);
         }
+    }
+
+    /// An open end, moved on no farther than it must be for its whole width to be out of the rock: behind a hole there is rock again.
+    Vec2 moved_out(Vec2 end, Vec2 outward, Vec2 across, const std::string& name) const {
+        constexpr int steps = 40;
+        const double farthest = 5.0 * (2.0 * norm(across) + bridge_);
+        for (int k = 0; k <= steps; ++k) {
+            const Vec2 p = end + (farthest * k / steps) * outward;
+            const auto out = [&](Vec2 corner) { return !in_rock(corner) && distance_to_rocks_boundary(corner) > 1e-6 * size_; };
+            if (out(p - across) && out(p + across)) return p;
+        }
+        throw InputError({"", 0, 0, notches_key}, fmt::format("the end of {} at {} leaves a bridge to the boundary, thinner than half a grain", name, in_mm(end)),
+                         "ends that reach out of the rock with their whole width, or lie half a mean grain or more from its boundary", "lengthen the notch, or shorten it");
     }
 
     void check_bridges(const Cutout& cutout, const NotchSpec& notch) const {

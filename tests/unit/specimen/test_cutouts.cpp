@@ -268,6 +268,18 @@ TEST(Notches, NarrowOnesAreNotPackedAround) {
     EXPECT_LT(wide.packed.centres.size(), whole.packing.centres.size());
 }
 
+TEST(Notches, OpenEndsGoNoFartherThanTheHoleTheyBeginIn) {
+    SpecimenSpec spec = ring();
+    spec.outline.notches = {{{0.0, -0.035}, {0.0, 0.0095}, 0.0, {}}, {{0.005, 0.0}, {0.02, 0.0}, 0.001, {}}};
+    const Specimen s = make_specimen(spec, 1);
+    EXPECT_NO_THROW(check_conforming(s.cells));
+    for (const Cell& cell : s.cells.cells) {
+        for (const int v : cell.vertices) EXPECT_FALSE(s.cells.vertices[v].x == 0.0 && s.cells.vertices[v].y > 0.0) << "nothing is cut beyond the hole";
+    }
+    EXPECT_EQ(s.outline.cutouts[1].tips, (std::array{false, false})) << "from outside to the hole: a ring that is open";
+    EXPECT_EQ(s.outline.cutouts[2].tips, (std::array{false, true}));
+}
+
 TEST(Cutting, DoesNotDependOnThreads) {
     const Specimen one = make_specimen(holed_plate(), 2, {.threads = 1, .progress = {}}), three = make_specimen(holed_plate(), 2, {.threads = 3, .progress = {}});
     EXPECT_EQ(one.mesh.nodes, three.mesh.nodes);
@@ -372,6 +384,7 @@ TEST(Cutouts, ImpossibleOnesAreRefused) {
     expect(with_notch({0.02, 0.0}, {0.02, 0.05}), "cuts the specimen in two");
     expect(with_notch({0.02, 0.0}, {0.02, 0.049}), "bridge of 1 mm");
     expect(with_notch({0.02, 0.0}, {0.02, 0.006}, 0.008), "less than its width");
+    expect(with_notch({0.02, 0.0495}, {0.045, 0.0482}), "leaves a bridge to the boundary");
     SpecimenSpec crossing = rectangle(0.05, 0.05);
     crossing.outline.notches = {{{0.01, 0.02}, {0.03, 0.02}, 0.0, {}}};
     expect(with_notch({0.02, 0.01}, {0.02, 0.03}, 0.0, crossing), "notch 1 and notch 2 touch");
