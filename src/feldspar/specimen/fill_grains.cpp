@@ -64,12 +64,12 @@ double discs_in_all(const Polygons& polygons, double diameter, Team* team) {
     return std::accumulate(counts.begin(), counts.end(), 0.0);
 }
 
-/// Below this share of the common diameter the discs of a narrow grain would be legion: it is refused.
-constexpr double smallest_share = 0.05;
+/// A grain that is so bent or narrow that its discs must be far smaller than the common diameter may have room for millions of them: it is refused.
+constexpr double smallest_share = 0.05, most_inside = 10000.0;
 
 void require_room(const Polygons& polygons, const std::vector<GrainRing>& rings, double diameter) {
     for (std::size_t g = 0; g < rings.size(); ++g) {
-        if (rings[g].diameter_m >= smallest_share * diameter) continue;
+        if (rings[g].diameter_m >= smallest_share * diameter || discs_inside(rings[g]) <= most_inside) continue;
         const Vec2 at = centroid(polygons[g]);
         throw InputError({"", 0, 0, "specimen.grains.particles_per_grain"},
                          fmt::format("the grain at ({:.4g}, {:.4g}) mm is too narrow for inner particles of {:.3g} mm", 1e3 * at.x, 1e3 * at.y, 1e3 * diameter), "grains that are wider",
