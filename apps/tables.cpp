@@ -73,7 +73,7 @@ std::string compared_table(const Job& job, const std::vector<VariantSummary>& su
         const auto has = [&](const VariantSummary& summary) { return summary.properties.values.contains(name); };
         if (property.reported() && std::any_of(summaries.begin(), summaries.end(), has)) present.push_back(name);
     }
-    if (present.empty()) return "No property could be read: no test reached its peak.\n";
+    if (present.empty()) return "No property of the rock: no test that defines one has reached its peak.\n";
     std::vector<Row> rows{{"Variant"}};
     for (const std::string& property : present) rows.front().push_back(symbol_with_unit(user_quantity(property)));
     for (const VariantSummary& summary : summaries) {
@@ -149,7 +149,7 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
     std::stable_sort(order.begin(), order.end(), [](const Entry& a, const Entry& b) {
         return std::pair(a.quantity.rank, a.sigma3_MPa) < std::pair(b.quantity.rank, b.sigma3_MPa);
     });
-    if (order.empty()) return "No property could be read: no test reached its peak.\n";
+    if (order.empty()) return "No property of the rock: no test that defines one has reached its peak.\n";
 
     std::vector<Row> rows{{"Property", "unit", "median", "minimum", "maximum", "n", "laboratory", "deviation"}};
     for (const auto& [quantity, property, sigma3] : order) {

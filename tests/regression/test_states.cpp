@@ -56,7 +56,7 @@ std::vector<Case> all_cases() {
     std::vector<Case> cases;
     std::size_t pair = 0;
     for (const GrainKind grains : grain_kinds)
-        for (const TestKind test : test_kinds) {
+        for (const TestKind test : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian}) {   // beams need a longer specimen: tests/verification has them
             for (const ContactLaw law : contact_laws) cases.push_back({grains, test, law, NumericsKind::adaptive, "portable"});
             for (std::size_t k : {0, 2, 3}) cases.push_back({grains, test, contact_laws[(pair + k) % 4], NumericsKind::adaptive, all_sets[k]});
             cases.push_back({grains, test, contact_laws[(pair + 1) % 4], NumericsKind::paper, all_sets[(pair + pair / 4) % 4]});

@@ -22,8 +22,8 @@ std::vector<std::uint64_t> choose_seeds(const Job& job, std::optional<int> wante
 std::optional<SpecimenSpec> usual_disc(const SpecimenSpec& specimen) {
     if (specimen.outline.shape == Shape::polygon) return std::nullopt;
     SpecimenSpec disc = specimen;
-    const double diameter_m = specimen.outline.shape == Shape::disc ? specimen.outline.diameter_m : specimen.outline.width_m;
-    if (specimen.outline.shape != Shape::disc) disc.packing_file.clear();
+    const double diameter_m = specimen.outline.shape == Shape::rectangle ? specimen.outline.width_m : specimen.outline.diameter_m;
+    if (specimen.outline.shape != Shape::disc || specimen.outline.is_cut()) disc.packing_file.clear();
     disc.outline = OutlineSpec{};
     disc.outline.shape = Shape::disc;
     disc.outline.diameter_m = diameter_m;

@@ -56,8 +56,10 @@ std::vector<double> stresses_of(const Job& job, const EnvelopeOptions& options, 
 }
 
 void check_outline(const Job& job) {
-    if (job.specimen.outline.shape == Shape::disc)
-        throw InputError({job.file.string(), 0, 0, "specimen.shape"}, "an envelope needs compression tests, which press on flat ends, and a disc has none",
+    const Shape shape = job.specimen.outline.shape;
+    if (shape == Shape::disc || shape == Shape::half_disc || shape == Shape::ring)
+        throw InputError({job.file.string(), 0, 0, "specimen.shape"},
+                         fmt::format("an envelope needs compression tests, which press on flat ends, and a {} has none", shape == Shape::disc ? "disc" : shape == Shape::ring ? "ring" : "half disc"),
                          "shape = \"rectangle\"; the Brazilian test cuts its own disc");
 }
 

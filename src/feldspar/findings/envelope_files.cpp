@@ -2,11 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "feldspar/base/printable.hpp"
 #include "feldspar/base/text_table.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/html_page.hpp"
 #include "feldspar/output/report_assets.hpp"
 #include "feldspar/findings/envelope.hpp"
@@ -26,13 +29,9 @@ struct StressState {
 
 StressState state_of(const TestResult& result) {
     const double strength = result.properties.peak_stress_Pa;
-    switch (result.test.kind) {
-        case TestKind::direct_tension: return {-strength, 0.0};
-        case TestKind::brazilian: return {-strength, 3.0 * strength};
-        case TestKind::biaxial: return {result.test.sigma3_Pa, strength};
-        case TestKind::uniaxial_compression: break;
-    }
-    return {0.0, strength};
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto [least, most] = method_of(result.test).loading.failure_state.value_or(std::array{nan, nan});
+    return {least * strength + result.test.sigma3_Pa, most * strength};
 }
 
 bool counts(const TestResult& result) { return result.properties.peak_reached && std::isfinite(result.properties.peak_stress_Pa); }

@@ -10,6 +10,7 @@
 #include "feldspar/findings/converge.hpp"
 #include "feldspar/findings/choose_seeds.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/specimen/outline.hpp"
 
 namespace feldspar {
 
@@ -41,11 +42,6 @@ void scale(GrainSizeSpec& sizes, double factor) {
     for (SievePoint& point : sizes.sieve) point.diameter_m *= factor;
 }
 
-void scale(OutlineSpec& outline, double factor) {
-    for (double* length : {&outline.width_m, &outline.height_m, &outline.diameter_m}) *length *= factor;
-    for (Vec2& vertex : outline.vertices_m) vertex = {vertex.x * factor, vertex.y * factor};
-}
-
 double middle_diameter_m(const GrainSizeSpec& sizes) {
     if (sizes.kind == GrainSizeKind::uniform) return 0.5 * (sizes.minimum_m + sizes.maximum_m);
     if (sizes.kind == GrainSizeKind::log_normal) return sizes.median_m;
@@ -59,10 +55,8 @@ double middle_diameter_m(const GrainSizeSpec& sizes) {
 double coarsest_m(const GrainSizeSpec& sizes) { return sizes.kind == GrainSizeKind::sieve ? sizes.sieve.back().diameter_m : sizes.maximum_m; }
 
 double width_m(const OutlineSpec& outline) {
-    if (outline.shape == Shape::rectangle) return outline.width_m;
-    if (outline.shape == Shape::disc) return outline.diameter_m;
-    const auto [least, most] = std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](const Vec2& a, const Vec2& b) { return a.x < b.x; });
-    return most->x - least->x;
+    const Box box = bounding_box(outline);
+    return box.upper.x - box.lower.x;
 }
 
 bool needs(const Job& job, bool disc) {
@@ -98,7 +92,7 @@ Step size_step(const Job& job, double factor) {
     const OutlineSpec& outline = needs(job, false) ? job.specimen.outline : job.brazilian_specimen.outline;
     const double width_mm = 1e3 * width_m(outline) * factor;
     const std::string label = outline.shape == Shape::rectangle ? fmt::format("{:.4g} x {:.4g} mm", width_mm, 1e3 * outline.height_m * factor) : fmt::format("{:.4g} mm", width_mm);
-    return {label, width_mm, changed(job, [factor](SpecimenSpec& s) { scale(s.outline, factor); })};
+    return {label, width_mm, changed(job, [factor](SpecimenSpec& s) { s.outline = scaled(s.outline, factor); })};
 }
 
 Draft draft_of_sizes(const Job& job, const char* axis, const std::function<Step(const Job&, double)>& step, std::initializer_list<double> factors,

@@ -20,6 +20,11 @@ Job read_tree(toml::table tree, const std::string& text, const std::string& name
 /// mistake in the models leaves that open.
 SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled);
 
+/// `holes`, `notches` and `labels` of [specimen].
+void read_cutouts(const JobTable& table, OutlineSpec& outline);
+/// Whether holes and notches fit the outline, the grains and each other.
+void check_cutouts(const JobTable& table, const SpecimenSpec& specimen);
+
 /// [model], [material] and [numerics] of the job, or of one of its variants, whose tables lie over the job's.
 struct Physics {
     ModelSpec model;
@@ -51,6 +56,13 @@ struct TestList {
 TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                     const std::vector<std::uint64_t>& run_seeds);
 
+/// What a method has of its own among the keys of a test: span and rollers of a beam, fixtures and gauges of a custom test, a gauge that ends it.
+void read_own_keys(const JobTable& table, TestSpec& test);
+
+/// Names of the gauges of a test: those of the method, or of the user.
+std::vector<std::string_view> gauge_names(const TestSpec& test);
+bool has_gauge(const TestSpec& test, std::string_view gauge);
+
 /// [run]: seeds, threads and tests at once.
 struct RunSettings {
     std::vector<std::uint64_t> seeds{1};
@@ -74,7 +86,7 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
 double largest_diameter_m(const GrainSizeSpec& sizes);
 double typical_diameter_m(const GrainSizeSpec& sizes);
 
-/// The smallest extent of an outline: rectangle and polygon by their sides along the axes, disc by its diameter.
+/// The smallest extent of an outline: its sides along the axes; disc by its diameter.
 double smallest_extent_m(const OutlineSpec& outline);
 
 }  // namespace feldspar

@@ -13,7 +13,7 @@
 namespace feldspar {
 namespace {
 
-constexpr std::array<std::string_view, 5> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory"};
+constexpr std::array<std::string_view, 7> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "three-point-bend", "custom", "laboratory"};
 
 // A line "#= key" shows a key that may be left out, with the default and the sentence of its row (keys.hpp).
 constexpr const char* common_head = R"(#
@@ -134,6 +134,80 @@ kind = "brazilian"                  # a disc pressed between two jaws: gives the
 )") + other_control + common_test;
 }
 
+std::string bending_test() {
+    return std::string(R"(
+[[test]]
+kind = "three-point-bend"           # a beam that lies along x: flexural strength and modulus; with a notch K_Ic and work of fracture
+# span = "200 mm"                   # distance of the two supports; 4 times the height unless given, at most 0.9 of the length
+# roller_radius = "5 mm"            # of the three rollers; a tenth of the height unless given
+# control = "dissipation"           # behind the peak; also "displacement", or a gauge: "CMOD" of a notched beam, "deflection"
+# until = { gauge = "CMOD", at = "0.3 mm" }   # ends the test there
+)") + common_test;
+}
+
+std::string custom_test() {
+    return std::string(R"(
+[[test]]
+kind = "custom"                     # a test of your own: curves, cracks, fields, energies, and no property of the rock
+name = "four-point-bend"            # names its results
+# length = "50 mm"                  # strain = loading motion / length: the specimen's extent along the loading unless given
+# width = "220 mm"                  # stress = load / (width x thickness): its extent across the loading unless given
+# control = "dissipation"           # behind the peak; also "displacement", or a gauge
+# until = { gauge = "deflection", at = "0.5 mm" }
+)") + common_test + R"(
+[[test.fixture]]                    # what loads the specimen: "roller", flat "plate", hollow "jaw", or "boundary", which its own nodes follow
+name = "left load"
+kind = "roller"
+at = ["80 mm", "50 mm"]             # where it touches
+radius = "5 mm"
+normal = [0, 1]                     # from the specimen into the roller: up
+motion = [0, -1]                    # it comes down; without motion it is at rest
+mu = 0.4                            # keeps the beam from sliding away
+
+[[test.fixture]]
+name = "right load"
+kind = "roller"
+at = ["140 mm", "50 mm"]
+radius = "5 mm"
+normal = [0, 1]
+motion = [0, -1]
+mu = 0.4
+
+[[test.fixture]]
+name = "left support"
+kind = "roller"
+at = ["20 mm", "0 mm"]
+radius = "5 mm"
+normal = [0, -1]
+
+[[test.fixture]]
+name = "right support"
+kind = "roller"
+at = ["200 mm", "0 mm"]
+radius = "5 mm"
+normal = [0, -1]
+
+[[test.gauge]]                      # what is read: "extension" or "strain" between two points, "displacement" of a point, "force" on a fixture
+name = "deflection"
+kind = "displacement"
+at = ["110 mm", "0 mm"]
+direction = [0, -1]                 # downwards
+)";
+}
+
+// The common head with a beam in place of an upright specimen.
+std::string beam_head() {
+    std::string head = common_head;
+    const auto replace = [&](std::string_view line, std::string_view by) {
+        const std::size_t at = head.find(line);
+        head.replace(at, head.find('\n', at) - at, by);
+    };
+    replace("width = \"80 mm\"", "width = \"220 mm\"                    # along the beam");
+    replace("height = \"160 mm\"", "height = \"50 mm\"                    # the load acts downwards\n"
+                                     "# notches = [{ from = [\"110 mm\", \"0 mm\"], to = [\"110 mm\", \"15 mm\"], width = \"1 mm\" }]   # sawn slits; \"0 mm\": a cut");
+    return head;
+}
+
 constexpr std::size_t comment_column = 36;
 
 std::string shown_default(const JobKey& key) {
@@ -161,6 +235,8 @@ std::string unfinished_template(std::string_view kind) {
     if (kind == "brazilian") return "# A Brazilian test.\n" + std::string(common_head) + brazilian_test() + common_end;
     if (kind == "biaxial")  // the envelope needs the uniaxial point
         return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" + std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
+    if (kind == "three-point-bend") return "# Three-point bending of a beam on the packing of each seed.\n" + beam_head() + bending_test() + common_end;
+    if (kind == "custom") return "# A test of your own: here a beam on four rollers.\n" + beam_head() + custom_test() + common_end;
     if (kind == "laboratory")
         return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() +
                biaxial_test() + common_end;

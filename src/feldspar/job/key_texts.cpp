@@ -43,6 +43,8 @@ std::string_view unit_of(const KeyValue& value) {
         case speed_per_step: return "m/step";
         case Dimension::time: return "s";
         case angle: return "deg";
+        case force: return "kN";
+        case toughness: return "MPa m^0.5";
         case fraction: break;
     }
     return "";

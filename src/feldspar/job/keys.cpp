@@ -61,6 +61,13 @@ KeyValue table(std::string_view path) { return {{ValueForm::table, fraction, any
 KeyValue tables(std::string_view path) { return {table(path).element, ValueShape::tables}; }
 KeyValue list_of(KeyValue value) { return {std::move(value.element), ValueShape::list}; }
 KeyValue one_or_list_of(KeyValue value) { return {std::move(value.element), ValueShape::one_or_list}; }
+KeyValue point() { return list_of(quantity(length, any_value)); }   // x and y
+KeyValue control_words() {   // or the name of a gauge
+    KeyValue value = text("the name of a gauge");
+    for (const LoadControl control : load_controls) value.element.words.emplace_back(name(control));
+    return value;
+}
+KeyValue direction() { return list_of(number(any_value)); }
 KeyValue pairs_of(KeyValue first, KeyValue second) { return {std::move(first.element), ValueShape::pairs, std::move(second.element)}; }
 
 // What holds without it.
@@ -90,7 +97,10 @@ KeyCondition methods_that_are(bool (*such)(const TestMethod&)) {
 KeyCondition numerics_that_are(bool (*such)(NumericsKind)) { return where("kind", numerics_kinds, such); }
 bool own_disc(const TestMethod& method) { return method.specimen.own_disc; }
 bool confined(const TestMethod& method) { return method.specimen.confined; }
-bool not_glued(const TestMethod& method) { return !method.specimen.glued; }
+bool takes_friction(const TestMethod& method) { return !method.specimen.glued && method.reading != Reading::curve; }
+bool beam(const TestMethod& method) { return method.reading == Reading::beam; }
+bool users_own(const TestMethod& method) { return method.reading == Reading::curve; }
+bool has_gauges(const TestMethod& method) { return method.build.gauges != nullptr; }
 bool adaptive(NumericsKind kind) { return kind == NumericsKind::adaptive; }
 bool not_adaptive(NumericsKind kind) { return kind != NumericsKind::adaptive; }
 bool dynamic(NumericsKind kind) { return kind == NumericsKind::dynamic; }
@@ -126,22 +136,57 @@ std::vector<JobKey> file_keys() {
 
 std::vector<JobKey> specimen_keys() {
     const SpecimenSpec spec;
-    const KeyCondition rectangle = with("shape", {Shape::rectangle}), disc = with("shape", {Shape::disc}), polygon = with("shape", {Shape::polygon});
+    const KeyCondition rectangle = with("shape", {Shape::rectangle}), disc = with("shape", {Shape::disc, Shape::half_disc, Shape::ring}), polygon = with("shape", {Shape::polygon});
     return {
-        {"shape", choice(shapes), needed, "the outline: a rectangle (`width`, `height`), a disc (`diameter`) or a polygon (`vertices`, `edge_labels`)"},
+        {"shape", choice(shapes), needed, "the outline: a rectangle (`width`, `height`: from (0, 0)), a disc (`diameter`: around (0, 0)), a polygon (`vertices`, `edge_labels`), a half disc (`diameter`; it stands on y = 0 with the middle of its flat at (0, 0); labels `\"flat\"`, `\"arc\"`) or a ring (`diameter`, `hole_diameter`; labels `\"circle\"`, `\"hole\"`)"},
         {"width", quantity(length), must, "across the load; the Brazilian test cuts its own disc of this diameter", rectangle},
         {"height", quantity(length), must, "in the direction of loading", rectangle},
-        {"diameter", quantity(length), must, "diameter of the disc", disc},
+        {"diameter", quantity(length), must, "outer diameter", disc},
+        {"hole_diameter", quantity(length), must, "diameter of the hole", with("shape", {Shape::ring})},
         {"vertices", pairs_of(quantity(length, any_value), quantity(length, any_value)), must,
          "corners of the outline, x and y each, 3 to 10000; they may run either way round", polygon},
         {"edge_labels", list_of(text()), words("none; needed by tests that press on flat ends"),
          "one label an edge, edge i from vertex i to vertex i + 1: `\"top\"` on the upper end and `\"bottom\"` on the lower one, both within 10 degrees of "
          "horizontal; the load acts along y",
          polygon},
+        {"holes", tables("specimen.holes"), none, "holes, in any outline: not smaller than the largest grain, half a mean grain or more from the boundary and each other"},
+        {"notches", tables("specimen.notches"), none,
+         "sawn slits with square ends, which begin at a boundary or at a hole or lie inside: longer than the largest grain, half a mean grain or more from each "
+         "other, and not through the specimen"},
+        {"labels", tables("specimen.labels"), none,
+         "further labels by place, for edges of grains on the boundary whose middle lies there; the last that catches an edge counts, one that catches none is an error"},
         {"thickness", quantity(length), usual(spec.thickness_m), "out of plane; scales forces, not stresses"},
         {"packing", text("a packing saved by an earlier run, its path relative to the job file"), words("a new one for each seed"),
          "a packing that is loaded instead of made"},
         {"grains", table("specimen.grains"), needed, "sizes of the grains and what is in them"},
+    };
+}
+
+std::vector<JobKey> hole_keys() {
+    return {
+        {"centre", point(), words("must be given, or `vertices`"), "centre of a round hole"},
+        {"diameter", quantity(length), words("must be given, or `vertices`"), "diameter of a round hole"},
+        {"vertices", pairs_of(quantity(length, any_value), quantity(length, any_value)), none, "corners of a polygonal hole, in place of `centre` and `diameter`"},
+        {"label", text(), words("`\"hole-1\"`, `\"hole-2\"`, ..."), "label of its boundary"},
+    };
+}
+
+std::vector<JobKey> notch_keys() {
+    return {
+        {"from", point(), needed, "where it begins, on the boundary or inside"},
+        {"to", point(), needed, "where it ends"},
+        {"width", quantity(length, not_negative), needed, "`\"0 mm\"`: a cut whose faces touch, and nothing joins them"},
+        {"label", text(), words("`\"notch-1\"`, `\"notch-2\"`, ..."), "label of its faces"},
+    };
+}
+
+std::vector<JobKey> label_keys() {
+    return {
+        {"name", text(), needed, "the label"},
+        {"at", point(), words("`at`, `box` or `line` must be given"), "edges within a distance of this point"},
+        {"within", quantity(length), words("of a line `\"0.01 mm\"`; of a point it must be given"), "the distance"},
+        {"box", pairs_of(quantity(length, any_value), quantity(length, any_value)), none, "edges in a box, by two opposite corners"},
+        {"line", pairs_of(quantity(length, any_value), quantity(length, any_value)), none, "edges along a line, by its two ends"},
     };
 }
 
@@ -276,14 +321,24 @@ std::vector<JobKey> test_keys() {
          methods_that_are(own_disc)},
         {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad),
          "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre", methods_that_are(own_disc)},
-        {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction), "the test ends when the stress has fallen to this fraction of the peak"},
-        {"control", choice(load_controls), words("`\"dissipation\"` in compression with adaptive numerics, else `\"displacement\"`"),
+        {"name", text("1 to 40 letters, digits, '_' and '-'"), must, "names the results of a test of your own", methods_that_are(users_own)},
+        {"span", quantity(length), words("4 times the beam's height, at most 0.9 of its length"), "distance of the two supports", methods_that_are(beam)},
+        {"roller_radius", quantity(length), words("a tenth of the beam's height"), "radius of the three rollers", methods_that_are(beam)},
+        {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction),
+         "the test ends when the stress has fallen to this fraction of the peak; in bending 0.1 unless it is given"},
+        {"control", control_words(), words("`\"dissipation\"` with adaptive numerics, in direct tension and the Brazilian test `\"displacement\"`"),
          "what the platens keep constant behind the peak, with adaptive numerics: `\"displacement\"`; `\"dissipation\"`: the work of fracture and friction in "
          "a travel time of a wave; "
-         "`\"lateral-strain\"`: the growth of the lateral strain, in compression ([theory](theory/loading.md)). The strength is the same"},
+         "`\"lateral-strain\"`: the growth of the lateral strain, in compression; the name of a gauge, such as `\"CMOD\"`: its growth ([theory](theory/loading.md)). The strength is the same"},
         {"maximum_strain", share_of_one(inside_one), usual(spec.maximum_strain), "the test ends at this axial strain at the latest"},
         {"maximum_stress", quantity(stress), none,
          "the test ends at this stress at the latest (under confinement: sigma1), and its strength is then a lower bound"},
+        {"until", table("test.until"), none, "a gauge that ends the test", methods_that_are(has_gauges)},
+        {"fixture", tables("test.fixture"), must, "what loads and holds the specimen", methods_that_are(users_own)},
+        {"gauge", tables("test.gauge"), none, "what is read beside load and loading motion", methods_that_are(users_own)},
+        {"length", quantity(length), words("the specimen's extent along the loading"), "strain is the loading motion over this length", methods_that_are(users_own)},
+        {"width", quantity(length), words("the specimen's extent across the loading"), "stress is the load over this width times the thickness",
+         methods_that_are(users_own)},
         {"snapshots", integer(0, 1000), usual(spec.snapshots), "fields kept between the first crack and the end"},
         {"seeds", list_of(integer(0)), words("those of the run"), "the packings of this test"},
         {"plates", choice(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
@@ -304,10 +359,54 @@ std::vector<JobKey> test_keys() {
          "([why](validation/brazilian-plates.md))",
          {},
          true},
-        {"plate_mu", number(not_negative), words(usual_plate_mu()), "friction of plates", methods_that_are(not_glued), true,
-         ": its plates are glued on and hold in the normal direction only"},
+        {"plate_mu", number(not_negative), words(usual_plate_mu()), "friction of plates", methods_that_are(takes_friction), true,
+         ": its plates are glued on, or have a mu of their own"},
         {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it",
          methods_that_are(confined), true},
+    };
+}
+
+std::vector<JobKey> until_keys() {
+    return {
+        {"gauge", text("the name of a gauge"), needed, "a gauge of the method or of the test"},
+        {"at", quantity(length, any_value), needed, "the test ends when the gauge has reached this: a length, of a force gauge a force, of a strain gauge a fraction"},
+    };
+}
+
+std::vector<JobKey> fixture_keys() {
+    const auto forms = [](std::initializer_list<FixtureForm> some) { return with("kind", some); };
+    const KeyCondition boundary = forms({FixtureForm::boundary}), plates = forms({FixtureForm::plate, FixtureForm::roller, FixtureForm::jaw}),
+                       curved = forms({FixtureForm::roller, FixtureForm::jaw});
+    return {
+        {"name", text("1 to 40 letters, digits, blanks, '_' and '-'"), needed, "of messages and of gauges that read its force"},
+        {"kind", choice(fixture_forms), needed,
+         "`\"boundary\"`: the nodes on a part of the boundary of flexible grains follow it; a rigid plate that the specimen is pressed against: flat, `\"roller\"` or hollow `\"jaw\"`"},
+        {"on", text("the label of an edge"), words("`on` or `at` must be given"), "the part of the boundary with this label"},
+        {"at", point(), words("`on` or `at` must be given"), "the part of the boundary near this point; of a roller or jaw the point where its surface touches"},
+        {"within", quantity(length), words("of a roller or jaw its radius; else it must be given beside `at`"), "how near"},
+        {"motion", direction(), words("at rest"), "x and y of its way per unit of the loading motion, such as `[0, -1]`"},
+        {"normal", direction(), must, "x and y of the direction from the specimen into the plate", plates},
+        {"radius", quantity(length), must, "radius of its surface", curved},
+        {"Kn", quantity(stiffness_gradient), words("`plate_Kn` of the test"), "stiffness per area", plates},
+        {"mu", number(not_negative), usual(0.0), "friction", plates},
+        {"glued", flag(), usual(0.0), "unbreakable along its normal, free along the plate", plates},
+        {"holds_x", flag(), usual(1.0), "x follows the fixture; else it is free", boundary},
+        {"holds_y", flag(), usual(1.0), "y follows the fixture; else it is free", boundary},
+        {"pin", flag(), usual(0.0), "the node nearest to the middle of the part is held in the free component too", boundary},
+    };
+}
+
+std::vector<JobKey> gauge_keys() {
+    const KeyCondition between = with("kind", {GaugeForm::extension, GaugeForm::strain});
+    return {
+        {"name", text("1 to 40 letters, digits, '_' and '-'"), needed, "its column in the results; `control` and `until` may name it"},
+        {"kind", choice(gauge_forms), needed,
+         "`\"extension\"`: by how much two points move apart; `\"strain\"`: the same over their distance; `\"displacement\"` of a point; `\"force\"` on a fixture"},
+        {"from", point(), must, "first point", between},
+        {"to", point(), must, "second point", between},
+        {"at", point(), must, "the point", with("kind", {GaugeForm::displacement})},
+        {"fixture", text("the name of a fixture"), must, "the fixture", with("kind", {GaugeForm::force})},
+        {"direction", direction(), must, "x and y of the direction in which it reads", with("kind", {GaugeForm::displacement, GaugeForm::force})},
     };
 }
 
@@ -353,6 +452,9 @@ std::vector<KeyTable> all_tables() {
         {"specimen", "[specimen]", specimen_keys()},
         {"specimen.grains", "[specimen.grains]", grains_keys()},
         {"specimen.grains.diameter", "[specimen.grains] diameter", diameter_keys()},
+        {"specimen.holes", "[[specimen.holes]]", hole_keys()},
+        {"specimen.notches", "[[specimen.notches]]", notch_keys()},
+        {"specimen.labels", "[[specimen.labels]]", label_keys()},
         {"model", "[model]", model_keys()},
         {"material", "[material]", material_keys()},
         {"material.grain", "[material.grain]", grain_keys()},
@@ -360,6 +462,9 @@ std::vector<KeyTable> all_tables() {
         {"numerics", "[numerics]", numerics_keys()},
         {"variant", "[[variant]]", variant_keys()},
         {"test", "[[test]]", test_keys()},
+        {"test.until", "[test.until]", until_keys()},
+        {"test.fixture", "[[test.fixture]]", fixture_keys()},
+        {"test.gauge", "[[test.gauge]]", gauge_keys()},
         {"run", "[run]", run_keys()},
         {"laboratory", "[laboratory]", laboratory_keys()},
     };

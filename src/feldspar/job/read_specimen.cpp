@@ -23,6 +23,15 @@ void read_disc(const JobTable& table, OutlineSpec& outline) {
     outline.diameter_m = table.quantity("diameter");
 }
 
+void read_ring(const JobTable& table, OutlineSpec& outline) {
+    outline.diameter_m = table.quantity("diameter");
+    outline.hole_diameter_m = table.quantity("hole_diameter");
+    table.check({"diameter", "hole_diameter"}, [&] {
+        if (outline.hole_diameter_m >= outline.diameter_m)
+            table.fail("hole_diameter", shown(*table.find("hole_diameter")) + " is not less than the diameter, " + shown(*table.find("diameter")));
+    });
+}
+
 void read_polygon(const JobTable& table, OutlineSpec& outline) {
     table.pairs("vertices", "a point", "points such as [\"0 mm\", \"80 mm\"]", [&](const toml::node& x, const toml::node& y) {
         outline.vertices_m.push_back({table.first_of(x, "vertices"), table.second_of(y, "vertices")});
@@ -52,7 +61,7 @@ OutlineSpec read_outline(const JobTable& table) {
     OutlineSpec outline;
     outline.shape = table.choice("shape", shapes);
     if (!table.sound({"shape"})) {   // what is there can be looked at nevertheless
-        for (const char* key : {"width", "height", "diameter"}) table.quantity(key, 0.0);
+        for (const char* key : {"width", "height", "diameter", "hole_diameter"}) table.quantity(key, 0.0);
         return outline;
     }
     table.suit("shape", name(outline.shape));
@@ -62,6 +71,12 @@ OutlineSpec read_outline(const JobTable& table) {
             break;
         case Shape::disc:
             read_disc(table, outline);
+            break;
+        case Shape::half_disc:
+            read_disc(table, outline);
+            break;
+        case Shape::ring:
+            read_ring(table, outline);
             break;
         case Shape::polygon:
             read_polygon(table, outline);
@@ -120,7 +135,7 @@ GrainSizeSpec read_grain_sizes(const JobTable& grains) {
 // An upper estimate is enough here: the specimen counts exactly.
 double rough_area_m2(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return outline.width_m * outline.height_m;
-    if (outline.shape == Shape::disc) return 0.25 * std::numbers::pi * outline.diameter_m * outline.diameter_m;
+    if (outline.shape != Shape::polygon) return 0.25 * std::numbers::pi * outline.diameter_m * outline.diameter_m;
     return std::abs(signed_area(outline.vertices_m));
 }
 
@@ -139,11 +154,9 @@ double typical_diameter_m(const GrainSizeSpec& sizes) {
 double smallest_extent_m(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return std::min(outline.width_m, outline.height_m);
     if (outline.shape == Shape::disc) return outline.diameter_m;
-    const auto [left, right] =
-        std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; });
-    const auto [low, high] =
-        std::minmax_element(outline.vertices_m.begin(), outline.vertices_m.end(), [](Vec2 a, Vec2 b) { return a.y < b.y; });
-    return std::min(right->x - left->x, high->y - low->y);
+    if (outline.shape == Shape::ring) return 0.5 * (outline.diameter_m - outline.hole_diameter_m);
+    const Box box = bounding_box(outline);
+    return std::min(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
 }
 
 namespace {
@@ -196,6 +209,7 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     table.require({"shape", "grains"});
     SpecimenSpec spec;
     spec.outline = read_outline(table);
+    read_cutouts(table, spec.outline);
     spec.thickness_m = table.quantity("thickness");
 
     const JobTable grains = table.table("grains");
@@ -208,7 +222,8 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
         spec.particles_per_grain = grains.number("particles_per_grain");
     else
         grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with " + condition_text(grains.rows().key("particles_per_grain")));
-    if (table.sound({"shape", "width", "height", "diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
+    if (table.sound({"shape", "width", "height", "diameter", "hole_diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
+    check_cutouts(table, spec);
     read_merge_length(grains, spec);
 
     if (table.has("packing")) {

@@ -29,7 +29,14 @@ struct Known {
 
 // Platens need a flat top and bottom.
 void check_outline(const JobTable& table, TestKind kind, const OutlineSpec& outline) {
-    if (method_of(kind).specimen.own_disc || outline.shape == Shape::rectangle) return;
+    if (method_of(kind).specimen.own_disc) {
+        if ((outline.shape == Shape::disc || outline.shape == Shape::ring) && outline.is_cut())
+            table.fail("kind", "'" + std::string(name(kind)) + "' cuts its own whole disc: the holes and notches of the specimen would not be in it", "a disc without holes and notches");
+        return;
+    }
+    if (method_of(kind).specimen.confined && outline.is_cut())
+        table.fail("kind", "'" + std::string(name(kind)) + "' presses on every side, those of holes and notches too", "a specimen without holes and notches");
+    if (outline.shape == Shape::rectangle) return;
     if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) {
         const SectionWidths widths = section_widths(make_outline(outline));
         if (method_of(kind).specimen.confined && widths.widest > (1.0 + most_confined_taper) * widths.narrowest)
@@ -39,7 +46,7 @@ void check_outline(const JobTable& table, TestKind kind, const OutlineSpec& outl
                        "a rectangle, or a polygon whose width varies by a tenth at most");
         return;
     }
-    const std::string shape = outline.shape == Shape::disc ? "a disc" : "a polygon without edges labelled \"top\" and \"bottom\"";
+    const std::string shape = outline.shape == Shape::disc ? "a disc" : outline.shape == Shape::half_disc ? "a half disc" : outline.shape == Shape::ring ? "a ring" : "a polygon without edges labelled \"top\" and \"bottom\"";
     table.fail("kind", "'" + std::string(name(kind)) + "' presses on flat ends, which " + shape + " has not",
                "shape = \"rectangle\", or a polygon with edges labelled \"top\" and \"bottom\"");
 }
@@ -49,7 +56,7 @@ double brazilian_diameter(const JobTable& table, const SpecimenSpec& specimen, c
     if (!known.outline) table.do_not_miss({"diameter"});
     if (!table.has("diameter") && specimen.outline.shape == Shape::polygon)
         table.check({"diameter"}, [&] { table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)"); });
-    const double usual = specimen.outline.shape == Shape::disc ? specimen.outline.diameter_m : specimen.outline.width_m;
+    const double usual = specimen.outline.shape == Shape::rectangle ? specimen.outline.width_m : specimen.outline.diameter_m;
     const double diameter = table.quantity("diameter", usual);
     if (!known.grain_sizes) return diameter;
     table.check({"diameter"}, [&] {
@@ -104,21 +111,53 @@ bool has_particles(TestKind kind, const std::vector<Variant>& variants) {
 }
 
 // Which motion of the platens follows the branch behind the strength. Fixed speeds know none.
-LoadControl read_control(const JobTable& table, TestKind kind, const std::vector<Variant>& variants) {
+void read_control(const JobTable& table, const std::vector<Variant>& variants, TestSpec& test) {
+    const TestKind kind = test.kind;
     const bool adaptive = std::any_of(variants.begin(), variants.end(), [&](const Variant& variant) {
         return variant.runs(kind) && variant.numerics.kind == NumericsKind::adaptive;
     });
-    if (!table.has("control")) return usual_control(kind, adaptive);
-    const LoadControl control = table.choice("control", load_controls);
+    test.control = usual_control(kind, adaptive);
+    if (!table.has("control")) return;
+    const std::string given = table.text("control");
+    const auto word = std::find_if(load_controls.begin(), load_controls.end(), [&](LoadControl control) { return given == name(control); });
+    const LoadControl control = word != load_controls.end() ? *word : LoadControl::gauge;
+    test.control = control;
+    if (control == LoadControl::gauge) test.control_gauge = given;
     table.check({"control", "kind"}, [&] {
+        if (control == LoadControl::gauge && !has_gauge(test, given)) {
+            std::vector<std::string_view> known;
+            for (const LoadControl one : load_controls) known.push_back(name(one));
+            for (const std::string_view gauge : gauge_names(test)) known.push_back(gauge);
+            table.fail("control", fmt::format("'{}' is neither a control nor a gauge of the test", given), listed(known), did_you_mean(given, known));
+        }
         if (control == LoadControl::lateral_strain && !method_of(kind).loading.widens)
             table.fail("control", fmt::format("'lateral-strain' is meant for specimens that widen as they fail, which kind = \"{}\" does not measure", name(kind)),
                        "control = \"displacement\" or \"dissipation\"");
         if (control != LoadControl::displacement && !adaptive)
-            table.fail("control", fmt::format("'{}' changes the platen speed, which only adaptive numerics do", name(control)),
+            table.fail("control", fmt::format("'{}' changes the platen speed, which only adaptive numerics do", given),
                        "[numerics] kind = \"adaptive\", or control = \"displacement\"");
     });
-    return control;
+}
+
+// "kind = \"brazilian\", ...": those that load by plates whatever the grains are.
+std::string plated_methods() {
+    std::string text;
+    for (const TestKind kind : test_kinds)
+        if (method_of(kind).specimen.plates) text += (text.empty() ? "kind = \"" : ", \"") + std::string(name(kind)) + "\"";
+    return text;
+}
+
+// What the method itself has against a specimen, said at the test.
+void check_by_method(const JobTable& table, const TestSpec& test, const SpecimenSpec& specimen) {
+    table.check({"kind", "span", "fixture"}, [&] {
+        try {
+            method_of(test).build.check(make_outline(specimen), specimen.thickness_m, test);
+        } catch (const InputError& error) {
+            const std::string& full = error.place().key;
+            const std::string key = full.starts_with("test.") ? full.substr(5) : "kind";
+            table.fail(table.has(key) ? key : "kind", error.problem(), error.allowed(), error.suggestion());
+        }
+    });
 }
 
 // Keys of plates where none load the specimen. Those that are another method's are refused already.
@@ -126,13 +165,13 @@ void refuse_plates(const JobTable& table, const TestMethod& method) {
     for (const JobKey& key : table.rows().keys)
         if (key.of_plates && (key.when.key.empty() || key.when.holds(name(method.kind))))
             table.refuse({key.name}, "kind = \"" + std::string(name(method.kind)) + "\" of flexible grains",
-                         "only with " + condition_text(table.rows().key("plates")) + ", or with rigid grains or inner particles, which are loaded by plates");
+                         "only with " + plated_methods() + ", or with rigid grains or inner particles, which are loaded by plates");
 }
 
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
 void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     const MethodSpecimen& method = method_of(test).specimen;
-    if (!method.own_disc && !particles) return;
+    if (!method.plates && !particles) return;
     const PlateShape usual = test.plates;
     if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
     if (table.has("jaw_radius")) {
@@ -145,7 +184,7 @@ void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn");
     else if (test.plates != usual || table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m.reset();   // that of the usual plates
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", test.plate_stiffness_factor);
-    if (!method.glued) test.plate_mu = table.number("plate_mu", method.plate_mu);
+    if (!method.glued && method_of(test).reading != Reading::curve) test.plate_mu = table.number("plate_mu", method.plate_mu);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates"));
 }
 
@@ -159,13 +198,15 @@ ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std
     const TestMethod& method = method_of(table.choice("kind", test_kinds));
     const bool kind_known = table.sound({"kind"}), own_disc = method.specimen.own_disc;
     if (kind_known) table.suit("kind", name(method.kind));
-    if (kind_known && known.kinds && !own_disc && !has_particles(method.kind, variants)) refuse_plates(table, method);
+    if (kind_known && known.kinds && !method.specimen.plates && !has_particles(method.kind, variants)) refuse_plates(table, method);
     const bool flattened = kind_known && own_disc && is_flattened(table);
     TestSpec test = usual_test(method.kind, flattened);
-    if (known.outline) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
+    if (known.outline && method.build.check == nullptr) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
 
-    test.stop_fraction = table.fraction("stop_fraction");
-    test.control = read_control(table, test.kind, variants);
+    if (table.has("stop_fraction")) test.stop_fraction = table.fraction("stop_fraction");
+    if (kind_known) read_own_keys(table, test);
+    read_control(table, variants, test);
+    if (known.outline && kind_known && method.build.check != nullptr) check_by_method(table, test, specimen);
     test.maximum_strain = table.fraction("maximum_strain");
     if (table.has("maximum_stress")) test.maximum_stress_Pa = table.quantity("maximum_stress");
     test.snapshots = static_cast<int>(table.integer("snapshots"));
@@ -220,7 +261,8 @@ TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const st
     TestList result;
     if (!root.has("test")) return result;   // a mistake that is noted
     const Known known{
-        root.sound({"specimen.shape", "specimen.width", "specimen.height", "specimen.diameter", "specimen.vertices", "specimen.edge_labels"}),
+        root.sound({"specimen.shape", "specimen.width", "specimen.height", "specimen.diameter", "specimen.hole_diameter", "specimen.vertices", "specimen.edge_labels",
+                    "specimen.holes", "specimen.notches"}),
         root.sound({"specimen.grains.diameter"}), kinds_known(root, variants)};
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const JobTable& table : root.tables("test", "a test")) {
@@ -244,7 +286,7 @@ TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const st
                 // as many digits as the names of the result files show
                 const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
                 const std::string key =
-                    std::string(name(test.kind)) +
+                    test_name(test) +
                     (method_of(test).specimen.confined ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
                 const bool again = !taken.insert(key + " s" + std::to_string(seed)).second;
                 if (again && root.sound({"run"}))

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "feldspar/base/units.hpp"
@@ -54,6 +55,50 @@ std::string list(const Items& items) {
     return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
+std::string point(Vec2 p) { return fmt::format("[{}, {}]", si(p.x, Dimension::length), si(p.y, Dimension::length)); }
+
+std::string points(const std::vector<Vec2>& all) {
+    std::vector<std::string> items;
+    for (const Vec2 p : all) items.push_back(point(p));
+    return list(items);
+}
+
+void write_cutouts(Lines& out, const OutlineSpec& outline) {
+    std::vector<std::string> items;
+    const auto label = [](const std::string& given) { return given.empty() ? std::string() : ", label = " + quote(given); };
+    for (const HoleSpec& hole : outline.holes) {
+        const std::string shape = hole.vertices_m.empty() ? fmt::format("centre = {}, diameter = {}", point(hole.centre_m), si(hole.diameter_m, Dimension::length))
+                                                          : fmt::format("vertices = {}", points(hole.vertices_m));
+        items.push_back(fmt::format("{{ {}{} }}", shape, label(hole.label)));
+    }
+    if (!items.empty()) out.raw("holes", list(items));
+    items.clear();
+    for (const NotchSpec& notch : outline.notches)
+        items.push_back(fmt::format("{{ from = {}, to = {}, width = {}{} }}", point(notch.from_m), point(notch.to_m), si(notch.width_m, Dimension::length), label(notch.label)));
+    if (!items.empty()) out.raw("notches", list(items));
+}
+
+void write_place_labels(Lines& out, const OutlineSpec& outline) {
+    std::vector<std::string> items;
+    for (const PlaceLabelSpec& label : outline.labels) {
+        const std::string within = si(label.within_m, Dimension::length);
+        std::string place;
+        switch (label.kind) {
+            case PlaceKind::disc:
+                place = fmt::format("at = {}, within = {}", point(label.a_m), within);
+                break;
+            case PlaceKind::box:
+                place = fmt::format("box = {}", points({label.a_m, label.b_m}));
+                break;
+            case PlaceKind::line:
+                place = fmt::format("line = {}, within = {}", points({label.a_m, label.b_m}), within);
+                break;
+        }
+        items.push_back(fmt::format("{{ name = {}, {} }}", quote(label.name), place));
+    }
+    if (!items.empty()) out.raw("labels", list(items));
+}
+
 void write_outline(Lines& out, const OutlineSpec& outline) {
     out.word("shape", name(outline.shape));
     switch (outline.shape) {
@@ -62,6 +107,7 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
             out.quantity("height", outline.height_m);
             break;
         case Shape::disc:
+        case Shape::half_disc:
             out.quantity("diameter", outline.diameter_m);
             break;
         case Shape::polygon: {
@@ -74,7 +120,13 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
             if (!items.empty()) out.raw("edge_labels", fmt::format("[{}]", fmt::join(items, ", ")));
             break;
         }
+        case Shape::ring:
+            out.quantity("diameter", outline.diameter_m);
+            out.quantity("hole_diameter", outline.hole_diameter_m);
+            break;
     }
+    write_cutouts(out, outline);
+    write_place_labels(out, outline);
 }
 
 std::string grain_sizes(const GrainSizeSpec& sizes) {
@@ -167,7 +219,7 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
     const bool particles = std::any_of(job.variants.begin(), job.variants.end(), [&](const Variant& variant) {
         return variant.runs(test.kind) && variant.model.kind != GrainKind::flexible;
     });
-    if (!particles && !method_of(test).specimen.own_disc) return;
+    if (!particles && !method_of(test).specimen.plates) return;
     if (method_of(test).specimen.own_disc) out.word("plates", name(test.plates));
     if (test.plates == PlateShape::curved) out.number("jaw_radius", test.jaw_radius);
     if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m);
@@ -176,12 +228,74 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
     if (method_of(test).specimen.confined) out.raw("membrane_plates", std::to_string(test.membrane_plates));
 }
 
+std::string direction(Vec2 d) { return fmt::format("[{}, {}]", format_exact(d.x), format_exact(d.y)); }
+
+void write_until(Lines& out, const TestSpec& test) {
+    out.head("test.until");
+    out.word("gauge", test.stop_gauge->gauge);
+    Dimension dimension = Dimension::length;
+    for (const GaugeSpec& gauge : test.custom.gauges)
+        if (gauge.name == test.stop_gauge->gauge && gauge.kind != GaugeKind::displacement) dimension = gauge.kind == GaugeKind::force ? Dimension::force : Dimension::fraction;
+    out.quantity("at", test.stop_gauge->value, dimension);
+}
+
+void write_fixture(Lines& out, const FixtureSpec& fixture) {
+    const FixtureForm form = fixture.kind == FixtureKind::nodes ? FixtureForm::boundary
+                             : fixture.radius_m == 0.0          ? FixtureForm::plate
+                             : fixture.radius_m > 0.0           ? FixtureForm::jaw
+                                                                : FixtureForm::roller;
+    const auto flag = [&](const char* key, bool value) { out.raw(key, value ? "true" : "false"); };
+    out.head("test.fixture");
+    out.word("name", fixture.name);
+    out.word("kind", name(form));
+    if (!fixture.part.label.empty()) out.word("on", fixture.part.label);
+    if (fixture.part.at) {
+        out.raw("at", point(*fixture.part.at));
+        out.quantity("within", fixture.part.reach_m);
+    }
+    if (fixture.moves()) out.raw("motion", direction(fixture.motion));
+    if (form == FixtureForm::boundary) {
+        flag("holds_x", fixture.imposes_x);
+        flag("holds_y", fixture.imposes_y);
+        flag("pin", fixture.pins_middle);
+        return;
+    }
+    out.raw("normal", direction(fixture.normal));
+    if (fixture.radius_m != 0.0) out.quantity("radius", std::abs(fixture.radius_m));
+    if (fixture.contact.Kn_Pa_m > 0.0) out.quantity("Kn", fixture.contact.Kn_Pa_m);
+    out.number("mu", fixture.contact.mu);
+    flag("glued", fixture.contact.glued);
+}
+
+void write_gauge(Lines& out, const GaugeSpec& gauge) {
+    out.head("test.gauge");
+    out.word("name", gauge.name);
+    const GaugeForm form = gauge.kind == GaugeKind::force    ? GaugeForm::force
+                           : gauge.kind == GaugeKind::strain ? GaugeForm::strain
+                           : gauge.points.size() == 2        ? GaugeForm::extension
+                                                             : GaugeForm::displacement;
+    out.word("kind", name(form));
+    if (form == GaugeForm::force) {
+        out.word("fixture", gauge.fixture);
+        out.raw("direction", direction(gauge.direction));
+    } else if (form == GaugeForm::displacement) {
+        out.raw("at", point(gauge.points.front().at));
+        out.raw("direction", direction(gauge.points.front().weight));
+    } else {
+        out.raw("from", point(gauge.points.back().at));
+        out.raw("to", point(gauge.points.front().at));
+    }
+}
+
 void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.head("test");
     out.word("kind", name(test.kind));
+    if (!test.custom.name.empty()) out.word("name", test.custom.name);
     if (method_of(test).specimen.confined) out.quantity("sigma3", test.sigma3_Pa);
+    if (test.span_m) out.quantity("span", *test.span_m);
+    if (test.roller_radius_m) out.quantity("roller_radius", *test.roller_radius_m);
     out.number("stop_fraction", test.stop_fraction);
-    out.word("control", name(test.control));
+    out.word("control", test.control == LoadControl::gauge ? test.control_gauge : name(test.control));
     out.number("maximum_strain", test.maximum_strain);
     if (test.maximum_stress_Pa) out.quantity("maximum_stress", *test.maximum_stress_Pa);
     if (method_of(test).specimen.own_disc) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m);
@@ -191,8 +305,13 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
         out.quantity("flat_angle", job.brazilian_specimen.outline.flat_angle_rad);
     }
     write_plates(out, test, job);
+    if (test.custom.length_m) out.quantity("length", *test.custom.length_m);
+    if (test.custom.width_m) out.quantity("width", *test.custom.width_m);
     out.raw("snapshots", std::to_string(test.snapshots));
     if (!test.seeds.empty()) out.raw("seeds", list(test.seeds));
+    if (test.stop_gauge) write_until(out, test);
+    for (const FixtureSpec& fixture : test.custom.fixtures) write_fixture(out, fixture);
+    for (const GaugeSpec& gauge : test.custom.gauges) write_gauge(out, gauge);
 }
 
 // The physics of one variant under `place`: "" for the job's own tables, "variant." for a list.

@@ -57,8 +57,8 @@ double known(const Job& job, const char* key, double otherwise) {
 void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
     constexpr double kCaution = 0.75;
     const SpecimenSpec& specimen = job.specimen;
-    if (specimen.outline.shape == Shape::disc) return;
-    const Outline outline = make_outline(specimen.outline);
+    if (specimen.outline.shape != Shape::rectangle && specimen.outline.shape != Shape::polygon) return;
+    const Outline outline = make_outline(specimen);
     const Box box = bounding_box(outline);
     const double width = section_widths(outline).narrowest, height = box.upper.y - box.lower.y;
     if (!(width > 0.0)) return;

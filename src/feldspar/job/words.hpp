@@ -8,7 +8,7 @@
 
 namespace feldspar {
 
-inline constexpr std::array shapes{Shape::rectangle, Shape::disc, Shape::polygon};
+inline constexpr std::array shapes{Shape::rectangle, Shape::disc, Shape::polygon, Shape::half_disc, Shape::ring};
 inline constexpr std::array grain_size_kinds{GrainSizeKind::uniform, GrainSizeKind::log_normal, GrainSizeKind::sieve};
 inline constexpr std::array shear_measures{ShearMeasure::total, ShearMeasure::beyond_friction};
 inline constexpr std::array tension_unloadings{TensionUnloading::elastic, TensionUnloading::secant};
@@ -18,6 +18,8 @@ inline const char* name(Shape shape) {
         case Shape::rectangle: return "rectangle";
         case Shape::disc: return "disc";
         case Shape::polygon: return "polygon";
+        case Shape::half_disc: return "half-disc";
+        case Shape::ring: return "ring";
     }
     return "?";
 }
@@ -36,5 +38,31 @@ inline const char* name(TensionUnloading unloading) { return unloading == Tensio
 enum class DiscForm { whole, flattened };
 inline constexpr std::array disc_forms{DiscForm::whole, DiscForm::flattened};
 inline const char* name(DiscForm form) { return form == DiscForm::whole ? "whole" : "flattened"; }
+
+/// What a fixture of a custom test is.
+enum class FixtureForm { boundary, plate, roller, jaw };
+inline constexpr std::array fixture_forms{FixtureForm::boundary, FixtureForm::plate, FixtureForm::roller, FixtureForm::jaw};
+inline const char* name(FixtureForm form) {
+    switch (form) {
+        case FixtureForm::boundary: return "boundary";
+        case FixtureForm::plate: return "plate";
+        case FixtureForm::roller: return "roller";
+        case FixtureForm::jaw: return "jaw";
+    }
+    return "?";
+}
+
+/// What a gauge of a custom test reads.
+enum class GaugeForm { extension, strain, displacement, force };
+inline constexpr std::array gauge_forms{GaugeForm::extension, GaugeForm::strain, GaugeForm::displacement, GaugeForm::force};
+inline const char* name(GaugeForm form) {
+    switch (form) {
+        case GaugeForm::extension: return "extension";
+        case GaugeForm::strain: return "strain";
+        case GaugeForm::displacement: return "displacement";
+        case GaugeForm::force: return "force";
+    }
+    return "?";
+}
 
 }  // namespace feldspar

@@ -51,6 +51,7 @@ BendingProperties bending(const TestResult& result, const Peak& peak) {
     const Beam beam = beam_of(result.specimen->outline, result.specimen->spec.thickness_m, result.test);
     const double largest_N = load_N(result, result.history[peak.row]), x = beam.notch_m / beam.height_m;
     p.notch_m = beam.notch_m;
+    if (beam.otherwise_cut) return p;
     const ContactMaterial& contact = result.contact;
     if (!beam.notched()) {
         p.flexural_strength_Pa = peak.stress_Pa;

@@ -125,7 +125,7 @@ std::vector<TestQuantity> table() {
     add(G::strength, any, {
         {"strength", stress, "(P1)", property<&P::peak_stress_Pa>(), same, "peak_stress", "peak"},
     });
-    add(G::strength, forces, {
+    add(G::load, forces, {
         {"peak_load", force, "", formed(peak_load_N), absent},
     });
     add(G::strength, loaded, {

@@ -34,13 +34,13 @@ struct QuantityUnit {
 
 namespace units {
 inline constexpr QuantityUnit pure{"", ""}, stress{"Pa", "MPa", MPa, Dimension::stress}, modulus{"Pa", "GPa", GPa, Dimension::stress},
-    angle{"deg", "deg", 1.0, Dimension::angle}, length{"m", "mm", 1e3, Dimension::length}, force{"N", "kN", 1e-3},
+    angle{"deg", "deg", 1.0, Dimension::angle}, length{"m", "mm", 1e3, Dimension::length}, force{"N", "kN", 1e-3, Dimension::force},
     toughness{"Pa_sqrt_m", "MPa_sqrt_m", MPa, Dimension::toughness}, fracture_work{"J_m2", "J_m2", 1.0, Dimension::fracture_energy}, energy{"J", "J"}, duration{"s", "s", 1.0, Dimension::time};
 }
 
 /// Files list numbers group by group, each in its own order of groups; within a group the order is the same everywhere.
 enum class QuantityGroup {
-    strength, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, bending, cracks, pattern, evidence, repeats, balance, energies, steps,
+    strength, load, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, bending, cracks, pattern, evidence, repeats, balance, energies, steps,
     bookkeeping, cost
 };
 

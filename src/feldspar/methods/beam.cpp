@@ -37,6 +37,27 @@ double mouth_width(const Outline& outline, double x, double bottom) {
     return right - left;
 }
 
+// A notch that rises upright from the lower side in the middle; anything else that is cut out makes the beam another one.
+void look_for_notch(const Outline& outline, Beam& beam) {
+    for (const Cutout& cutout : outline.cutouts) {
+        Box box{cutout.vertices.front(), cutout.vertices.front()};
+        for (const Vec2 v : cutout.vertices) {
+            box.lower = {std::min(box.lower.x, v.x), std::min(box.lower.y, v.y)};
+            box.upper = {std::max(box.upper.x, v.x), std::max(box.upper.y, v.y)};
+        }
+        constexpr double kClose = 1e-6;   // of the height
+        const double axis = 0.5 * (box.lower.x + box.upper.x), close = kClose * beam.height_m, tall = box.upper.y - box.lower.y;
+        const bool upright = cutout.is_cut() ? box.upper.x - box.lower.x < close : cutout.slit && tall > box.upper.x - box.lower.x;
+        if (beam.notched() || !upright || std::abs(axis - beam.middle_m) > close || box.lower.y > beam.bottom_m + close) {
+            beam.otherwise_cut = true;
+            continue;
+        }
+        beam.notch_m = box.upper.y - beam.bottom_m;
+        beam.notch_width_m = box.upper.x - box.lower.x;
+    }
+    if (beam.notch_m >= beam.height_m) throw InputError({.key = "specimen.notches"}, "the notch goes through the beam", "a notch that leaves a ligament");
+}
+
 std::string mm(double m) { return fmt::format("{:.4g} mm", 1e3 * m); }
 
 }  // namespace
@@ -68,6 +89,7 @@ Beam beam_of(const Outline& outline, double thickness_m, const TestSpec& test) {
     beam.notch_m = middle.front() - beam.bottom_m;
     if (beam.notch_m <= 1e-9 * beam.height_m) beam.notch_m = 0.0;
     if (beam.notched()) beam.notch_width_m = mouth_width(outline, beam.middle_m, beam.bottom_m + 1e-9 * beam.height_m);
+    look_for_notch(outline, beam);
     return beam;
 }
 

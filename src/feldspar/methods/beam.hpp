@@ -13,6 +13,7 @@ struct Beam {
     double thickness_m = 0.0;     ///< t
     double notch_m = 0.0;         ///< a, from below in the middle of the span; 0: none
     double notch_width_m = 0.0;   ///< at its mouth
+    bool otherwise_cut = false;   ///< holes, or notches elsewhere: the closed forms do not hold
     double middle_m = 0.0;        ///< x of the middle of the span
     double bottom_m = 0.0;        ///< y of the lower side
 

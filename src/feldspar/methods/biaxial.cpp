@@ -9,11 +9,11 @@ const TestMethod biaxial{
     .kind = TestKind::biaxial,
     .purpose = "isotropic consolidation, then axial loading at a constant pressure on the sides",
     .words = {"Biaxial compression", "Axial stress", "Axial strain from the platens"},
-    .build = {between_platens, height_m, narrowest_section_m2},
+    .build = between_its_platens,
     .start = {},
     .reading = Reading::column,
     .specimen = {.confined = true},
-    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true},
+    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true, .failure_state = {{0.0, 1.0}}},
     .rate = {.travel_times = 300.0, .seconds = 10.0},
     .verdict = {},
 };

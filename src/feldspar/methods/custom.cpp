@@ -1,7 +1,12 @@
 // A test of the user's own: the fixtures and gauges of the job. It defines no property of the rock, only its curves, cracks, fields and energies.
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/methods/platens.hpp"
@@ -34,6 +39,28 @@ double length_m(const MethodInput& in) { return in.test.custom.length_m.value_or
 
 double section_m2(const MethodInput& in) { return in.test.custom.width_m.value_or(extent_m(in, true)) * in.specimen.spec.thickness_m; }
 
+void check(const Outline& outline, double, const TestSpec& test) {
+    bool moves = false;
+    Vec2 held;   // components in which something is held
+    for (const FixtureSpec& fixture : test.custom.fixtures) {
+        const std::string& label = fixture.part.label;
+        if (!label.empty() && std::ranges::find(outline.edge_labels, label) == outline.edge_labels.end()) {
+            std::string known;
+            for (const std::string& one : outline.edge_labels)
+                if (known.find("\"" + one + "\"") == std::string::npos) known += (known.empty() ? "\"" : ", \"") + one + "\"";
+            throw InputError({.key = "test.fixture"}, fmt::format("the fixture \"{}\" is on \"{}\", which no edge of the outline is called", fixture.name, label), known);
+        }
+        moves = moves || fixture.moves();
+        if (fixture.kind == FixtureKind::plate) held += Vec2{std::abs(fixture.normal.x), std::abs(fixture.normal.y)} + (fixture.contact.mu > 0.0 ? Vec2{std::abs(fixture.normal.y), std::abs(fixture.normal.x)} : Vec2{});
+        if (fixture.kind == FixtureKind::nodes) held += Vec2{fixture.imposes_x || fixture.pins_middle ? 1.0 : 0.0, fixture.imposes_y || fixture.pins_middle ? 1.0 : 0.0};
+    }
+    if (!moves) throw InputError({.key = "test.fixture"}, "no fixture moves, so nothing loads the specimen", "motion = [0, -1] of one fixture at least");
+    for (const auto& [component, axis] : {std::pair{held.x, "x"}, {held.y, "y"}})
+        if (!(component > 1e-6))
+            throw InputError({.key = "test.fixture"}, fmt::format("nothing holds the specimen along {}: it is free to move away as a whole", axis),
+                             "a fixture that holds it there: friction (mu) of a plate, pin = true, or kind = \"boundary\"");
+}
+
 std::vector<GaugeSpec> gauges(const MethodInput& in) { return in.test.custom.gauges; }
 
 }  // namespace
@@ -42,10 +69,10 @@ const TestMethod custom{
     .kind = TestKind::custom,
     .purpose = "a test of your own: fixtures and gauges as the job gives them",
     .words = {"Test of your own", "Load over width times thickness", "Loading motion over length"},
-    .build = {fixtures, length_m, section_m2, gauges},
+    .build = {fixtures, length_m, section_m2, gauges, {}, check},
     .start = {.strained_evenly = false, .stays_in_touch = false, .time_of_mode = true},
     .reading = Reading::curve,
-    .specimen = {},
+    .specimen = {.plates = true},
     .loading = {.control = LoadControl::dissipation},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 150.0, .seconds = 8.0, .fixed_speed_strain = 2e-3},
     .verdict = {.error_a = 1e-2, .imbalance_a = 2e-2, .imbalance_b = 4e-2},

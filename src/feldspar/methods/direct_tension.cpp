@@ -8,11 +8,11 @@ const TestMethod direct_tension{
     .kind = TestKind::direct_tension,
     .purpose = "a specimen pulled apart by its ends",
     .words = {"Direct tension", "Axial stress", "Axial strain from the platens"},
-    .build = {between_platens, height_m, narrowest_section_m2},
+    .build = between_its_platens,
     .start = {},
     .reading = Reading::column,
     .specimen = {.glued = true},
-    .loading = {.sign = -1.0, .tensile = true},
+    .loading = {.sign = -1.0, .tensile = true, .failure_state = {{-1.0, 0.0}}},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 28.0, .seconds = 3.0, .fixed_speed_strain = 5e-4},
     .verdict = {.error_a = 1e-2},
 };

@@ -2,6 +2,8 @@
 // of the program reads these facts and asks for no method by name.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,8 @@ struct MethodBuild {
     double (*length_m)(const MethodInput&) = nullptr;    ///< strain = loading motion / length
     double (*section_m2)(const MethodInput&) = nullptr;  ///< stress = load / section
     std::vector<GaugeSpec> (*gauges)(const MethodInput&) = nullptr;   ///< none: no gauges but those of the strain in the specimen's middle
+    std::vector<const char*> gauge_names{};   ///< that it may have
+    void (*check)(const Outline&, double thickness_m, const TestSpec&) = nullptr;   ///< throws InputError if the specimen is none for the test; none: it stands between platens
 };
 
 /// What results and pages call things.
@@ -56,6 +60,7 @@ struct MethodSpecimen {
     bool confined = false;     ///< a pressure sigma3 on the sides (and first on all sides), which the job gives
     bool glued = false;        ///< the ends are glued to the platens; else they may slide and come off
     double plate_mu = 0.0;     ///< friction of plates, unless the job gives another
+    bool plates = false;       ///< plates or rollers load it whatever its grains are; else only rigid grains and inner particles
 };
 
 /// How it is loaded, and what is then known of it.
@@ -66,6 +71,8 @@ struct MethodLoading {
     bool widens = false;       ///< the specimen widens as it fails: the lateral strain can control the test, and tells of damage
     bool bends = false;        ///< a column that may bend aside before it breaks (Euler)
     bool tensile = false;      ///< the strength is a tensile one
+    /// Principal stresses at the strength, where they are known: sigma3 and sigma1 as multiples of it, and sigma3 with the confining pressure.
+    std::optional<std::array<double, 2>> failure_state{};
 };
 
 /// Constants of the adaptive numerics, measured (docs/validation, true strengths).

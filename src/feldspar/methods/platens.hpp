@@ -24,4 +24,7 @@ double section_width_m(const Outline& outline, double loaded_width_m);
 /// The same times the thickness, m2.
 double narrowest_section_m2(const MethodInput& in);
 
+/// How a test between two platens is built.
+inline const MethodBuild between_its_platens{between_platens, height_m, narrowest_section_m2, nullptr, {}, nullptr};
+
 }  // namespace feldspar

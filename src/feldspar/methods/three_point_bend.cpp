@@ -49,6 +49,8 @@ double section_m2(const MethodInput& in) {
     return 2.0 * b.thickness_m * b.ligament_m() * b.ligament_m() / (3.0 * b.span_m * factor);
 }
 
+void check(const Outline& outline, double thickness_m, const TestSpec& test) { beam_of(outline, thickness_m, test); }
+
 std::vector<GaugeSpec> gauges(const MethodInput& in) {
     const Beam b = beam(in);
     // Beside the mouth by half a grain, so that a point lies in a grain of its side.
@@ -74,10 +76,10 @@ const TestMethod three_point_bend{
     .kind = TestKind::three_point_bend,
     .purpose = "a beam on two rollers, pressed down by a third in the middle; with a notch from below, a test of toughness",
     .words = {"Three-point bending", "Stress of the outermost fibre, by beam theory", "6 h w / S\u00b2, w the way of the loading roller"},
-    .build = {rollers, length_m, section_m2, gauges},
+    .build = {rollers, length_m, section_m2, gauges, {"deflection", "CMOD"}, check},
     .start = {.strained_evenly = false, .stays_in_touch = false, .time_of_mode = true},
     .reading = Reading::beam,
-    .specimen = {.plate_mu = kHolds},
+    .specimen = {.plate_mu = kHolds, .plates = true},
     .loading = {.control = LoadControl::dissipation, .stop_fraction = 0.1, .tensile = true},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 100.0, .seconds = 6.0, .fixed_speed_strain = 2e-3},
     .verdict = {.error_a = 1e-2, .imbalance_a = 2e-2, .imbalance_b = 4e-2},

@@ -8,11 +8,11 @@ const TestMethod uniaxial_compression{
     .kind = TestKind::uniaxial_compression,
     .purpose = "a specimen pressed between two platens, with free sides",
     .words = {"Uniaxial compression", "Axial stress", "Axial strain from the platens"},
-    .build = {between_platens, height_m, narrowest_section_m2},
+    .build = between_its_platens,
     .start = {},
     .reading = Reading::column,
     .specimen = {},
-    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true},
+    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true, .failure_state = {{0.0, 1.0}}},
     .rate = {},
     .verdict = {},
 };

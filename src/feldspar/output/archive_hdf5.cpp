@@ -169,6 +169,7 @@ void put_provenance(hid_t root, const TestResult& result, const Job& job, const 
     set_text(root, "signs", sign_convention);
     if (!result.variant.empty()) set_text(root, "variant", result.variant);
     set_text(root, "kind", name(result.test.kind));
+    if (!result.test.custom.name.empty()) set_text(root, "name", result.test.custom.name);
     set_number(root, "seed", static_cast<std::int64_t>(result.seed));
     set_number(root, "sigma3_MPa", result.test.sigma3_Pa * MPa);
     set_text(root, "model", name(result.model.kind));
@@ -192,14 +193,14 @@ void put_provenance(hid_t root, const TestResult& result, const Job& job, const 
 
 void put_history(hid_t root, const TestResult& result) {
     const Handle group = make_group(root, "history");
-    for (const HistoryColumn& column : history_columns()) {
+    for (const FileColumn& column : history_columns(result)) {
         std::vector<double> values;
         values.reserve(result.history.size());
         for (const HistoryRow& row : result.history) values.push_back(column.value(row));
         if (column.whole) {
-            put(group, column.name, std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit, column.meaning);
+            put(group, column.name.c_str(), std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit.c_str(), column.meaning.c_str());
         } else {
-            put(group, column.name, values, 1, column.unit, column.meaning);
+            put(group, column.name.c_str(), values, 1, column.unit.c_str(), column.meaning.c_str());
         }
     }
 }

@@ -1,7 +1,9 @@
 #include "feldspar/output/history_columns.hpp"
 
 #include <array>
+#include <string_view>
 
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
@@ -55,5 +57,32 @@ constexpr auto columns = std::to_array<HistoryColumn>({
 }  // namespace
 
 std::span<const HistoryColumn> history_columns() { return columns; }
+
+GaugeUnit unit_of(const GaugeSpec& gauge) {
+    switch (gauge.kind) {
+        case GaugeKind::displacement: return {"mm", 1e3};
+        case GaugeKind::force: return {"kN", 1e-3};
+        case GaugeKind::strain: break;
+    }
+    return {"1", 1.0};
+}
+
+std::vector<FileColumn> history_columns(const TestResult& result) {
+    const TestMethod& method = method_of(result.test);
+    const bool strained_evenly = method.reading == Reading::column || method.reading == Reading::disc;
+    std::vector<FileColumn> all;
+    for (const HistoryColumn& column : columns)
+        if (strained_evenly || !std::string_view(column.name).ends_with("_gauge")) all.push_back({column.name, column.unit, column.meaning, column.whole, column.value});
+    for (FileColumn& column : all)
+        if (!strained_evenly && column.name == "axial_strain") column.meaning = "loading motion over the length of the test";
+        else if (!strained_evenly && column.name == "axial_stress_MPa") column.meaning = "load over the section of the test";
+    for (std::size_t g = 0; g < result.gauges.size(); ++g) {
+        const GaugeSpec& gauge = result.gauges[g];
+        const GaugeUnit unit = unit_of(gauge);
+        const std::string name = unit.name == std::string_view("1") ? gauge.name : gauge.name + "_" + unit.name;
+        all.push_back({name, unit.name, gauge.meaning, false, [g, unit](Row r) { return g < r.gauges.size() ? r.gauges[g] * unit.factor : 0.0; }});
+    }
+    return all;
+}
 
 }  // namespace feldspar

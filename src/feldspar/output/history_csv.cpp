@@ -18,14 +18,14 @@ namespace {
 std::string header(const TestResult& result, const Provenance& provenance) {
     std::string text;
     auto line = std::back_inserter(text);
-    fmt::format_to(line, "# history of {}, seed {}", name(result.test.kind), result.seed);
+    fmt::format_to(line, "# history of {}, seed {}", test_name(result.test), result.seed);
     if (method_of(result.test).specimen.confined) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
     if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", printable(result.variant, LineEnds::escaped));
     fmt::format_to(line, "\n# signs: {}\n", sign_convention);
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
                    name(result.model.contact), name(result.contact.law), name(result.numerics.kind), name(result.model.plane));
     fmt::format_to(line, "# feldspar {}, commit {}\n# columns: name [unit] meaning\n", provenance.version, provenance.commit);
-    for (const HistoryColumn& column : history_columns()) {
+    for (const FileColumn& column : history_columns(result)) {
         fmt::format_to(line, "#   {} [{}] {}\n", column.name, column.unit, column.meaning);
     }
     return text;
@@ -34,7 +34,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
 }  // namespace
 
 std::string test_stem(const std::string& variant, const TestSpec& test, std::uint64_t seed) {
-    std::string stem = fmt::format("{}-s{}", name(test.kind), seed);
+    std::string stem = fmt::format("{}-s{}", test_name(test), seed);
     if (method_of(test).specimen.confined) stem += fmt::format("-p{:.6g}", test.sigma3_Pa * MPa);
     return variant.empty() ? stem : variant_stem(variant) + "-" + stem;
 }
@@ -44,7 +44,7 @@ std::string test_stem(const TestResult& result) { return test_stem(result.varian
 void write_history_csv(const RunDirectory& directory, const TestResult& result, const Provenance& provenance) {
     std::string text = header(result, provenance);
     auto out = std::back_inserter(text);
-    const auto columns = history_columns();
+    const std::vector<FileColumn> columns = history_columns(result);
     for (std::size_t c = 0; c < columns.size(); ++c) fmt::format_to(out, "{}{}", c == 0 ? "" : ",", columns[c].name);
     text += '\n';
     for (const HistoryRow& row : result.history) {

@@ -1,6 +1,7 @@
 #include "feldspar/output/html_page.hpp"
 
 #include "feldspar/base/printable.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/report_assets.hpp"
 
 namespace feldspar {
@@ -68,12 +69,17 @@ void HtmlPage::fill(const std::string& mark, const std::string& text) {
     from_ = found + text.size();
 }
 
+nlohmann::ordered_json with_titles(nlohmann::ordered_json data) {
+    for (const TestKind kind : test_kinds) data["titles"][name(kind)] = method_of(kind).words.title;
+    return data;
+}
+
 std::string html_page(const std::string& title, const nlohmann::ordered_json& data, const char* script) {
     HtmlPage page(asset_page_html);
     page.fill("title", escaped(title));
     page.fill("uplot_css", asset_uPlot_min_css);
     page.fill("css", asset_report_css);
-    page.fill("data", script_json(data));
+    page.fill("data", script_json(with_titles(data)));
     page.fill("uplot_js", asset_uPlot_iife_min_js);
     page.fill("charts_js", asset_charts_js);
     page.fill("page_js", asset_page_js);

@@ -7,8 +7,10 @@
 #include <cstdlib>
 
 #include "feldspar/base/angle.hpp"
+#include "feldspar/base/counted.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/quantities.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -36,7 +38,7 @@ std::vector<std::size_t> kept_rows(const TestResult& result, std::size_t tests) 
     };
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
     const std::size_t strength = strength_row(result);
-    const auto dip = result.test.kind == TestKind::brazilian ? first_dip(result) : std::nullopt;
+    const auto dip = method_of(result.test).reading == Reading::disc ? first_dip(result) : std::nullopt;
     for (std::size_t r = 0; r < history.size(); ++r) {
         if (r % stride == 0 || r == peak || r == strength || (dip && r == dip->row) || r + 1 == history.size()) kept.push_back(r);
     }
@@ -54,8 +56,9 @@ Json history_json(const TestResult& result, std::size_t tests) {
     };
     using Row = const HistoryRow&;
     column("strain", [](Row r) { return r.axial_strain * 1e3; });  // strains in 10^-3
-    column("gauge", [](Row r) { return r.axial_strain_gauge * 1e3; });
-    column("lateral", [](Row r) { return r.lateral_strain_gauge * 1e3; });
+    const bool strained_evenly = method_of(result.test).reading == Reading::column || method_of(result.test).reading == Reading::disc;
+    column("gauge", [&](Row r) { return strained_evenly ? r.axial_strain_gauge * 1e3 : std::nan(""); });
+    column("lateral", [&](Row r) { return strained_evenly ? r.lateral_strain_gauge * 1e3 : std::nan(""); });
     column("stress", [](Row r) { return r.axial_stress_Pa * MPa; });
     column("tensile", [](Row r) { return r.cracks_tensile; });
     column("shear", [](Row r) { return r.cracks_shear; });
@@ -101,19 +104,51 @@ Json brazilian_json(const TestResult& result) {
     return json;
 }
 
+/// What stands at the axes of a test's charts, without units.
+Json axes_json(const TestResult& result) {
+    const MethodWords& words = method_of(result.test).words;
+    const bool flattened = method_of(result.test).reading == Reading::disc && std::isfinite(result.properties.brazilian.flat_coefficient);
+    if (flattened) return {{"stress", std::string("k ") + words.stress}, {"strain", "Approach of the plates / distance of the flats"}};
+    return {{"stress", words.stress}, {"strain", words.strain}};
+}
+
+/// The readings of gauges over the rows of the history that the report keeps, with the load (kN) that belongs to them.
+Json gauges_json(const TestResult& result, std::size_t tests) {
+    Json list = Json::array();
+    const std::vector<std::size_t> kept = kept_rows(result, tests);
+    for (std::size_t g = 0; g < result.gauges.size(); ++g) {
+        const GaugeUnit unit = unit_of(result.gauges[g]);
+        Json values = Json::array(), load = Json::array();
+        for (const std::size_t r : kept) {
+            const HistoryRow& row = result.history[r];
+            values.push_back(g < row.gauges.size() ? rounded(row.gauges[g] * unit.factor) : Json(nullptr));
+            load.push_back(rounded(row.axial_stress_Pa * result.section_m2 * 1e-3));
+        }
+        list.push_back({{"name", result.gauges[g].name}, {"unit", unit.name}, {"meaning", result.gauges[g].meaning}, {"values", values}, {"load", load}});
+    }
+    return list;
+}
+
 Json test_json(const TestResult& result, std::size_t tests) {
     Json test;
     if (!result.variant.empty()) test["variant"] = result.variant;
     test["stem"] = test_stem(result);
     test["kind"] = name(result.test.kind);
+    test["title"] = result.test.custom.name.empty() ? method_of(result.test).words.title : result.test.custom.name;
+    test["confined"] = method_of(result.test).specimen.confined;
+    test["axes"] = axes_json(result);
     test["seed"] = result.seed;
     test["sigma3"] = rounded(result.test.sigma3_Pa * MPa);
     test["numerics"] = name(result.numerics.kind);
     add(test, result, QuantityGroup::strength);
+    add(test, result, QuantityGroup::load);
     test["remarks"] = result.properties.remarks;
     add(test, result, QuantityGroup::peak);
     add(test, result, QuantityGroup::first_crack);
-    if (result.test.kind == TestKind::brazilian) test["brazilian"] = brazilian_json(result);
+    const Reading reading = method_of(result.test).reading;
+    if (reading == Reading::disc) test["brazilian"] = brazilian_json(result);
+    if (reading == Reading::beam) add(test["bending"], result, QuantityGroup::bending);
+    test["gauges"] = gauges_json(result, tests);
     add(test["post_peak"], result, QuantityGroup::post_peak);
     add(test, result, QuantityGroup::elastic);
     add(test["sigma_ci"], result, QuantityGroup::initiation);
@@ -194,7 +229,7 @@ Json specimens_json(std::span<const TestResult> results) {
     Json list = Json::array();
     for (const bool brazilian : {false, true}) {
         const auto found = std::ranges::find_if(
-            results, [&](const TestResult& r) { return r.specimen && (r.test.kind == TestKind::brazilian) == brazilian; });
+            results, [&](const TestResult& r) { return r.specimen && method_of(r.test).specimen.own_disc == brazilian; });
         if (found == results.end()) continue;
         const Specimen& specimen = *found->specimen;
         const OutlineSpec& outline = specimen.spec.outline;
@@ -202,8 +237,12 @@ Json specimens_json(std::span<const TestResult> results) {
         if (outline.shape == Shape::rectangle)
             shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
         if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
+        if (outline.shape == Shape::half_disc) shape = fmt::format("half disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
+        if (outline.shape == Shape::ring) shape = fmt::format("ring, diameters {:.6g} and {:.6g} mm", outline.diameter_m * 1e3, outline.hole_diameter_m * 1e3);
+        if (!outline.holes.empty()) shape += ", " + counted(outline.holes.size(), "hole");
+        if (!outline.notches.empty()) shape += fmt::format(", {} {}", outline.notches.size(), outline.notches.size() == 1 ? "notch" : "notches");
         if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", in_degrees(outline.flat_angle_rad));
-        list.push_back({{"for", brazilian ? "Brazilian test" : "compression and tension"},
+        list.push_back({{"for", brazilian ? "Brazilian test" : "all other tests"},
                         {"shape", shape},
                         {"thickness", rounded(specimen.spec.thickness_m * 1e3)},
                         {"grains", specimen.quality.grains},
@@ -282,7 +321,8 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     for (const TestResult& result : results) data["tests"].push_back(test_json(result, results.size()));
     data["failed"] = Json::array();
     for (const FailedTest& test : failed)
-        data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"seed", test.seed},
+        data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"title", test.test.custom.name.empty() ? method_of(test.test).words.title : test.test.custom.name},
+                                  {"confined", method_of(test.test).specimen.confined}, {"seed", test.seed},
                                   {"sigma3", rounded(test.test.sigma3_Pa * MPa)}, {"reason", test.reason}});
     data["provenance"] = provenance_json(provenance);
     return data;

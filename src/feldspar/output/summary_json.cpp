@@ -8,6 +8,7 @@
 
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/quantities.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/results.hpp"
@@ -50,10 +51,26 @@ Json files_json(const RunDirectory& directory, const std::string& stem) {
     return files;
 }
 
+std::string control_of(const TestSpec& test) { return test.control == LoadControl::gauge ? test.control_gauge : name(test.control); }
+
+/// What the gauges read at the largest stress and at the end.
+Json gauges_json(const TestResult& result) {
+    Json json = Json::object();
+    const auto peak = std::ranges::max_element(result.history, {}, [&](const HistoryRow& row) { return method_of(result.test).loading.sign * row.axial_stress_Pa; });
+    for (std::size_t g = 0; g < result.gauges.size(); ++g) {
+        const GaugeUnit unit = unit_of(result.gauges[g]);
+        const auto at = [&](const HistoryRow& row) { return g < row.gauges.size() ? number(row.gauges[g] * unit.factor) : Json(nullptr); };
+        json[result.gauges[g].name] = {{"unit", unit.name}, {"at_peak", peak == result.history.end() ? Json(nullptr) : at(*peak)},
+                                       {"at_end", result.history.empty() ? Json(nullptr) : at(result.history.back())}};
+    }
+    return json;
+}
+
 Json test_json(const RunDirectory& directory, const TestResult& result) {
     Json test;
     if (!result.variant.empty()) test["variant"] = result.variant;
     test["kind"] = name(result.test.kind);
+    if (!result.test.custom.name.empty()) test["name"] = result.test.custom.name;
     test["model"] = name(result.model.kind);
     test["contact"] = name(result.model.contact);
     test["law"] = name(result.contact.law);
@@ -62,20 +79,33 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["seed"] = result.seed;
     test["sigma3_MPa"] = in_MPa(result.test.sigma3_Pa);
     add(test, result, QuantityGroup::strength);
+    if (method_of(result.test).build.gauges != nullptr) add(test, result, QuantityGroup::load);
     test["remarks"] = result.properties.remarks;
     add(test, result, QuantityGroup::peak);
     add(test, result, QuantityGroup::first_crack);
-    if (result.test.kind == TestKind::brazilian) {
+    const Reading reading = method_of(result.test).reading;
+    if (reading == Reading::disc) {
         Json& disc = test["brazilian"] = {{"plates", name(result.test.plates)}};
         add(disc, result, QuantityGroup::brazilian);
         if (result.specimen && result.specimen->outline.flattened()) add(disc, result, QuantityGroup::flattened);
+    } else if (reading == Reading::beam) {
+        Json& beam = test["bending"] = {{"control", control_of(result.test)}};
+        add(beam, result, QuantityGroup::bending);
+    } else if (reading == Reading::curve) {
+        test["control"] = control_of(result.test);
     } else {
         Json& branch = test["post_peak"] = {{"control", name(result.test.control)}};
         add(branch, result, QuantityGroup::post_peak);
     }
-    for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage, QuantityGroup::steps, QuantityGroup::cost,
-                                      QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
-        add(test, result, group);
+    if (!result.gauges.empty()) test["gauges"] = gauges_json(result);
+    if (reading == Reading::beam || reading == Reading::curve) {   // no modulus of a specimen strained evenly, and no threshold
+        for (const QuantityGroup group : {QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
+            add(test, result, group);
+    } else {
+        for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage, QuantityGroup::steps, QuantityGroup::cost,
+                                          QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
+            add(test, result, group);
+    }
     test["quasi_static"] = std::string(1, result.evidence.grade);
     test["verdict"] = result.evidence.verdict;
     add(test, result, QuantityGroup::repeats);
@@ -93,7 +123,7 @@ Json failed_json(const FailedTest& failed) {
     test["name"] = test_stem(failed.variant, failed.test, failed.seed);
     test["kind"] = name(failed.test.kind);
     test["seed"] = failed.seed;
-    if (failed.test.kind == TestKind::biaxial) test["sigma3_MPa"] = in_MPa(failed.test.sigma3_Pa);
+    if (method_of(failed.test).specimen.confined) test["sigma3_MPa"] = in_MPa(failed.test.sigma3_Pa);
     test["reason"] = failed.reason;
     return test;
 }
@@ -214,8 +244,8 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
     summary["complete"] = complete;
     summary["signs"] = sign_convention;
     summary["seeds"] = job.seeds;
-    add_specimens(summary, "specimen", results, [](const TestResult& r) { return r.test.kind != TestKind::brazilian; });
-    add_specimens(summary, "brazilian_specimen", results, [](const TestResult& r) { return r.test.kind == TestKind::brazilian; });
+    add_specimens(summary, "specimen", results, [](const TestResult& r) { return !method_of(r.test).specimen.own_disc; });
+    add_specimens(summary, "brazilian_specimen", results, [](const TestResult& r) { return method_of(r.test).specimen.own_disc; });
     // a run of Brazilian tests only has one kind of specimen
     if (!summary.contains("specimen") && summary.contains("brazilian_specimen"))
         summary["specimen"] = summary["brazilian_specimen"];

@@ -6,6 +6,9 @@
 #include <numeric>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/filling_contacts.hpp"
@@ -59,6 +62,19 @@ double discs_in_all(const Polygons& polygons, double diameter, Team* team) {
         counts[g] = static_cast<double>(ring.centres.size()) + discs_inside(ring);
     });
     return std::accumulate(counts.begin(), counts.end(), 0.0);
+}
+
+/// A grain that is so bent or narrow that its discs must be far smaller than the common diameter may have room for millions of them: it is refused.
+constexpr double smallest_share = 0.05, most_inside = 10000.0;
+
+void require_room(const Polygons& polygons, const std::vector<GrainRing>& rings, double diameter) {
+    for (std::size_t g = 0; g < rings.size(); ++g) {
+        if (rings[g].diameter_m >= smallest_share * diameter || discs_inside(rings[g]) <= most_inside) continue;
+        const Vec2 at = centroid(polygons[g]);
+        throw InputError({"", 0, 0, "specimen.grains.particles_per_grain"},
+                         fmt::format("the grain at ({:.4g}, {:.4g}) mm is too narrow for inner particles of {:.3g} mm", 1e3 * at.x, 1e3 * at.y, 1e3 * diameter), "grains that are wider",
+                         "more particles a grain, a larger merge length, or another seed");
+    }
 }
 
 /// The diameter for which the grains hold `wanted` discs, by bisection: the number falls with the diameter, but for small steps.
@@ -143,6 +159,7 @@ Filling fill_grains(const Tessellation& cells, double particles_per_grain, std::
     std::vector<double> real_counts;
     long left = static_cast<long>(wanted);
     each(grains, control.team, [&](int g) { rings[g] = place_ring(polygons[g], diameter); });
+    require_room(polygons, rings, diameter);
     for (const GrainRing& ring : rings) {
         real_counts.push_back(discs_inside(ring));
         left -= std::ssize(ring.centres);

@@ -52,7 +52,8 @@ std::size_t next_edge(const std::vector<HalfEdge>& edges, const std::vector<char
     return best;
 }
 
-/// Faces of one cell put together: edges that occur in both directions go, the rest is traced into closed chains.
+}  // namespace
+
 std::vector<Face> united(const std::vector<Face>& pieces, int cell, const std::vector<Vec2>& vertices) {
     std::vector<HalfEdge> all, edges;
     for (const Face& piece : pieces) {
@@ -79,6 +80,8 @@ std::vector<Face> united(const std::vector<Face>& pieces, int cell, const std::v
     }
     return faces;
 }
+
+namespace {
 
 /// The piece that holds the site, or the largest.
 std::size_t main_piece(const std::vector<Face>& pieces, Vec2 site, const std::vector<Vec2>& vertices) {
@@ -139,7 +142,8 @@ void place_strays(CellGraph& graph, std::vector<Face> strays) {
     }
 }
 
-/// Labels from the faces themselves: the owner of the same edge in the other direction.
+}  // namespace
+
 void name_neighbours(std::vector<Face>& faces) {
     const EdgeOwner owner = edge_owners(faces);
     for (Face& face : faces) {
@@ -151,6 +155,8 @@ void name_neighbours(std::vector<Face>& faces) {
         }
     }
 }
+
+namespace {
 
 /// Cut vertices lie on the straight boundary of two cells: they go from both, unless a third cell has come to meet there.
 void remove_cut_vertices(CellGraph& graph) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "feldspar/specimen/cell_graph.hpp"
 #include "feldspar/specimen/specimen.hpp"
@@ -13,5 +14,12 @@ namespace feldspar {
 /// there is one face a cell, in the cells' order, the labels name the neighbours, and the cuts and their vertices are gone.
 /// @throws InputError if a piece borders on no other cell: the outline is too narrow for the grains there
 void join_pieces(CellGraph& graph, std::span<const Vec2> centres, const Outline& outline);
+
+/// Faces of one cell put together: edges that occur in both directions go, the rest is traced into closed chains.
+std::vector<Face> united(const std::vector<Face>& pieces, int cell, const std::vector<Vec2>& vertices);
+
+/// Labels from the faces themselves: the owner of the same edge in the other direction; those of the outline stay.
+/// @throws NumericalError for an edge without another side
+void name_neighbours(std::vector<Face>& faces);
 
 }  // namespace feldspar

@@ -16,6 +16,7 @@
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/outline.hpp"
 #include "feldspar/specimen/pack_discs.hpp"
+#include "feldspar/specimen/place_labels.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/specimen/tessellate_laguerre.hpp"
 
@@ -118,6 +119,29 @@ Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint
     }
 }
 
+/// Where cells were cut, `packing` gets one disc a grain. Discs of reshaped cells are at the centroid and have the share of the cell that the discs have of the
+/// specimen, since the discs' circles are the frame of contacts.
+void give_discs_to_pieces(Specimen& specimen) {
+    const Tessellation& cells = specimen.cells;
+    if (cells.disc_of_cell.empty()) return;
+    specimen.packed = specimen.packing;
+    const Packing& packed = specimen.packed;
+    double discs = 0.0;
+    for (const double r : packed.radii_m) discs += std::numbers::pi * r * r;
+    const double share = discs / packed_area_m2(specimen.outline);
+    specimen.packing.centres.clear();
+    specimen.packing.radii_m.clear();
+    for (int g = 0; g < std::ssize(cells.cells); ++g) {
+        const std::size_t disc = static_cast<std::size_t>(cells.disc_of_cell[g]);
+        const std::vector<Vec2> corners = corners_of_cell(cells, g);
+        specimen.packing.centres.push_back(cells.reshaped[g] ? centroid(corners) : packed.centres[disc]);
+        specimen.packing.radii_m.push_back(cells.reshaped[g] ? std::sqrt(share * signed_area(corners) / std::numbers::pi) : packed.radii_m[disc]);
+    }
+}
+
+/// The discs as they were packed.
+const Packing& discs_of(const Specimen& specimen) { return specimen.packed.centres.empty() ? specimen.packing : specimen.packed; }
+
 /// Twice the area between the boundary edges and the origin, which is the area of the outline, or of its chords on a disc.
 double boundary_area(const Tessellation& cells) {
     double twice = 0.0;
@@ -169,7 +193,7 @@ SizeSummary summary_of(std::vector<double> diameters) {
 
 void measure_sizes(const Specimen& specimen, SpecimenQuality& quality) {
     std::vector<double> discs, cells;
-    for (const double r : specimen.packing.radii_m) discs.push_back(2.0 * r);
+    for (const double r : discs_of(specimen).radii_m) discs.push_back(2.0 * r);
     for (int g = 0; g < std::ssize(specimen.cells.cells); ++g)
         cells.push_back(2.0 * std::sqrt(signed_area(corners_of_cell(specimen.cells, g)) / std::numbers::pi));
     double squares = 0.0;
@@ -251,7 +275,7 @@ std::vector<std::string> warnings_about(const SpecimenQuality& quality) {
 int grain_count(const SpecimenSpec& spec) {
     check_numbers(spec);
     const double d = counting_diameter(spec.grain_sizes);
-    const double count = std::round((1.0 - spec.porosity) * make_outline(spec.outline).area_m2 / (0.25 * std::numbers::pi * d * d));
+    const double count = std::round((1.0 - spec.porosity) * packed_area_m2(make_outline(spec)) / (0.25 * std::numbers::pi * d * d));
     if (count > most_grains) {
         throw InputError({"", 0, 0, "specimen.grains.diameter"}, fmt::format("these grain sizes ask for {:.3g} grains", count),
                          fmt::format("at most {:.0e}", most_grains));
@@ -264,7 +288,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     Specimen specimen;
     specimen.spec = spec;
     specimen.seed = seed;
-    specimen.outline = make_outline(spec.outline);
+    specimen.outline = make_outline(spec);
     Making making(control);
     specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
     making.expect(specimen.packing.centres.size());
@@ -274,12 +298,16 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
     making.stage("cells", true);
     specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
+    give_discs_to_pieces(specimen);
+    label_by_place(specimen.outline, specimen.cells, spec.outline);
     specimen.mesh = mesh_grains(specimen.cells, spec.triangles_per_grain, making.stage("mesh", true));
     if (spec.particles_per_grain > 0.0) {
         specimen.filling = fill_grains(specimen.cells, spec.particles_per_grain, seed, making.stage("filling", false));
     }
 
     quality.grains = static_cast<int>(specimen.packing.centres.size());
+    quality.pieces = quality.grains - static_cast<int>(discs_of(specimen).centres.size());
+    quality.joined_pieces = specimen.cells.joined_pieces;
     quality.merged_edges = specimen.cells.merged_edges;
     quality.overlap_mean = specimen.packing.overlap_mean;
     quality.overlap_max = specimen.packing.overlap_max;

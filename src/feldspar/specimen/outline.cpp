@@ -9,6 +9,8 @@
 
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/error.hpp"
+#include "feldspar/specimen/cutouts.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 
 namespace feldspar {
 namespace {
@@ -19,35 +21,27 @@ void require_length(double value, const char* key) {
     }
 }
 
-/// Length of the part of the horizontal line at `y` inside the polygon; `y` is not the height of a vertex.
-double width_at(const std::vector<Vec2>& corners, double y) {
-    std::vector<double> crossings;
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-        const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
-        if ((a.y < y) != (b.y < y)) crossings.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
-    }
-    std::sort(crossings.begin(), crossings.end());
-    double width = 0.0;
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) width += crossings[i + 1] - crossings[i];
-    return width;
-}
-
 struct Extremes {
     double least = std::numeric_limits<double>::infinity(), most = 0.0;
 };
 
 /// Between two heights. The width is linear between the heights of two vertices, so its extremes are there.
-Extremes extreme_widths(const std::vector<Vec2>& corners, double low, double high) {
+Extremes extreme_widths(const Outline& outline, double low, double high) {
     std::vector<double> levels = {low, high};
-    for (const Vec2 corner : corners) {
-        if (corner.y > low && corner.y < high) levels.push_back(corner.y);
-    }
+    const auto note = [&](const std::vector<Vec2>& corners) {
+        for (const Vec2 corner : corners) {
+            if (corner.y > low && corner.y < high) levels.push_back(corner.y);
+        }
+    };
+    note(outline.vertices);
+    for (const Cutout& cutout : outline.cutouts) note(cutout.vertices);
     std::sort(levels.begin(), levels.end());
     Extremes extremes;
     for (std::size_t i = 0; i + 1 < levels.size(); ++i) {
         const double height = levels[i + 1] - levels[i];
         if (!(height > 1e-9 * (high - low))) continue;
-        const double third = width_at(corners, levels[i] + height / 3.0), two_thirds = width_at(corners, levels[i] + 2.0 * height / 3.0);
+        const double third = width_at(outline.vertices, outline.cutouts, levels[i] + height / 3.0),
+                     two_thirds = width_at(outline.vertices, outline.cutouts, levels[i] + 2.0 * height / 3.0);
         for (const double width : {2.0 * third - two_thirds, 2.0 * two_thirds - third}) {
             extremes.least = std::min(extremes.least, std::max(0.0, width));
             extremes.most = std::max(extremes.most, width);
@@ -92,6 +86,19 @@ void flatten(Outline& outline, double angle_rad) {
     outline.flat_height_m = outline.radius_m * std::cos(0.5 * angle_rad);
     outline.edge_labels = {"circle", top_label, bottom_label};
     outline.area_m2 -= outline.radius_m * outline.radius_m * (angle_rad - std::sin(angle_rad));
+}
+
+/// The arc's edges are odd in number: one lies across its middle, where it is loaded.
+void make_half_disc(Outline& outline, double radius_m, const GrainScale& grains) {
+    const int edges = arc_edges(radius_m, grains.mean_m) / 2 + (arc_edges(radius_m, grains.mean_m) / 2 + 1) % 2;
+    outline.radius_m = radius_m;
+    outline.vertices = arc_corners({0.0, 0.0}, radius_m, 0.0, std::numbers::pi, edges);
+    outline.vertices.front() = {radius_m, 0.0};
+    outline.vertices.back() = {-radius_m, 0.0};
+    std::rotate(outline.vertices.begin(), outline.vertices.end() - 1, outline.vertices.end());
+    outline.edge_labels.assign(outline.vertices.size(), "arc");
+    outline.edge_labels.front() = "flat";
+    outline.area_m2 = signed_area(outline.vertices);
 }
 
 }  // namespace
@@ -161,13 +168,13 @@ SectionWidths section_widths(const Outline& outline) {
         if (outline.edge_labels[k] == top_label) high = std::min({high, a, b});
     }
     if (!(high > low)) return {};
-    const Extremes all = extreme_widths(outline.vertices, low, high);
+    const Extremes all = extreme_widths(outline, low, high);
     const double middle = 0.5 * (box.lower.y + box.upper.y), quarter = 0.25 * (box.upper.y - box.lower.y);
-    const Extremes gauge = extreme_widths(outline.vertices, std::max(low, middle - quarter), std::min(high, middle + quarter));
+    const Extremes gauge = extreme_widths(outline, std::max(low, middle - quarter), std::min(high, middle + quarter));
     return {all.least, all.most, gauge.least, gauge.most};
 }
 
-Outline make_outline(const OutlineSpec& spec) {
+Outline make_outline(const OutlineSpec& spec, const GrainScale& grains) {
     Outline outline;
     switch (spec.shape) {
         case Shape::rectangle:
@@ -189,8 +196,80 @@ Outline make_outline(const OutlineSpec& spec) {
             outline = make_polygon(spec);
             outline.area_m2 = signed_area(outline.vertices);
             break;
+        case Shape::half_disc:
+            require_length(spec.diameter_m, "specimen.diameter");
+            make_half_disc(outline, 0.5 * spec.diameter_m, grains);
+            break;
+        case Shape::ring:
+            require_length(spec.diameter_m, "specimen.diameter");
+            require_length(spec.hole_diameter_m, "specimen.hole_diameter");
+            if (!(spec.hole_diameter_m < spec.diameter_m))
+                throw InputError({"", 0, 0, "specimen.hole_diameter"}, "the hole of the ring is not smaller than the ring", "less than the diameter");
+            outline.is_disc = true;
+            outline.radius_m = 0.5 * spec.diameter_m;
+            outline.edge_labels = {"circle"};
+            outline.area_m2 = std::numbers::pi * outline.radius_m * outline.radius_m;
+            break;
     }
+    add_cutouts(outline, spec, grains);
     return outline;
+}
+
+Outline make_outline(const SpecimenSpec& spec) {
+    if (!spec.outline.is_cut() && spec.outline.shape != Shape::half_disc) return make_outline(spec.outline);
+    const GrainSizeSpec& sizes = spec.grain_sizes;
+    return make_outline(spec.outline, {counting_diameter(sizes), sizes.kind == GrainSizeKind::sieve ? largest_of_sieve_m(sizes.sieve) : sizes.maximum_m});
+}
+
+int arc_edges(double radius_m, double mean_grain_m) {
+    constexpr int least = 24, most = 3600;   // multiples of four: an edge across each axis
+    if (!(mean_grain_m > 0.0)) return least;
+    return std::clamp(4 * static_cast<int>(std::ceil(0.5 * std::numbers::pi * std::min(radius_m / mean_grain_m, 1e4))), least, most);
+}
+
+double packed_area_m2(const Outline& outline) {
+    double area = outline.area_m2;
+    for (const Cutout& cutout : outline.cutouts) {
+        if (!cutout.packed_around) area += cutout.area_m2;
+    }
+    return area;
+}
+
+OutlineSpec scaled(const OutlineSpec& spec, double factor) {
+    OutlineSpec result = spec;
+    const auto scale = [factor](std::vector<Vec2>& points) {
+        for (Vec2& p : points) p = {p.x * factor, p.y * factor};
+    };
+    for (double* length : {&result.width_m, &result.height_m, &result.diameter_m, &result.hole_diameter_m}) *length *= factor;
+    scale(result.vertices_m);
+    for (HoleSpec& hole : result.holes) {
+        hole.centre_m *= factor;
+        hole.diameter_m *= factor;
+        scale(hole.vertices_m);
+    }
+    for (NotchSpec& notch : result.notches) {
+        notch.from_m *= factor;
+        notch.to_m *= factor;
+        notch.width_m *= factor;
+    }
+    for (PlaceLabelSpec& label : result.labels) {
+        label.a_m *= factor;
+        label.b_m *= factor;
+        label.within_m *= factor;
+    }
+    return result;
+}
+
+Box bounding_box(const OutlineSpec& spec) {
+    const double radius = 0.5 * spec.diameter_m;
+    switch (spec.shape) {
+        case Shape::rectangle: return {{0.0, 0.0}, {spec.width_m, spec.height_m}};
+        case Shape::polygon: return bounding_box(std::span<const Vec2>(spec.vertices_m));
+        case Shape::half_disc: return {{-radius, 0.0}, {radius, radius}};
+        case Shape::disc:
+        case Shape::ring: break;
+    }
+    return {{-radius, -radius}, {radius, radius}};
 }
 
 Box bounding_box(const Outline& outline) {
@@ -199,13 +278,15 @@ Box bounding_box(const Outline& outline) {
     return {outline.centre - half, outline.centre + half};
 }
 
-bool contains(const Outline& outline, Vec2 point) {
+namespace {
+
+bool contains_uncut(const Outline& outline, Vec2 point) {
     if (outline.flattened() && std::abs(point.y - outline.centre.y) > outline.flat_height_m) return false;
     if (outline.is_disc) return norm(point - outline.centre) <= outline.radius_m;
     return contains(std::span<const Vec2>(outline.vertices), point);
 }
 
-double distance_to_boundary(const Outline& outline, Vec2 point) {
+double distance_uncut(const Outline& outline, Vec2 point) {
     if (outline.flattened()) {
         const auto corners = flat_corners(outline);
         const double to_flats = std::min(distance_to_segment(point, corners[0], corners[1]), distance_to_segment(point, corners[2], corners[3]));
@@ -215,6 +296,22 @@ double distance_to_boundary(const Outline& outline, Vec2 point) {
     }
     if (outline.is_disc) return std::abs(outline.radius_m - norm(point - outline.centre));
     return distance_to_boundary(std::span<const Vec2>(outline.vertices), point);
+}
+
+}  // namespace
+
+bool contains(const Outline& outline, Vec2 point) {
+    return contains_uncut(outline, point) && std::none_of(outline.cutouts.begin(), outline.cutouts.end(), [&](const Cutout& cutout) {
+        return cutout.packed_around && contains(std::span<const Vec2>(cutout.vertices), point);
+    });
+}
+
+double distance_to_boundary(const Outline& outline, Vec2 point) {
+    double least = distance_uncut(outline, point);
+    for (const Cutout& cutout : outline.cutouts) {
+        if (cutout.packed_around) least = std::min(least, distance_to_boundary(std::span<const Vec2>(cutout.vertices), point));
+    }
+    return least;
 }
 
 }  // namespace feldspar

@@ -27,6 +27,16 @@ public:
         throw InputError({name_, line_, line_ > 0 ? 1 : 0, ""}, problem, allowed);
     }
 
+    /// The first word of the next line, which stays to be read; empty at the end.
+    std::string next_word() {
+        const std::streampos here = stream_.tellg();
+        std::string text, word;
+        if (std::getline(stream_, text)) std::istringstream(text) >> word;
+        stream_.clear();
+        stream_.seekg(here);
+        return word;
+    }
+
     /// The words of the next line. `what` says what should stand there.
     std::vector<std::string> next(const std::string& what) {
         std::string text;
@@ -74,7 +84,7 @@ private:
     int line_ = 0;
 };
 
-std::string outline_text(const Outline& outline) {
+std::string outer_text(const Outline& outline) {
     if (outline.flattened())
         return fmt::format("flattened-disc {:.17g} {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m, outline.flat_height_m);
     if (outline.is_disc) return fmt::format("disc {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m);
@@ -83,7 +93,47 @@ std::string outline_text(const Outline& outline) {
     return text;
 }
 
-void require_same_outline(PackingReader& reader, const Outline& outline) {
+/// What discs are packed around belongs to the packing; what is cut out of the cells afterwards does not.
+std::vector<const Cutout*> packed_around(const Outline& outline) {
+    std::vector<const Cutout*> result;
+    for (const Cutout& cutout : outline.cutouts) {
+        if (cutout.packed_around) result.push_back(&cutout);
+    }
+    return result;
+}
+
+std::string outline_text(const Outline& outline) {
+    std::string text = outer_text(outline);
+    for (const Cutout* cutout : packed_around(outline)) {
+        text += fmt::format("without {}\n", cutout->vertices.size());
+        for (const Vec2 v : cutout->vertices) text += fmt::format("{:.17g} {:.17g}\n", v.x, v.y);
+    }
+    return text;
+}
+
+void require_same_cutouts(PackingReader& reader, const Outline& outline, double tolerance) {
+    const std::vector<const Cutout*> cutouts = packed_around(outline);
+    for (std::size_t k = 0; k < cutouts.size(); ++k) {
+        const Cutout& cutout = *cutouts[k];
+        const std::string allowed = fmt::format("a packing around {} of {} corners, as this specimen has it", cutout.name, cutout.vertices.size());
+        if (reader.next_word() != "without") {
+            reader.next(allowed);
+            reader.fail(k == 0 ? "the packing was made without holes or wide notches" : fmt::format("the packing was made with {} holes and wide notches", k), allowed);
+        }
+        if (reader.count("without", 3) != cutout.vertices.size()) reader.fail("the packing was made for a hole or notch of another number of corners", allowed);
+        for (const Vec2 v : cutout.vertices) {
+            const auto xy = reader.numbers("", 2);
+            if (norm(Vec2{xy[0], xy[1]} - v) > tolerance)
+                reader.fail(fmt::format("the packing was made for a hole or notch with a corner at ({:.9g}, {:.9g}) m", xy[0], xy[1]),
+                            fmt::format("this specimen's corner of {} at ({:.9g}, {:.9g}) m", cutout.name, v.x, v.y));
+        }
+    }
+    if (reader.next_word() != "without") return;
+    reader.next("");
+    reader.fail(fmt::format("the packing was made around {} holes or wide notches and more", cutouts.size()), fmt::format("{}, as this specimen has", cutouts.size()));
+}
+
+void require_same_outer(PackingReader& reader, const Outline& outline) {
     const Box box = bounding_box(outline);
     const double tolerance = 1e-9 * norm(box.upper - box.lower);
     const auto same = [&](Vec2 a, Vec2 b) { return norm(a - b) <= tolerance; };
@@ -118,10 +168,16 @@ void require_same_outline(PackingReader& reader, const Outline& outline) {
     }
 }
 
+void require_same_outline(PackingReader& reader, const Outline& outline) {
+    require_same_outer(reader, outline);
+    const Box box = bounding_box(outline);
+    require_same_cutouts(reader, outline, 1e-9 * norm(box.upper - box.lower));
+}
+
 }  // namespace
 
 void save_packing(const Specimen& specimen, const std::filesystem::path& file) {
-    const Packing& packing = specimen.packing;
+    const Packing& packing = specimen.packed.centres.empty() ? specimen.packing : specimen.packed;
     std::string text = fmt::format("{}\nseed {}\n{}", first_line, specimen.seed, outline_text(specimen.outline));
     text += fmt::format("relaxation {:.17g} {:.17g} {:.17g} {}\n", packing.overlap_mean, packing.overlap_max, packing.residual,
                         packing.relaxation_steps);

@@ -43,10 +43,31 @@ struct Share {
 /// Pairs of a disc and a piece of the outline that may touch before the lists are made again.
 struct NearWall {
     int disc = 0;
-    int wall = 0;   ///< edge k as k (circle_edge and flats of a disc), re-entrant corner k as -1 - k; whole_polygon for a disc that has got outside
+    int wall = 0;   ///< edge k as k (circle_edge and flats of a disc first), re-entrant corner k as -1 - k; whole_boundary for a disc that has got outside
 
-    static constexpr int whole_polygon = std::numeric_limits<int>::min();
+    static constexpr int whole_boundary = std::numeric_limits<int>::min();
+    static constexpr int arc = whole_boundary + 1;   ///< of a half disc: as a circle, since two edges of its polygon would both push near their common corner
 };
+
+/// A straight piece of the boundary, with the rock to its left.
+struct WallEdge {
+    Vec2 from, to;
+    int before = 0, next = 0;   ///< edges
+};
+
+/// Those of the polygon and of what is packed around, loop by loop.
+std::vector<WallEdge> wall_edges(const Outline& outline) {
+    std::vector<WallEdge> edges;
+    const auto add = [&](const std::vector<Vec2>& loop) {
+        const int first = static_cast<int>(edges.size()), n = static_cast<int>(loop.size());
+        for (int k = 0; k < n; ++k) edges.push_back({loop[k], loop[(k + 1) % n], first + (k + n - 1) % n, first + (k + 1) % n});
+    };
+    if (!outline.is_disc) add(outline.vertices);
+    for (const Cutout& cutout : outline.cutouts) {
+        if (cutout.packed_around) add({cutout.vertices.rbegin(), cutout.vertices.rend()});
+    }
+    return edges;
+}
 
 /// Sums over the contacts; the stiffness is 1, so a force is an overlap (m).
 struct Sums {
@@ -85,7 +106,11 @@ public:
         mean_diameter_ = 2.0 * mean_of(radii_);
         skin_ = near_skin_share * mean_diameter_;
         far_skin_ = far_skin_share * mean_diameter_;
-        convex_ = outline.is_disc || is_convex_polygon(outline.vertices);
+        edges_ = wall_edges(outline);
+        has_arc_ = !outline.is_disc && outline.radius_m > 0.0;
+        first_edge_ = outline.is_disc ? bottom_flat + 1 : 0;
+        const bool packed_around = std::any_of(outline.cutouts.begin(), outline.cutouts.end(), [](const Cutout& cutout) { return cutout.packed_around; });
+        convex_ = !packed_around && (outline.is_disc || is_convex_polygon(outline.vertices));
     }
 
     void run(const RelaxationCriterion& criterion, Packing& packing);
@@ -117,6 +142,9 @@ private:
     std::vector<Vec2> sifted_at_, searched_at_;   ///< where the discs were when the lists were made; empty before
     DiscGrid grid_;
     std::vector<Share> shares_;   ///< one a thread
+    std::vector<WallEdge> edges_;
+    bool has_arc_ = false;   ///< a half disc
+    int first_edge_ = 0;   ///< number of edges_[0] as a wall
     std::vector<NearWall> walls_;
     double smallest_radius_ = 0.0, largest_radius_ = 0.0;
     double mean_diameter_ = 0.0;
@@ -194,25 +222,28 @@ void Relaxation::find_walls() {
             if (!outline_.flattened() || std::abs(centres_[i].y - outline_.centre.y) + radii_[i] + skin_ <= outline_.flat_height_m) continue;
             walls_.push_back({i, centres_[i].y > outline_.centre.y ? top_flat : bottom_flat});
         }
-        return;
+        if (edges_.empty()) return;
     }
-    const auto& corners = outline_.vertices;
-    const int n = static_cast<int>(corners.size());
     const double far = largest_radius_ + skin_;
-    for (int k = 0; k < n; ++k) {
-        const Vec2 a = corners[k], b = corners[(k + 1) % n], c = corners[(k + 2) % n];
+    const int arc_end = has_arc_ ? static_cast<int>(outline_.vertices.size()) : 0;   // edge 0 is the flat
+    for (int i = 0; has_arc_ && i < count_; ++i) {
+        if (norm(centres_[i] - outline_.centre) + radii_[i] + skin_ > outline_.radius_m) walls_.push_back({i, NearWall::arc});
+    }
+    for (int k = 0; k < std::ssize(edges_); ++k) {
+        if (k > 0 && k < arc_end) continue;
+        const Vec2 a = edges_[k].from, b = edges_[k].to, c = edges_[edges_[k].next].to;
         const bool reentrant = cross(b - a, c - b) < 0.0;
         const Vec2 lower = {std::min(a.x, b.x) - far, std::min(a.y, b.y) - far}, upper = {std::max(a.x, b.x) + far, std::max(a.y, b.y) + far};
         const std::ptrdiff_t before = std::ssize(walls_);
         for (int i = 0; i < count_; ++i) {
             const Vec2 p = centres_[i];
             if (p.x < lower.x || p.x > upper.x || p.y < lower.y || p.y > upper.y) continue;
-            if (distance_to_segment(p, a, b) < radii_[i] + skin_) walls_.push_back({i, k});
+            if (distance_to_segment(p, a, b) < radii_[i] + skin_) walls_.push_back({i, first_edge_ + k});
         }
         const std::ptrdiff_t end = std::ssize(walls_);
         for (std::ptrdiff_t w = before; reentrant && w < end; ++w) {
             const int i = walls_[w].disc;
-            if (norm(centres_[i] - b) < radii_[i] + skin_) walls_.push_back({i, -1 - (k + 1) % n});
+            if (norm(centres_[i] - b) < radii_[i] + skin_) walls_.push_back({i, -1 - edges_[k].next});
         }
     }
     call_back();
@@ -234,7 +265,7 @@ void Relaxation::call_back() {
         if (wall_overlap(pair, inward) > 0.0) faced[pair.disc] = true;
     }
     for (const int i : outside) {
-        if (!faced[i] && !contains(outline_, centres_[i])) walls_.push_back({i, NearWall::whole_polygon});
+        if (!faced[i] && !contains(outline_, centres_[i])) walls_.push_back({i, NearWall::whole_boundary});
     }
 }
 
@@ -256,12 +287,12 @@ bool Relaxation::moved_beyond(double distance, const std::vector<Vec2>& since) c
 double Relaxation::wall_overlap(NearWall pair, Vec2& inward) const {
     const Vec2 centre = centres_[pair.disc];
     const double radius = radii_[pair.disc];
-    if (outline_.is_disc && pair.wall != circle_edge) {
+    if (outline_.is_disc && (pair.wall == top_flat || pair.wall == bottom_flat)) {
         const double outward = pair.wall == top_flat ? 1.0 : -1.0;
         inward = {0.0, -outward};
         return std::max(0.0, outward * (centre.y - outline_.centre.y) + radius - outline_.flat_height_m);
     }
-    if (outline_.is_disc) {
+    if (pair.wall == NearWall::arc || (outline_.is_disc && pair.wall == circle_edge)) {
         const Vec2 out = centre - outline_.centre;
         const double distance = norm(out);
         const double overlap = distance + radius - outline_.radius_m;
@@ -269,13 +300,11 @@ double Relaxation::wall_overlap(NearWall pair, Vec2& inward) const {
         inward = (-1.0 / distance) * out;
         return overlap;
     }
-    const auto& corners = outline_.vertices;
-    const std::size_t n = corners.size();
-    if (pair.wall == NearWall::whole_polygon) {
+    if (pair.wall == NearWall::whole_boundary) {
         if (contains(outline_, centre)) return 0.0;
         double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < n; ++k) {
-            const Vec2 a = corners[k], ab = corners[(k + 1) % n] - a;
+        for (const WallEdge& edge : edges_) {
+            const Vec2 a = edge.from, ab = edge.to - a;
             const Vec2 back = a + std::clamp(dot(centre - a, ab) / dot(ab, ab), 0.0, 1.0) * ab - centre;
             if (const double distance = norm(back); distance < nearest && distance > 0.0) {
                 nearest = distance;
@@ -285,16 +314,17 @@ double Relaxation::wall_overlap(NearWall pair, Vec2& inward) const {
         return radius + nearest;
     }
     if (pair.wall < 0) {  // a re-entrant corner, where neither edge is faced
-        const std::size_t k = static_cast<std::size_t>(-1 - pair.wall);
-        const Vec2 before = corners[k] - corners[(k + n - 1) % n], after = corners[(k + 1) % n] - corners[k];
-        const Vec2 apart = centre - corners[k];
+        const WallEdge& edge = edges_[static_cast<std::size_t>(-1 - pair.wall)];
+        const Vec2 before = edge.from - edges_[static_cast<std::size_t>(edge.before)].from, after = edge.to - edge.from;
+        const Vec2 apart = centre - edge.from;
         const double distance = norm(apart);
         if (dot(apart, before) < 0.0 || dot(apart, after) > 0.0 || distance >= radius || distance == 0.0) return 0.0;
         inward = (1.0 / distance) * apart;
         return radius - distance;
     }
-    const Vec2 a = corners[static_cast<std::size_t>(pair.wall)];
-    const Vec2 ab = corners[(static_cast<std::size_t>(pair.wall) + 1) % n] - a;
+    const WallEdge& edge = edges_[static_cast<std::size_t>(pair.wall - first_edge_)];
+    const Vec2 a = edge.from;
+    const Vec2 ab = edge.to - a;
     const double length = norm(ab);
     const Vec2 along = (1.0 / length) * ab;
     const double position = dot(centre - a, along);

@@ -14,17 +14,50 @@
 
 namespace feldspar {
 
-enum class Shape { rectangle, disc, polygon };
+enum class Shape { rectangle, disc, polygon, half_disc, ring };
 
-/// The outline as the user describes it. A rectangle spans [0, width] x [0, height]; a disc is centred at (0, 0).
+/// A hole: round, or a simple polygon of either orientation if it has vertices.
+struct HoleSpec {
+    Vec2 centre_m;                 ///< round
+    double diameter_m = 0.0;       ///< round
+    std::vector<Vec2> vertices_m;  ///< polygon
+    std::string label;             ///< of its boundary; empty = "hole-1", "hole-2", ... in the order of the holes
+};
+
+/// A sawn slit with square ends. Where it begins or ends on a boundary or outside of the rock it is open; an end in the rock is a tip.
+struct NotchSpec {
+    Vec2 from_m, to_m;      ///< the ends of its axis
+    double width_m = 0.0;   ///< 0 = a cut that takes no rock away: its two faces touch, and nothing joins them
+    std::string label;      ///< of its faces; empty = "notch-1", "notch-2", ... in the order of the notches
+};
+
+enum class PlaceKind { disc, box, line };
+
+/// Another label for those edges of cells on the boundary whose middle lies at a place.
+struct PlaceLabelSpec {
+    std::string name;
+    PlaceKind kind = PlaceKind::disc;
+    Vec2 a_m, b_m;          ///< disc: its centre and nothing; box: two opposite corners; line: its ends
+    double within_m = 0.0;  ///< disc: its radius; line: how far from it at most
+};
+
+/// The outline as the user describes it. A rectangle spans [0, width] x [0, height]; a disc and a ring are centred at (0, 0); a half disc
+/// stands on y = 0 with the middle of its flat at (0, 0).
 struct OutlineSpec {
     Shape shape = Shape::rectangle;
     double width_m = 0.0;                  ///< rectangle
     double height_m = 0.0;                 ///< rectangle
-    double diameter_m = 0.0;               ///< disc
+    double diameter_m = 0.0;               ///< disc, half disc; ring: the outer one
+    double hole_diameter_m = 0.0;          ///< ring
     std::vector<Vec2> vertices_m;          ///< polygon: simple, either orientation
     std::vector<std::string> edge_labels;  ///< polygon: label of the edge from vertex i to i + 1; empty = "edge-0", "edge-1", ...
     double flat_angle_rad = 0.0;           ///< disc: angle of each of two flats across y, seen from the centre; 0 = a whole disc
+    std::vector<HoleSpec> holes;           ///< in any outline
+    std::vector<NotchSpec> notches;        ///< in any outline
+    std::vector<PlaceLabelSpec> labels;    ///< of two that catch the same edge the later one counts
+
+    /// Holes or notches are cut out of it.
+    bool is_cut() const { return shape == Shape::ring || !holes.empty() || !notches.empty(); }
 };
 
 enum class GrainSizeKind { uniform, log_normal, sieve };
@@ -57,16 +90,30 @@ struct SpecimenSpec {
     double particles_per_grain = 0.0;             ///< inner particles in a grain of mean area; 0 = grains are not filled
 };
 
-/// The outline made ready: a counter-clockwise polygon with a label on each edge. A disc keeps its circle: cells on it get
+/// What is cut out of the cells: a hole, a slit, or a cut without width.
+struct Cutout {
+    std::vector<Vec2> vertices;    ///< m, counter-clockwise; an open end of a slit reaches beyond the rock. A cut: its two ends
+    int first_edge = 0;            ///< into Outline::edge_labels: of the edge from vertex 0; the others follow. A cut has two: its left face and its right one, seen from its first end
+    bool slit = false;             ///< edges 0 and 2 run along it, edge 1 is its end at `to`, edge 3 that at `from`
+    std::array<bool, 2> tips{};    ///< slit or cut: whether its end at `from`, at `to` lies in the rock
+    bool packed_around = true;     ///< the discs keep clear of it; otherwise they are packed as if it were not there
+    double area_m2 = 0.0;          ///< of the rock that it takes away
+    std::string name;              ///< for messages: "notch 1"
+
+    bool is_cut() const { return vertices.size() == 2; }
+};
+
+/// The outline made ready: a counter-clockwise polygon with a label on each edge, and what is cut out of it. A disc keeps its circle: cells on it get
 /// one chord each, all of them labelled "circle". A flattened disc has two straight edges besides, "top" and "bottom".
 struct Outline {
     bool is_disc = false;
-    Vec2 centre;             ///< disc only
-    double radius_m = 0.0;   ///< disc only
+    Vec2 centre;             ///< disc, half disc
+    double radius_m = 0.0;   ///< disc; half disc: of its arc, on which the corners of the polygon lie
     double flat_height_m = 0.0;            ///< flattened disc: of its flats from the centre, less than the radius; else 0
     std::vector<Vec2> vertices;            ///< polygon only, counter-clockwise
-    std::vector<std::string> edge_labels;  ///< polygon: one an edge; rectangle: "bottom", "right", "top", "left"; disc: {"circle"}, and "top", "bottom" if flattened
-    double area_m2 = 0.0;
+    std::vector<std::string> edge_labels;  ///< polygon: one an edge; rectangle: "bottom", "right", "top", "left"; disc: {"circle"}, and "top", "bottom" if flattened; then those of the cutouts, and at last those given by place
+    double area_m2 = 0.0;                  ///< without the cutouts
+    std::vector<Cutout> cutouts;
 
     bool flattened() const { return flat_height_m > 0.0; }
 };
@@ -91,8 +138,11 @@ struct Cell {
 /// The cells on one shared vertex graph: two neighbours name the same two vertices, so no gap and no overlap is possible.
 struct Tessellation {
     std::vector<Vec2> vertices;  ///< m
-    std::vector<Cell> cells;     ///< one a grain, in the order of the packing
+    std::vector<Cell> cells;     ///< one a grain, in the order of the packing; pieces of one cell follow each other
     int merged_edges = 0;        ///< short edges that were merged
+    std::vector<int> disc_of_cell;      ///< a cell: the packed disc that it is of; empty if nothing was cut out: cell i is of disc i
+    std::vector<char> reshaped;         ///< a cell: a piece of its disc's cell, or one that has taken a piece in: the disc does not stand for it; empty likewise
+    int joined_pieces = 0;              ///< pieces that were too small for a grain and went to a neighbour
 };
 
 /// The places (m) of the vertices of cell `cell`, counter-clockwise, in the cell's order.
@@ -160,6 +210,8 @@ struct SpecimenQuality {
     int nodes = 0;
     int triangles = 0;
     int merged_edges = 0;
+    int pieces = 0;               ///< grains more than discs, because holes or notches have cut cells in two; negative if whole grains went
+    int joined_pieces = 0;        ///< pieces that were too small for a grain and went to a neighbour
     double vertices_per_grain = 0.0;
     double overlap_mean = 0.0;    ///< / mean diameter
     double overlap_max = 0.0;
@@ -185,7 +237,8 @@ struct Specimen {
     SpecimenSpec spec;
     std::uint64_t seed = 0;
     Outline outline;
-    Packing packing;
+    Packing packing;          ///< one disc a grain; that of a reshaped cell is at its centroid and takes up the same share of it as all discs of the specimen
+    Packing packed;           ///< the discs as they were packed, where grains were cut; otherwise empty
     Tessellation cells;
     GrainMesh mesh;
     Filling filling;          ///< empty unless the spec asks for inner particles
@@ -217,7 +270,7 @@ inline constexpr double least_size_spread = 0.10;
 /// Number of grains that the porosity asks for: round((1 - porosity) A / (pi dmean^2 / 4)).
 int grain_count(const SpecimenSpec& spec);
 
-/// Saves the packing (outline, seed, discs) as a text file with 17 digits, so that loading gives the same bits.
+/// Saves the packing (outline, what it was packed around, seed, discs as they were packed) as a text file with 17 digits, so that loading gives the same bits.
 void save_packing(const Specimen& specimen, const std::filesystem::path& file);
 
 /// Loads a packing saved by save_packing. @throws InputError if the file is missing, damaged or does not fit the outline.

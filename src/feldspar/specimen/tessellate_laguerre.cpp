@@ -8,6 +8,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/clip_cells.hpp"
+#include "feldspar/specimen/cut_cells.hpp"
 #include "feldspar/specimen/join_pieces.hpp"
 #include "feldspar/specimen/merge_edges.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -49,7 +50,15 @@ Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline,
     if (!outline.is_disc && !is_convex_polygon(outline.vertices)) join_pieces(graph, packing.centres, outline);
 
     Tessellation result;
-    result.merged_edges = merge_short_edges(graph, outline, std::max(merge_length_m, no_length * mean_diameter));
+    const double least_length = std::max(merge_length_m, no_length * mean_diameter);
+    if (!outline.cutouts.empty()) {
+        result.merged_edges = merge_short_edges(graph, outline, no_length * mean_diameter);   // edges are cut that have a length
+        CutCells cut = cut_cells(graph, outline, mean_diameter, least_length);
+        result.disc_of_cell = std::move(cut.disc);
+        result.reshaped = std::move(cut.reshaped);
+        result.joined_pieces = cut.joined;
+    }
+    result.merged_edges += merge_short_edges(graph, outline, least_length);
     drop_unused_vertices(graph);
     result.vertices = std::move(graph.vertices);
     for (const Face& face : graph.faces) result.cells.push_back(make_cell(face, result.vertices));

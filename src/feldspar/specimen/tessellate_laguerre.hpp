@@ -7,7 +7,7 @@ namespace feldspar {
 
 /// The Laguerre cells of the discs with weights R^2: grain i holds the points x where |x - c_i|^2 - R_i^2 is least. Clipped to
 /// the outline, edges shorter than `merge_length_m` merged (0 = only edges of no length at all). Each cell starts so that
-/// its shortest edge is its last.
+/// its shortest edge is its last. Holes and notches are cut out before edges are merged (cut_cells.hpp); a cell that they cut becomes one grain or several.
 /// @throws InputError      for equal centres, discs hidden by their neighbours or outside the outline, and an outline too
 ///                         narrow for its grains
 /// @throws NumericalError  if the result is not a partition: an edge inside that two cells do not share

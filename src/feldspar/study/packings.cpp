@@ -31,17 +31,43 @@ private:
 // Takes each struct apart by name: one that gets another member is not compiled until the member stands here.
 std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
     const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain] = spec;
-    const auto& [shape, width_m, height_m, diameter_m, vertices_m, edge_labels, flat_angle_rad] = outline;
+    const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, flat_angle_rad, holes, notches, labels] = outline;
     const auto& [kind, minimum_m, maximum_m, median_m, log_standard_deviation, sieve] = grain_sizes;
     Text text;
     text.add(std::to_string(seed));
     text.add(static_cast<int>(shape));
-    for (const double number : {width_m, height_m, diameter_m, flat_angle_rad, thickness_m}) text.add(number);
+    for (const double number : {width_m, height_m, diameter_m, hole_diameter_m, flat_angle_rad, thickness_m}) text.add(number);
     text.add(vertices_m, [&](Vec2 vertex) {
         text.add(vertex.x);
         text.add(vertex.y);
     });
     text.add(edge_labels, [&](const std::string& label) { text.add(label); });
+    const auto add_point = [&](Vec2 point) {
+        text.add(point.x);
+        text.add(point.y);
+    };
+    text.add(holes, [&](const HoleSpec& hole) {
+        const auto& [centre, hole_diameter, corners, label] = hole;
+        add_point(centre);
+        text.add(hole_diameter);
+        text.add(corners, add_point);
+        text.add(label);
+    });
+    text.add(notches, [&](const NotchSpec& notch) {
+        const auto& [from, to, width, label] = notch;
+        add_point(from);
+        add_point(to);
+        text.add(width);
+        text.add(label);
+    });
+    text.add(labels, [&](const PlaceLabelSpec& label) {
+        const auto& [name, place, a, b, within] = label;
+        text.add(name);
+        text.add(static_cast<int>(place));
+        add_point(a);
+        add_point(b);
+        text.add(within);
+    });
     text.add(static_cast<int>(kind));
     for (const double number : {minimum_m, maximum_m, median_m, log_standard_deviation, porosity}) text.add(number);
     text.add(sieve, [&](const SievePoint& point) {

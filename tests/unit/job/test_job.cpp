@@ -125,6 +125,34 @@ TEST(Job, ReadsEverySizeDistributionAndOutline) {
     EXPECT_EQ(polygon.specimen.outline.edge_labels[2], "top");
 }
 
+const char* const holed_and_notched =
+    "height = \"160 mm\"\n"
+    "holes = [{ centre = [\"40 mm\", \"80 mm\"], diameter = \"16 mm\" }, { vertices = [[\"10 mm\", \"20 mm\"], [\"20 mm\", \"20 mm\"], [\"15 mm\", \"31.7 mm\"]], label = \"a \\\"wedge\\\"\" }]\n"
+    "notches = [{ from = [\"0 mm\", \"140 mm\"], to = [\"20 mm\", \"140 mm\"], width = \"2 mm\" }, { from = [\"48 mm\", \"80 mm\"], to = [\"60.3 mm\", \"85 mm\"], width = \"0 mm\", label = \"wing\" }]\n"
+    "labels = [{ name = \"load\", at = [\"40 mm\", \"160 mm\"], within = \"3 mm\" }, { name = \"left-end\", box = [[\"0 mm\", \"0 mm\"], [\"1 mm\", \"80 mm\"]] }, "
+    "{ name = \"base\", line = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"]] }]";
+
+TEST(Job, HolesNotchesAndLabelsByPlace) {
+    const OutlineSpec outline = parse_job(edited("height = \"160 mm\"", holed_and_notched), "job").specimen.outline;
+    ASSERT_EQ(outline.holes.size(), 2U);
+    EXPECT_EQ(outline.holes[0].centre_m, (Vec2{0.04, 0.08}));
+    EXPECT_EQ(outline.holes[0].diameter_m, 0.016);
+    EXPECT_EQ(outline.holes[1].vertices_m[2], (Vec2{0.015, 0.0317}));
+    EXPECT_EQ(outline.holes[1].label, "a \"wedge\"");
+    ASSERT_EQ(outline.notches.size(), 2U);
+    EXPECT_EQ(outline.notches[0].to_m, (Vec2{0.02, 0.14}));
+    EXPECT_EQ(outline.notches[0].width_m, 0.002);
+    EXPECT_EQ(outline.notches[1].width_m, 0.0);
+    EXPECT_EQ(outline.notches[1].label, "wing");
+    ASSERT_EQ(outline.labels.size(), 3U);
+    EXPECT_EQ(outline.labels[0].kind, PlaceKind::disc);
+    EXPECT_EQ(outline.labels[0].within_m, 0.003);
+    EXPECT_EQ(outline.labels[1].kind, PlaceKind::box);
+    EXPECT_EQ(outline.labels[1].b_m, (Vec2{0.001, 0.08}));
+    EXPECT_EQ(outline.labels[2].kind, PlaceKind::line);
+    EXPECT_EQ(outline.labels[2].within_m, 1e-5);
+}
+
 TEST(Job, MergeLengthIsAutoNoneOrALength) {
     EXPECT_EQ(parse_job(edited("merge_length = \"auto\"", "merge_length = \"none\""), "job").specimen.merge_length_m, 0.0);
     EXPECT_EQ(parse_job(edited("merge_length = \"auto\"", "merge_length = \"0.25 mm\""), "job").specimen.merge_length_m, 0.00025);
@@ -182,6 +210,29 @@ void expect_same(const OutlineSpec& a, const OutlineSpec& b) {
     EXPECT_EQ(a.flat_angle_rad, b.flat_angle_rad);
     EXPECT_EQ(a.vertices_m, b.vertices_m);
     EXPECT_EQ(a.edge_labels, b.edge_labels);
+    EXPECT_EQ(a.hole_diameter_m, b.hole_diameter_m);
+    ASSERT_EQ(a.holes.size(), b.holes.size());
+    for (std::size_t i = 0; i < a.holes.size(); ++i) {
+        EXPECT_EQ(a.holes[i].centre_m, b.holes[i].centre_m);
+        EXPECT_EQ(a.holes[i].diameter_m, b.holes[i].diameter_m);
+        EXPECT_EQ(a.holes[i].vertices_m, b.holes[i].vertices_m);
+        EXPECT_EQ(a.holes[i].label, b.holes[i].label);
+    }
+    ASSERT_EQ(a.notches.size(), b.notches.size());
+    for (std::size_t i = 0; i < a.notches.size(); ++i) {
+        EXPECT_EQ(a.notches[i].from_m, b.notches[i].from_m);
+        EXPECT_EQ(a.notches[i].to_m, b.notches[i].to_m);
+        EXPECT_EQ(a.notches[i].width_m, b.notches[i].width_m);
+        EXPECT_EQ(a.notches[i].label, b.notches[i].label);
+    }
+    ASSERT_EQ(a.labels.size(), b.labels.size());
+    for (std::size_t i = 0; i < a.labels.size(); ++i) {
+        EXPECT_EQ(a.labels[i].name, b.labels[i].name);
+        EXPECT_EQ(a.labels[i].kind, b.labels[i].kind);
+        EXPECT_EQ(a.labels[i].a_m, b.labels[i].a_m);
+        EXPECT_EQ(a.labels[i].b_m, b.labels[i].b_m);
+        EXPECT_EQ(a.labels[i].within_m, b.labels[i].within_m);
+    }
 }
 
 void expect_same(const SpecimenSpec& a, const SpecimenSpec& b) {
@@ -296,6 +347,7 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplate_Kn = \"3.6e3 GPa/m\""));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplates = \"curved\"\njaw_radius = 1.25"));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\""));
+    expect_round_trip(edited("height = \"160 mm\"", holed_and_notched));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));

@@ -54,4 +54,41 @@ inline SpecimenSpec triangle() { return polygon({{0, 0}, {0.05, 0}, {0.01, 0.04}
 /// A square whose top and bottom have a vertex in the middle, so that half of each can be loaded.
 inline SpecimenSpec split_sides() { return polygon({{0, 0}, {0.015, 0}, {0.03, 0}, {0.03, 0.03}, {0.015, 0.03}, {0, 0.03}}); }
 
+/// A half disc with a notch from the middle of its flat, as for the semi-circular bend test.
+inline SpecimenSpec half_disc(double diameter_m = 0.06, double notch_width_m = 0.001) {
+    SpecimenSpec spec = disc(diameter_m);
+    spec.outline.shape = Shape::half_disc;
+    spec.outline.notches = {{{0.0, 0.0}, {0.0, 0.2 * diameter_m}, notch_width_m, {}}};
+    return spec;
+}
+
+inline SpecimenSpec ring() {
+    SpecimenSpec spec = disc(0.06);
+    spec.outline.shape = Shape::ring;
+    spec.outline.hole_diameter_m = 0.02;
+    return spec;
+}
+
+/// A beam with a notch from the middle of its lower side.
+inline SpecimenSpec notched_beam(double notch_width_m = 0.001) {
+    SpecimenSpec spec = rectangle(0.06, 0.03);
+    spec.outline.notches = {{{0.03, 0.0}, {0.03, 0.01}, notch_width_m, {}}};
+    return spec;
+}
+
+/// A plate with two cracks inside, one of them oblique and without width.
+inline SpecimenSpec cracked_plate() {
+    SpecimenSpec spec = rectangle(0.05, 0.05);
+    spec.outline.notches = {{{0.01, 0.012}, {0.022, 0.024}, 0.0, {}}, {{0.03, 0.035}, {0.042, 0.03}, 0.0005, {}}};
+    return spec;
+}
+
+/// A plate with a round hole, from which a cut and a slit go, and a square one.
+inline SpecimenSpec holed_plate() {
+    SpecimenSpec spec = rectangle(0.05, 0.06);
+    spec.outline.holes = {{{0.025, 0.025}, 0.012, {}, {}}, {{}, 0.0, {{0.008, 0.044}, {0.008, 0.052}, {0.016, 0.052}, {0.016, 0.044}}, "box"}};
+    spec.outline.notches = {{{0.031, 0.025}, {0.04, 0.03}, 0.0, {}}, {{0.019, 0.025}, {0.01, 0.02}, 0.001, "wing"}};
+    return spec;
+}
+
 }  // namespace feldspar

@@ -167,5 +167,13 @@ TEST(FineMesh, ComesNearTheNumberAskedFor) {
     }
 }
 
+TEST(FineMesh, IsTheFixedOneWhereAVertexLiesInAStraightSide) {
+    // the grain ahead of a notch whose end is the fifth vertex
+    const GrainMesh mesh = mesh_grains(one_cell({{0.0082476775103451014, 0.020973099798594099}, {0.0086720805297596619, 0.018303988357690783}, {0.011009132445100749, 0.018130005928428481},
+                                                 {0.011464111623434373, 0.018568696851776572}, {0.0088338053366169324, 0.02080921856686473}, {0.0084120875993093248, 0.021168442035557719}}),
+                                       30);
+    for (const auto& t : mesh.triangles) EXPECT_GT(area_of(mesh, t), 1e-9 * 5e-6);
+}
+
 }  // namespace
 }  // namespace feldspar

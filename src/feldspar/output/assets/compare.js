@@ -94,7 +94,7 @@ function writeComparedCurves() {
   const update = () => {
     const own = kinds.get(state.kind);
     if (!own.some((t) => t.seed === state.seed)) state.seed = own[0].seed;
-    const brazilian = own[0].kind === "brazilian";
+    const brazilian = Boolean(own[0].brazilian);
     const labels = {x: state.x === "strain" ? strainLabelOf(own[0]) : (brazilian ? "Approach of the plates (mm)" : "Platen displacement (mm)"),
       y: stressLabelOf(own[0]), right: "Broken contact area (%)", height: 420};
     const series = comparedSeries(chosen(), state);

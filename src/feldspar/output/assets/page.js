@@ -74,8 +74,7 @@ function gradesText(grades) {
   return some.length ? h("span", {class: "marks"}, some.flatMap(([grade, count]) => [gradeMark(grade), " " + count + " "])) : "\u2013";
 }
 function kindText(test, sigma3) {
-  const names = {"uniaxial-compression": "Uniaxial compression", "direct-tension": "Direct tension", biaxial: "Biaxial compression", brazilian: "Brazilian test"};
-  return (names[test] || test) + (test === "biaxial" && sigma3 !== null ? " at " + Number(sigma3.toPrecision(4)) + " MPa" : "");
+  return (data.titles[test] || test) + (test === "biaxial" && sigma3 !== null ? " at " + Number(sigma3.toPrecision(4)) + " MPa" : "");
 }
 
 /** Says that runs are missing, and lists those that failed with their reasons. */

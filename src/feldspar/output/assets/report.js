@@ -1,11 +1,11 @@
 // The report's page: reads the data beside it and lays out tables, charts and the viewer.
 "use strict";
 
-const kindNames = {"uniaxial-compression": "Uniaxial compression", "direct-tension": "Direct tension", biaxial: "Biaxial compression", brazilian: "Brazilian test"};
+const kindNames = data.titles;
 data.tests.forEach((test, index) => { test.index = index; });
 
 function titleOf(test) {
-  return (kindNames[test.kind] || test.kind) + (test.kind === "biaxial" ? " at \u03c3\u2083 = " + Number(test.sigma3.toPrecision(4)) + " MPa" : "");
+  return test.title + (test.confined ? " at \u03c3\u2083 = " + Number(test.sigma3.toPrecision(4)) + " MPa" : "");
 }
 
 /** The title with the variant before it, if the job has variants. */
@@ -125,14 +125,12 @@ function markSeries(test) {
 }
 
 function strainLabelOf(test, short) {
-  if (test.kind !== "brazilian") return short ? "Axial strain (10\u207b\u00b3)" : "Axial strain from the platens (10\u207b\u00b3)";
-  const over = test.brazilian && test.brazilian.flat_coefficient !== null ? "distance of the flats" : "diameter";
-  return (short ? "Approach / " : "Approach of the plates / ") + over + " (10\u207b\u00b3)";
+  const words = short ? test.axes.strain.replace(" from the platens", "").replace("Approach of the plates", "Approach").replace(/, .*/, "") : test.axes.strain;
+  return words + " (10\u207b\u00b3)";
 }
 
 function stressLabelOf(test) {
-  if (test.kind !== "brazilian") return "Axial stress (MPa)";
-  return (test.brazilian && test.brazilian.flat_coefficient !== null ? "k " : "") + "2P / (\u03c0Dt) (MPa)";
+  return test.axes.stress + " (MPa)";
 }
 
 function stressSeries(tests, chosen) {
@@ -190,6 +188,22 @@ function writeTests() {
   open(present[0].name);
 }
 
+/** Load over the readings of gauge number g. */
+function gaugeSeries(tests, chosen, g) {
+  const t = tests[chosen], line = (test, more) => ({x: test.gauges[g].values, y: test.gauges[g].load, ...more});
+  return [...tests.filter((other) => other !== t && other.gauges[g]).map((o, i) => line(o, {label: i ? "packing " + o.seed : "other packings", color: "context", width: 1.3, quiet: i > 0})),
+    line(t, {label: "packing " + t.seed, color: "ink", width: 2.2})];
+}
+
+/** What a bent beam shows, in words. */
+function addBending(t, add) {
+  const b = t.bending;
+  if (b.flexural_strength !== null) add("Flexural strength", show(b.flexural_strength, 4) + " MPa");
+  if (b.K_Ic !== null) add("Fracture toughness KIc", show(b.K_Ic) + " MPa\u00a0m\u00bd, from the largest load; notch " + show(b.notch) + " mm, softening length " + show(b.softening_length, 2) + " mm");
+  if (b.E_bending !== null) add("E, secant at 50 %", show(b.E_bending) + " GPa, from the " + (b.notch > 0 ? "opening of the notch" : "deflection"));
+  if (b.work_of_fracture !== null) add("Work of fracture", show(b.work_of_fracture) + " J/m\u00b2 of the ligament; all cracks are " + show(b.crack_path, 2) + " times as long as it");
+}
+
 /** The charts and numbers of one kind of test. */
 function writeTest(host, tests) {
   const peaks = tests.map((t) => t.peak).filter((p) => p !== null);
@@ -211,6 +225,12 @@ function writeTest(host, tests) {
     const b = new XYChart(second, {x: "Strain, middle of the specimen (10\u207b\u00b3)", y: stressLabel, series: strainSeries(tests[0])});
     updates.push((i) => b.set(strainSeries(tests[i])));
   }
+  tests[0].gauges.forEach((gauge, g) => {
+    const host = card("Load and " + gauge.name);
+    grid.append(host);
+    const chart = new XYChart(host, {x: gauge.name + (gauge.unit === "1" ? "" : " (" + gauge.unit + ")"), y: "Load (kN)", series: gaugeSeries(tests, 0, g)});
+    updates.push((i) => chart.set(gaugeSeries(tests, i, g)));
+  });
   grid.append(third);
   const c = new XYChart(third, {x: strainLabel, y: "Energy (J)", series: energySeries(tests[0])});
   updates.push((i) => c.set(energySeries(tests[i])));
@@ -223,7 +243,10 @@ function testFacts(tests, updates) {
     const t = tests[i], rows = [];
     const add = (name, value) => rows.push(h("dt", {}, name), h("dd", {}, value));
     add("Packing", "seed " + t.seed);
-    add("Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)"));
+    if (t.peak_load !== null) add("Largest load", show(t.peak_load, 4) + " kN");
+    add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^./, (c) => c.toLowerCase()) : ""));
+    if (t.bending) addBending(t, add);
+    for (const gauge of t.gauges) add("Gauge " + gauge.name, gauge.meaning);
     if (t.section_width !== null) add("Section", show(t.section_width) + " mm wide");
     for (const remark of t.remarks) add("Note", remark);
     if (t.brazilian) {

@@ -1,0 +1,206 @@
+// Keys of [[test]] that belong to some methods only: beams, and fixtures and gauges of a custom test.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/words.hpp"
+#include "feldspar/methods/method.hpp"
+
+namespace feldspar {
+namespace {
+
+Vec2 read_point(const JobTable& table, std::string_view key) {
+    Vec2 point;
+    const toml::array& pair = table.array(key);
+    table.check({key}, [&] {
+        if (pair.size() != 2) table.fail(key, "is not a point", "x and y, such as [\"40 mm\", \"0 mm\"]");
+        point = {table.quantity_of(*pair.get(0), key), table.quantity_of(*pair.get(1), key)};
+    });
+    return point;
+}
+
+Vec2 read_direction(const JobTable& table, std::string_view key, bool unit) {
+    Vec2 direction{0.0, 1.0};
+    const toml::array& pair = table.array(key);
+    table.check({key}, [&] {
+        const auto number = [&](std::size_t i) {
+            const auto value = pair.size() == 2 ? pair.get(i)->value<double>() : std::nullopt;
+            if (!value || !std::isfinite(*value)) table.fail(key, "is not a direction", "x and y as plain numbers, such as [0, -1] for downwards");
+            return *value;
+        };
+        direction = {number(0), number(1)};
+        const double length = norm(direction);
+        if (!(length > 0.0)) table.fail(key, "has no direction: both numbers are 0", unit ? "x and y, one of them not 0" : "leave it out for a fixture at rest");
+        if (unit) direction = (1.0 / length) * direction;
+    });
+    return direction;
+}
+
+FixtureSpec read_fixture(const JobTable& table) {
+    FixtureSpec fixture;
+    table.require({"name", "kind"});
+    fixture.name = table.text("name");
+    const FixtureForm form = table.choice("kind", fixture_forms);
+    if (!table.sound({"kind"})) {
+        for (const JobKey& key : table.rows().keys) table.do_not_miss({key.name});
+        return fixture;
+    }
+    table.suit("kind", name(form));
+    if (table.has("on")) fixture.part.label = table.text("on");
+    if (table.has("at")) {
+        fixture.part.at = read_point(table, "at");
+        fixture.axis = fixture.part.at;
+    }
+    if (!table.has("on") && !table.has("at")) table.check({}, [&] { table.fail("on", "the fixture has no place", "on = the label of an edge, or at = a point"); });
+    if (table.has("motion")) fixture.motion = read_direction(table, "motion", false);
+    if (form == FixtureForm::boundary) {
+        fixture.kind = FixtureKind::nodes;
+        fixture.imposes_x = table.flag("holds_x");
+        fixture.imposes_y = table.flag("holds_y");
+        fixture.pins_middle = table.flag("pin");
+        if (table.has("at")) fixture.part.reach_m = table.quantity("within");
+        return fixture;
+    }
+    fixture.kind = FixtureKind::plate;
+    fixture.normal = read_direction(table, "normal", true);
+    fixture.part.facing = fixture.normal;
+    fixture.contact.Kn_Pa_m = table.has("Kn") ? table.quantity("Kn") : 0.0;   // that of the test
+    fixture.contact.mu = table.number("mu");
+    fixture.contact.glued = table.flag("glued");
+    if (form == FixtureForm::plate) {
+        if (table.has("at")) fixture.part.reach_m = table.quantity("within");
+        return fixture;
+    }
+    table.require({"at"});
+    const double radius_m = table.quantity("radius");
+    fixture.radius_m = form == FixtureForm::jaw ? radius_m : -radius_m;
+    fixture.touch = Touch::nearest_axis;
+    fixture.part.reach_m = table.has("within") ? table.quantity("within") : radius_m;
+    return fixture;
+}
+
+GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
+    GaugeSpec gauge;
+    table.require({"name", "kind"});
+    gauge.name = table.text("name");
+    const GaugeForm form = table.choice("kind", gauge_forms);
+    if (!table.sound({"kind"})) {
+        for (const JobKey& key : table.rows().keys) table.do_not_miss({key.name});
+        return gauge;
+    }
+    table.suit("kind", name(form));
+    switch (form) {
+        case GaugeForm::extension:
+        case GaugeForm::strain: {
+            const Vec2 from = read_point(table, "from"), to = read_point(table, "to"), line = to - from;
+            const double length = norm(line);
+            table.check({"from", "to"}, [&] {
+                if (!(length > 0.0)) table.fail("to", "the gauge ends where it begins", "two different points");
+            });
+            const bool strain = form == GaugeForm::strain;
+            const Vec2 weight = length > 0.0 ? (1.0 / (strain ? length * length : length)) * line : Vec2{};
+            gauge.kind = strain ? GaugeKind::strain : GaugeKind::displacement;
+            gauge.points = {{to, weight}, {from, -weight}};
+            gauge.meaning = strain ? "extension between two points over their distance" : "by how much two points have moved apart";
+            break;
+        }
+        case GaugeForm::displacement:
+            gauge.points = {{read_point(table, "at"), read_direction(table, "direction", true)}};
+            gauge.meaning = "displacement of a point along a direction";
+            break;
+        case GaugeForm::force: {
+            gauge.kind = GaugeKind::force;
+            gauge.fixture = table.text("fixture");
+            gauge.meaning = "force of the specimen on a fixture along a direction";
+            gauge.direction = read_direction(table, "direction", true);
+            table.check({"fixture"}, [&] {
+                std::vector<std::string_view> known;
+                for (const FixtureSpec& fixture : test.custom.fixtures) known.push_back(fixture.name);
+                if (std::ranges::find(known, gauge.fixture) == known.end())
+                    table.fail("fixture", fmt::format("'{}' is not a fixture of the test", gauge.fixture), listed(known), did_you_mean(gauge.fixture, known));
+            });
+            break;
+        }
+    }
+    return gauge;
+}
+
+// Names of tests and gauges become those of files and columns.
+void check_name(const JobTable& table, const std::string& given, std::set<std::string>& taken, const char* what, bool blanks = false) {
+    table.check({"name"}, [&] {
+        const auto fits = [&](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || (blanks && c == ' '); };
+        const bool plain = !given.empty() && given.size() <= 40 && std::all_of(given.begin(), given.end(), fits);
+        if (!plain) table.fail("name", fmt::format("'{}' cannot name {}", given, what), table.allowed("name"));
+        if (!taken.insert(given).second) table.fail("name", fmt::format("'{}' is taken by another one", given), "a name of its own for each");
+    });
+}
+
+void read_custom(const JobTable& table, TestSpec& test) {
+    table.require({"name", "fixture"});
+    std::set<std::string> tests, fixtures, gauges;
+    test.custom.name = table.text("name");
+    check_name(table, test.custom.name, tests, "a test");
+    table.check({"name"}, [&] {
+        for (const TestKind kind : test_kinds)
+            if (test.custom.name == name(kind)) table.fail("name", fmt::format("'{}' is a test method", test.custom.name), "another name");
+    });
+    if (table.has("length")) test.custom.length_m = table.quantity("length");
+    if (table.has("width")) test.custom.width_m = table.quantity("width");
+    if (table.has("fixture"))
+        for (const JobTable& one : table.tables("fixture", "a fixture")) {
+            test.custom.fixtures.push_back(read_fixture(one));
+            if (one.sound({"name"})) check_name(one, test.custom.fixtures.back().name, fixtures, "a fixture", true);
+        }
+    if (table.has("gauge"))
+        for (const JobTable& one : table.tables("gauge", "a gauge")) {
+            test.custom.gauges.push_back(read_gauge(one, test));
+            if (one.sound({"name"})) check_name(one, test.custom.gauges.back().name, gauges, "a gauge");
+        }
+}
+
+// The unit in which a gauge's end is given.
+Dimension dimension_of(const TestSpec& test, const std::string& gauge) {
+    for (const GaugeSpec& spec : test.custom.gauges)
+        if (spec.name == gauge) return spec.kind == GaugeKind::displacement ? Dimension::length : spec.kind == GaugeKind::force ? Dimension::force : Dimension::fraction;
+    return Dimension::length;
+}
+
+void read_until(const JobTable& table, TestSpec& test) {
+    const JobTable until = table.table("until");
+    until.require({"gauge", "at"});
+    GaugeStop stop;
+    stop.gauge = until.text("gauge");
+    until.check({"gauge"}, [&] {
+        const std::vector<std::string_view> known = gauge_names(test);
+        if (!has_gauge(test, stop.gauge))
+            until.fail("gauge", fmt::format("the test has no gauge called '{}'", stop.gauge), known.empty() ? "a test with gauges" : listed(known), did_you_mean(stop.gauge, known));
+    });
+    if (until.sound({"gauge"})) stop.value = until.quantity_as("at", dimension_of(test, stop.gauge));
+    test.stop_gauge = stop;
+}
+
+}  // namespace
+
+std::vector<std::string_view> gauge_names(const TestSpec& test) {
+    std::vector<std::string_view> names(method_of(test).build.gauge_names.begin(), method_of(test).build.gauge_names.end());
+    for (const GaugeSpec& gauge : test.custom.gauges) names.push_back(gauge.name);
+    return names;
+}
+
+bool has_gauge(const TestSpec& test, std::string_view gauge) { return [&] {
+    const std::vector<std::string_view> names = gauge_names(test);
+    return std::ranges::find(names, gauge) != names.end();
+}(); }
+
+void read_own_keys(const JobTable& table, TestSpec& test) {
+    if (table.has("span")) test.span_m = table.quantity("span");
+    if (table.has("roller_radius")) test.roller_radius_m = table.quantity("roller_radius");
+    if (method_of(test).reading == Reading::curve) read_custom(table, test);
+    if (table.has("until")) read_until(table, test);
+}
+
+}  // namespace feldspar

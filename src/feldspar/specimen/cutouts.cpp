@@ -1,0 +1,333 @@
+#include "feldspar/specimen/cutouts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "feldspar/base/error.hpp"
+#include "feldspar/geometry/polygon.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double pi = std::numbers::pi;
+
+/// Bridges of rock thinner than this share of a mean grain are refused, and an end of a notch nearer to a boundary than half of that lies on it.
+constexpr double least_bridge = 0.5;
+constexpr int edges_of_a_measured_circle = 3600;
+
+constexpr const char* holes_key = "specimen.holes";
+constexpr const char* notches_key = "specimen.notches";
+
+std::string in_mm(double length_m) { return fmt::format("{:.4g} mm", 1e3 * length_m); }
+std::string in_mm(Vec2 p) { return fmt::format("({:.4g}, {:.4g}) mm", 1e3 * p.x, 1e3 * p.y); }
+
+bool finite(Vec2 p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+
+/// The outline as a polygon, a circle finely divided.
+std::vector<Vec2> outer_polygon(const Outline& outline) {
+    if (!outline.is_disc) return outline.vertices;
+    std::vector<Vec2> corners;
+    for (int k = 0; k < edges_of_a_measured_circle; ++k) {
+        Vec2 p = turned({outline.radius_m, 0.0}, 2.0 * pi * k / edges_of_a_measured_circle);
+        if (outline.flattened()) p.y = std::clamp(p.y, -outline.flat_height_m, outline.flat_height_m);
+        corners.push_back(outline.centre + p);
+    }
+    return corners;
+}
+
+/// Area of a simple polygon's part inside a convex counter-clockwise one. Parts that hang together by lines of no width add none.
+double common_area(std::vector<Vec2> polygon, std::span<const Vec2> convex) {
+    for (std::size_t e = 0; e < convex.size() && !polygon.empty(); ++e) {
+        const Vec2 a = convex[e], along = convex[(e + 1) % convex.size()] - a;
+        std::vector<Vec2> kept;
+        for (std::size_t k = 0; k < polygon.size(); ++k) {
+            const Vec2 p = polygon[k], q = polygon[(k + 1) % polygon.size()];
+            const double dp = cross(along, p - a), dq = cross(along, q - a);
+            if (dp >= 0.0) kept.push_back(p);
+            if ((dp >= 0.0) != (dq >= 0.0)) kept.push_back(p + (dp / (dp - dq)) * (q - p));
+        }
+        polygon = std::move(kept);
+    }
+    return signed_area(polygon);
+}
+
+bool segments_cross(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
+    const auto side = [](Vec2 p, Vec2 q, Vec2 r) { return cross(q - p, r - p) > 0.0; };
+    return side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
+}
+
+/// Least distance of two chains of segments (m), 0 if they cross. A polygon is a closed chain.
+double distance_between(std::span<const Vec2> a, bool a_closed, std::span<const Vec2> b, bool b_closed) {
+    double least = infinity;
+    for (std::size_t i = 0; i + (a_closed ? 0 : 1) < a.size(); ++i) {
+        const Vec2 p = a[i], q = a[(i + 1) % a.size()];
+        for (std::size_t j = 0; j + (b_closed ? 0 : 1) < b.size(); ++j) {
+            const Vec2 r = b[j], s = b[(j + 1) % b.size()];
+            if (segments_cross(p, q, r, s)) return 0.0;
+            least = std::min({least, distance_to_segment(p, r, s), distance_to_segment(q, r, s), distance_to_segment(r, p, q), distance_to_segment(s, p, q)});
+        }
+    }
+    return least;
+}
+
+class CutoutMaker {
+public:
+    CutoutMaker(Outline& outline, const GrainScale& grains) : outline_(outline), grains_(grains), outer_(outer_polygon(outline)) {
+        const Box box = bounding_box(outline);
+        size_ = norm(box.upper - box.lower);
+        bridge_ = std::max(1e-6 * size_, least_bridge * grains.mean_m);
+    }
+
+    void add_hole(const HoleSpec& hole, const std::string& name, const std::string& label) {
+        Cutout cutout;
+        cutout.name = name;
+        cutout.vertices = hole.vertices_m.empty() ? round_hole(hole, name) : polygonal_hole(hole, name);
+        cutout.area_m2 = signed_area(cutout.vertices);
+        const double across = hole.vertices_m.empty() ? hole.diameter_m : 2.0 * std::sqrt(cutout.area_m2 / pi);
+        if (across < grains_.largest_m)
+            throw InputError({"", 0, 0, holes_key}, fmt::format("{} is {} across, smaller than a grain of {}", name, in_mm(across), in_mm(grains_.largest_m)),
+                             "holes at least as large as the largest grain", "leave the hole out, or take smaller grains");
+        const bool inside = std::all_of(cutout.vertices.begin(), cutout.vertices.end(), [&](Vec2 p) { return feldspar::contains(outer_, p); });
+        const double apart = distance_between(cutout.vertices, true, outer_, true);
+        if (!inside || apart < bridge_) {
+            throw InputError({"", 0, 0, holes_key},
+                             inside && apart > 1e-6 * size_ ? fmt::format("{} leaves a bridge of {} to the boundary, thinner than half a grain", name, in_mm(apart))
+                                                           : fmt::format("{} touches or crosses the boundary", name),
+                             "holes that lie in the rock, half a mean grain or more from its boundary",
+                             outline_.is_disc ? "move it inwards, or make it smaller" : "move it inwards, or draw a bay in the outline: shape = \"polygon\"");
+        }
+        for (const Cutout& other : outline_.cutouts) {
+            const double between = distance_between(cutout.vertices, true, other.vertices, true);
+            const bool within = feldspar::contains(std::span<const Vec2>(other.vertices), cutout.vertices.front()) ||
+                                feldspar::contains(std::span<const Vec2>(cutout.vertices), other.vertices.front());
+            if (within || between < bridge_)
+                throw InputError({"", 0, 0, holes_key},
+                                 within || between <= 1e-6 * size_ ? fmt::format("{} and {} touch or overlap", other.name, name)
+                                                                  : fmt::format("{} and {} leave a bridge of {}, thinner than half a grain", other.name, name, in_mm(between)),
+                                 "holes with rock between them, half a mean grain or more", "draw them as one hole with vertices, or move one");
+        }
+        add(std::move(cutout), label);
+    }
+
+    void add_notch(const NotchSpec& notch, const std::string& name, const std::string& label) {
+        if (!finite(notch.from_m) || !finite(notch.to_m) || !(notch.width_m >= 0.0) || !std::isfinite(notch.width_m))
+            throw InputError({"", 0, 0, notches_key}, fmt::format("{} has no finite place and width", name), "two points and a width of zero or more");
+        const double length = norm(notch.to_m - notch.from_m);
+        const double inside = length_in_rock(notch);
+        if (inside <= 0.01 * length)
+            throw InputError({"", 0, 0, notches_key}, fmt::format("{}, from {} to {}, lies outside the rock", name, in_mm(notch.from_m), in_mm(notch.to_m)),
+                             "a notch that begins at a boundary and ends in the rock, or one with both ends in the rock");
+        if (inside < std::max(grains_.largest_m, notch.width_m))
+            throw InputError({"", 0, 0, notches_key},
+                             inside < grains_.largest_m ? fmt::format("{} is {} long in the rock, shorter than a grain of {}", name, in_mm(inside), in_mm(grains_.largest_m))
+                                                        : fmt::format("{} is {} long in the rock, less than its width", name, in_mm(inside)),
+                             "notches longer than the largest grain and than wide", "lengthen it, take smaller grains, or draw it as a hole with vertices");
+        Cutout cutout;
+        cutout.name = name;
+        const std::array<Vec2, 2> ends = {notch.from_m, notch.to_m};
+        for (int e = 0; e < 2; ++e) cutout.tips[e] = in_rock(ends[e]) && distance_to_rocks_boundary(ends[e]) > 0.5 * bridge_;
+        if (!cutout.tips[0] && !cutout.tips[1] && !at_hole(ends[0]) && !at_hole(ends[1]))
+            throw InputError({"", 0, 0, notches_key}, fmt::format("{}, from {} to {}, cuts the specimen in two", name, in_mm(ends[0]), in_mm(ends[1])),
+                             "a notch that ends in the rock", "move one end inwards");
+        shape_notch(cutout, notch);
+        check_bridges(cutout, notch);
+        add(std::move(cutout), label);
+        axes_.push_back(notch);
+    }
+
+private:
+    std::vector<Vec2> round_hole(const HoleSpec& hole, const std::string& name) const {
+        if (!(hole.diameter_m > 0.0) || !std::isfinite(hole.diameter_m) || !finite(hole.centre_m))
+            throw InputError({"", 0, 0, holes_key}, fmt::format("{} has a diameter of {:g} m", name, hole.diameter_m), "a diameter greater than zero");
+        const int n = arc_edges(0.5 * hole.diameter_m, grains_.mean_m);
+        const double radius = 0.5 * hole.diameter_m * std::sqrt(2.0 * pi / (n * std::sin(2.0 * pi / n)));   // of the same area
+        std::vector<Vec2> corners;
+        for (int k = 0; k < n; ++k) corners.push_back(hole.centre_m + turned({radius, 0.0}, 2.0 * pi * (k + 0.5) / n));
+        return corners;
+    }
+
+    static std::vector<Vec2> polygonal_hole(const HoleSpec& hole, const std::string& name) {
+        if (!std::all_of(hole.vertices_m.begin(), hole.vertices_m.end(), finite) || !is_simple_polygon(hole.vertices_m))
+            throw InputError({"", 0, 0, holes_key}, fmt::format("{} crosses or touches itself, or has no area", name), "a simple polygon of at least three different vertices");
+        std::vector<Vec2> corners = hole.vertices_m;
+        if (signed_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
+        return corners;
+    }
+
+    /// In the outline and in no hole.
+    bool in_rock(Vec2 p) const { return feldspar::contains(outer_, p) && !at_hole(p, 0.0); }
+
+    /// In a hole, or nearer to it than the ends of notches that lie on its boundary.
+    bool at_hole(Vec2 p) const { return at_hole(p, 0.5 * bridge_); }
+    bool at_hole(Vec2 p, double near) const {
+        return std::any_of(outline_.cutouts.begin(), outline_.cutouts.end(), [&](const Cutout& hole) {
+            if (hole.slit || hole.is_cut()) return false;
+            const std::span<const Vec2> corners = hole.vertices;
+            return feldspar::contains(corners, p) || (near > 0.0 && feldspar::distance_to_boundary(corners, p) <= near);
+        });
+    }
+
+    double distance_to_rocks_boundary(Vec2 p) const {
+        double least = feldspar::distance_to_boundary(std::span<const Vec2>(outer_), p);
+        for (const Cutout& hole : outline_.cutouts) {
+            if (!hole.slit && !hole.is_cut()) least = std::min(least, feldspar::distance_to_boundary(std::span<const Vec2>(hole.vertices), p));
+        }
+        return least;
+    }
+
+    double length_in_rock(const NotchSpec& notch) const {
+        const Vec2 a = notch.from_m, ab = notch.to_m - notch.from_m;
+        std::vector<double> stops = {0.0, 1.0};   // along the axis, where it meets a boundary
+        const auto note = [&](std::span<const Vec2> corners) {
+            for (std::size_t k = 0; k < corners.size(); ++k) {
+                const Vec2 p = corners[k], pq = corners[(k + 1) % corners.size()] - p;
+                const double slope = cross(ab, pq);
+                if (slope == 0.0) continue;
+                const double t = cross(p - a, pq) / slope, s = cross(p - a, ab) / slope;
+                if (t > 0.0 && t < 1.0 && s >= 0.0 && s <= 1.0) stops.push_back(t);
+            }
+        };
+        note(outer_);
+        for (const Cutout& hole : outline_.cutouts) {
+            if (!hole.slit && !hole.is_cut()) note(hole.vertices);
+        }
+        std::sort(stops.begin(), stops.end());
+        double inside = 0.0;
+        for (std::size_t k = 0; k + 1 < stops.size(); ++k) inside += in_rock(a + 0.5 * (stops[k] + stops[k + 1]) * ab) ? stops[k + 1] - stops[k] : 0.0;
+        return inside * norm(ab);
+    }
+
+    /// The rectangle or the cut, reaching out of the rock at open ends.
+    void shape_notch(Cutout& cutout, const NotchSpec& notch) const {
+        const Vec2 along = (1.0 / norm(notch.to_m - notch.from_m)) * (notch.to_m - notch.from_m);
+        const Vec2 across = 0.5 * notch.width_m * rot90(along);
+        const Vec2 from = cutout.tips[0] ? notch.from_m : moved_out(notch.from_m, -along, across, cutout.name), to = cutout.tips[1] ? notch.to_m : moved_out(notch.to_m, along, across, cutout.name);
+        if (notch.width_m == 0.0) {
+            cutout.vertices = {from, to};
+            cutout.packed_around = false;
+            return;
+        }
+        cutout.slit = true;
+        cutout.vertices = {from - across, to - across, to + across, from + across};
+        cutout.packed_around = notch.width_m > grains_.mean_m;
+        cutout.area_m2 = common_area(outer_, cutout.vertices);
+        for (const Cutout& hole : outline_.cutouts) {
+            if (!hole.slit && !hole.is_cut()) cutout.area_m2 -= common_area(hole.vertices, cutout.vertices);
+        }
+    }
+
+    /// An open end, moved on no farther than it must be for its whole width to be out of the rock: behind a hole there is rock again.
+    Vec2 moved_out(Vec2 end, Vec2 outward, Vec2 across, const std::string& name) const {
+        constexpr int steps = 40;
+        const double farthest = 5.0 * (2.0 * norm(across) + bridge_);
+        for (int k = 0; k <= steps; ++k) {
+            const Vec2 p = end + (farthest * k / steps) * outward;
+            const auto out = [&](Vec2 corner) { return !in_rock(corner) && distance_to_rocks_boundary(corner) > 1e-6 * size_; };
+            if (out(p - across) && out(p + across)) return p;
+        }
+        throw InputError({"", 0, 0, notches_key}, fmt::format("the end of {} at {} leaves a bridge to the boundary, thinner than half a grain", name, in_mm(end)),
+                         "ends that reach out of the rock with their whole width, or lie half a mean grain or more from its boundary", "lengthen the notch, or shorten it");
+    }
+
+    void check_bridges(const Cutout& cutout, const NotchSpec& notch) const {
+        const Vec2 half = 0.5 * notch.width_m * rot90((1.0 / norm(notch.to_m - notch.from_m)) * (notch.to_m - notch.from_m));
+        const std::array<Vec2, 2> ends = {notch.from_m, notch.to_m};
+        for (int e = 0; e < 2; ++e) {
+            for (const Vec2 p : {ends[e] - half, ends[e] + half}) {
+                if (!cutout.tips[e]) continue;
+                const double left = in_rock(p) ? distance_to_rocks_boundary(p) : 0.0;
+                if (left >= bridge_) continue;
+                throw InputError({"", 0, 0, notches_key}, fmt::format("the end of {} at {} leaves a bridge of {} to the boundary, thinner than half a grain", cutout.name, in_mm(ends[e]), in_mm(left)),
+                                 "ends on a boundary, or half a mean grain or more from it", "move the end onto the boundary or away from it");
+            }
+        }
+        for (std::size_t k = 0; k < axes_.size(); ++k) {
+            const NotchSpec& other = axes_[k];
+            const std::array<Vec2, 2> a = {notch.from_m, notch.to_m}, b = {other.from_m, other.to_m};
+            const double between = distance_between(a, false, b, false) - 0.5 * (notch.width_m + other.width_m);
+            if (between < bridge_)
+                throw InputError({"", 0, 0, notches_key}, fmt::format("notch {} and {} touch, cross, or leave a bridge thinner than half a grain", k + 1, cutout.name),
+                                 "notches with rock between them, half a mean grain or more", "move one, or draw both as one hole with vertices");
+        }
+    }
+
+    void add(Cutout cutout, const std::string& label) {
+        cutout.first_edge = static_cast<int>(outline_.edge_labels.size());
+        outline_.edge_labels.insert(outline_.edge_labels.end(), cutout.vertices.size(), label);
+        outline_.area_m2 -= cutout.area_m2;
+        outline_.cutouts.push_back(std::move(cutout));
+    }
+
+    Outline& outline_;
+    const GrainScale& grains_;
+    std::vector<Vec2> outer_;
+    std::vector<NotchSpec> axes_;
+    double size_ = 0.0, bridge_ = 0.0;
+};
+
+using Interval = std::array<double, 2>;
+
+/// The polygon's inside on the horizontal line at `y`, in order; `y` is not the height of a vertex.
+std::vector<Interval> intervals_at(std::span<const Vec2> corners, double y) {
+    std::vector<double> crossings;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+        if ((a.y < y) != (b.y < y)) crossings.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
+    }
+    std::sort(crossings.begin(), crossings.end());
+    std::vector<Interval> result;
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) result.push_back({crossings[i], crossings[i + 1]});
+    return result;
+}
+
+}  // namespace
+
+void add_cutouts(Outline& outline, const OutlineSpec& spec, const GrainScale& grains) {
+    if (!spec.is_cut()) return;
+    CutoutMaker maker(outline, grains);
+    if (spec.shape == Shape::ring) maker.add_hole({{0.0, 0.0}, spec.hole_diameter_m, {}, {}}, "the hole of the ring", "hole");
+    for (std::size_t k = 0; k < spec.holes.size(); ++k) {
+        const std::string& label = spec.holes[k].label;
+        maker.add_hole(spec.holes[k], fmt::format("hole {}", k + 1), label.empty() ? fmt::format("hole-{}", k + 1) : label);
+    }
+    for (std::size_t k = 0; k < spec.notches.size(); ++k) {
+        const std::string& label = spec.notches[k].label;
+        maker.add_notch(spec.notches[k], fmt::format("notch {}", k + 1), label.empty() ? fmt::format("notch-{}", k + 1) : label);
+    }
+}
+
+std::vector<Vec2> arc_corners(Vec2 centre, double radius_m, double from_rad, double to_rad, int edges) {
+    std::vector<Vec2> corners;
+    for (int k = 0; k <= edges; ++k) corners.push_back(centre + turned({radius_m, 0.0}, from_rad + (to_rad - from_rad) * k / edges));
+    return corners;
+}
+
+double width_at(std::span<const Vec2> corners, std::span<const Cutout> cutouts, double y) {
+    std::vector<Interval> gone;
+    for (const Cutout& cutout : cutouts) {
+        if (cutout.is_cut()) continue;
+        const std::vector<Interval> more = intervals_at(cutout.vertices, y);
+        gone.insert(gone.end(), more.begin(), more.end());
+    }
+    std::sort(gone.begin(), gone.end());
+    double width = 0.0;
+    for (const Interval& rock : intervals_at(corners, y)) {
+        width += rock[1] - rock[0];
+        double done = rock[0];   // of the interval, up to here
+        for (const Interval& hole : gone) {
+            const double from = std::max(hole[0], done), to = std::min(hole[1], rock[1]);
+            if (to <= from) continue;
+            width -= to - from;
+            done = to;
+        }
+    }
+    return width;
+}
+
+}  // namespace feldspar
