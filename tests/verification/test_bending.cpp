@@ -12,14 +12,11 @@ namespace {
 
 constexpr double kHeight = 0.04, kSpan = 4.0 * kHeight, kLength = 4.4 * kHeight;
 
-// A rectangle with a slit of this depth, 1.5 mm wide, from below in the middle.
+// With a sawn slit of this depth, 0.5 mm wide, from below in the middle.
 SpecimenSpec beam(double notch_m = 0.0, double span_m = kSpan) {
     SpecimenSpec spec = fixtures::rectangle(span_m + kLength - kSpan, kHeight);
-    if (notch_m == 0.0) return spec;
-    const double middle = 0.5 * spec.outline.width_m, half = 0.75e-3;
-    spec.outline.shape = Shape::polygon;
-    spec.outline.vertices_m = {{0.0, 0.0}, {middle - half, 0.0}, {middle - half, notch_m}, {middle + half, notch_m}, {middle + half, 0.0},
-                               {spec.outline.width_m, 0.0}, {spec.outline.width_m, kHeight}, {0.0, kHeight}};
+    const double middle = 0.5 * spec.outline.width_m;
+    if (notch_m > 0.0) spec.outline.notches = {{{middle, 0.0}, {middle, notch_m}, 5e-4, ""}};
     return spec;
 }
 
@@ -27,8 +24,8 @@ struct Elastic {
     double load_N, deflection_m, opening_m, imbalance;
 };
 
-Elastic elastic(const SpecimenSpec& spec, double span_m, const ModelSpec& model, const ContactMaterial& contact) {
-    TestSetup s = fixtures::setup(fixtures::make(spec), TestKind::three_point_bend);
+Elastic elastic(const SpecimenSpec& spec, double span_m, const ModelSpec& model, const ContactMaterial& contact, int seed = 1) {
+    TestSetup s = fixtures::setup(fixtures::make(spec, seed), TestKind::three_point_bend);
     s.model = model;
     s.contact = contact;
     s.test.span_m = span_m;
@@ -38,7 +35,6 @@ Elastic elastic(const SpecimenSpec& spec, double span_m, const ModelSpec& model,
     prepare(e);
     const Reactions r = reactions(e.assembly);
     const std::vector<double> read = e.gauges.read(e.assembly);
-    std::printf("load %g rest %g defl %g cmod %g travel %g tt %g prep %lld\n", r.loading, r.rest, read[0], read.size() > 1 ? read[1] : 0.0, e.platen_travel_m, e.travel_time, e.preparation_steps);
     return {r.loading, read[0], read.size() > 1 ? read[1] : 0.0, r.rest / r.loading - 1.0};
 }
 
@@ -61,41 +57,23 @@ TEST(Bending, DeflectionIsThatOfAShortBeam) {   // (P37)
         TestSpec test;
         test.span_m = span;
         const Beam b = beam_of(make_outline(beam(0.0, span).outline), 0.08, test);
-        std::printf("E %g  from deflection %g\n", E, e.load_N / e.deflection_m * deflection_factor(b, 0.23) / 0.08);
-        EXPECT_NEAR(e.load_N / e.deflection_m * deflection_factor(b, 0.23) / 0.08 / E, 1.0, 0.03);
+            EXPECT_NEAR(e.load_N / e.deflection_m * deflection_factor(b, 0.23) / 0.08 / E, 1.0, 0.03);
         EXPECT_NEAR(e.imbalance, 0.0, 1e-3);
     }
 }
 
 TEST(Bending, MouthOfANotchOpensAsFiniteElementsSay) {   // (P39)
     const double E = modulus({}, fixtures::table7());
-    for (const double x : {0.3, 0.5}) {
-        const Elastic e = elastic(beam(x * kHeight), kSpan, {}, fixtures::table7());
-        std::printf("E %g  from mouth %g\n", E, e.load_N / e.opening_m * mouth_factor(x) / 0.08);
-        EXPECT_NEAR(e.load_N / e.opening_m * mouth_factor(x) / 0.08 / E, 1.0, 0.03);
-    }
-}
-
-TEST(Bending, DISABLED_Scratch) {
-    struct Rock { const char* name; double E, nu, Kn, s, tau, mu, Gn, Gs; };
-    for (const Rock& rock : {Rock{"table7", 25.8e9, 0.23, 18e13, 8.5e6, 29.75e6, 0.4, 20, 800}, Rock{"brittle", 25.8e9, 0.23, 18e13, 8.5e6, 29.75e6, 0.4, 3, 120}, Rock{"stiff8d", 206e9, 0.23, 144e13, 8.5e6, 29.75e6, 0.4, 2.5, 100}, Rock{"marble", 45e9, 0.18, 25e13, 6e6, 27e6, 0.2, 40, 600}})
-    for (double speed : {0.0, 0.005, 4e-9, 1e-9}) {
-        TestSetup s = fixtures::setup(fixtures::make(beam(0.0), 1), TestKind::three_point_bend);
-        s.grain.E_Pa = rock.E; s.grain.nu = rock.nu;
-        s.contact.Kn_Pa_m = rock.Kn; s.contact.sigma_nt_Pa = rock.s; s.contact.tau_Pa = rock.tau; s.contact.mu = rock.mu; s.contact.Gfn_J_m2 = rock.Gn; s.contact.Gfs_J_m2 = rock.Gs;
-        s.test = usual_test(TestKind::three_point_bend);
-        s.test.span_m = kSpan;
-        s.test.stop_fraction = 0.9;
-        const bool paper = speed > 0.0 && speed < 1e-4;
-        s.test.control = paper ? LoadControl::displacement : LoadControl::dissipation;
-        s.numerics.accuracy = speed == 0.005 ? 0.003 : 0.01;
-        if (paper) { s.numerics.kind = NumericsKind::paper; s.numerics.speed_m = speed * 25.8e9 / rock.E; }
-        const TestResult r = run_test(s, fixtures::threads(1));
-        const BendingProperties& b = r.properties.bending;
-        std::printf("%s %s %g: peak %.4g MPa grade %c est %.3g E %.4g  steps %lld to peak %lld passages %d tt %.4g wall %.3g cracks %zu stop %s\n", rock.name, paper ? "paper" : "adaptive", speed,
-                    r.properties.peak_stress_Pa / 1e6, r.evidence.grade, r.evidence.error_estimate, b.E_Pa / 1e9,
-                    r.steps, r.steps_to_peak, r.passages, r.travel_time, r.wall_s, r.cracks.size(), r.stop_reason.c_str());
-        std::fflush(stdout);
+    // A tip among grains of a thirteenth of the height: single packings differ by 2 %. Half a height is a ligament of seven grains, and a body of few
+    // grains across is stiffer than the large one of `E` (two percent already at seven: ARealBarRingsWithTheClosedFormFrequency).
+    for (const auto& [x, tolerance] : {std::pair{0.3, 0.03}, {0.5, 0.05}}) {
+        double sum = 0.0;
+        constexpr int packings = 2;
+        for (int seed = 1; seed <= packings; ++seed) {
+            const Elastic e = elastic(beam(x * kHeight), kSpan, {}, fixtures::table7(), seed);
+            sum += e.load_N / e.opening_m * mouth_factor(x) / 0.08 / packings;
+        }
+        EXPECT_NEAR(sum / E, 1.0, tolerance) << x;
     }
 }
 

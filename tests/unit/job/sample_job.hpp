@@ -44,6 +44,28 @@ seeds = [1, 2, 3, 4, 5]
 UCS = "122.1 MPa"
 )";
 
+/// In place of the test of sample_job: one of the user's own.
+inline const std::string custom_test = R"(kind = "custom"
+name = "pull"
+until = { gauge = "gap", at = "0.2 mm" }
+[[test.fixture]]
+name = "lower end"
+kind = "boundary"
+on = "bottom"
+[[test.fixture]]
+name = "upper end"
+kind = "plate"
+on = "top"
+normal = [0, 1]
+motion = [0, 1]
+glued = true
+[[test.gauge]]
+name = "gap"
+kind = "extension"
+from = ["40 mm", "70 mm"]
+to = ["40 mm", "90 mm"]
+)";
+
 /// A job of variants: the same packings modelled in several ways.
 inline const std::string variant_job = R"([specimen]
 shape = "rectangle"

@@ -48,6 +48,12 @@ const std::vector<std::string>& bases() {
         rigid = replaced(rigid, "kind = \"flexible\"", "kind = \"rigid\"");
         std::string inner = replaced(replaced(rigid, "\"rigid\"", "\"inner-particles\""), "contact = \"lobatto3\"\n", "");
         inner = replaced(inner, "kind = \"uniaxial-compression\"", "kind = \"biaxial\"\nsigma3 = \"4 MPa\"");
+        const std::string cut = "thickness = \"80 mm\"\nholes = [{ centre = [\"40 mm\", \"40 mm\"], diameter = \"10 mm\" }]\n"
+                                "notches = [{ from = [\"0 mm\", \"80 mm\"], to = [\"20 mm\", \"80 mm\"], width = \"1 mm\" }]\n"
+                                "labels = [{ name = \"load\", at = [\"40 mm\", \"160 mm\"], within = \"5 mm\" }]\n";
+        const std::string own = replaced(replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test), "thickness = \"80 mm\"\n", cut);
+        const std::size_t first = own.find("[[test.fixture]]"), second = own.find("[[test.fixture]]", first + 1), gauge = own.find("[[test.gauge]]");
+        const std::string plates = own.substr(0, first) + own.substr(second, gauge - second) + own.substr(first, second - first) + own.substr(gauge);
         return std::vector<std::string>{
             sample_job,
             replaced(sample_job, "accuracy = \"0.5 %\"\n", ""),
@@ -58,6 +64,8 @@ const std::vector<std::string>& bases() {
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplates = \"flat\""),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\""),
             replaced(sample_job, "seeds = [1, 2, 3, 4, 5]\n", ""),
+            own,
+            plates,
         };
     }();
     return all;
@@ -106,7 +114,8 @@ TEST(Keys, AReaderTellsTheKeysOfItsRows) {
     const std::string variants = variant_job + "[laboratory]\n";
     for (const KeyTable& table : job_tables()) {
         toml::table job = parse_toml(variants, "job");
-        if (find_table(job, table.path) == nullptr) job = parse_toml(sample_job, "job");
+        for (const std::string& base : bases())
+            if (find_table(job, table.path) == nullptr) job = parse_toml(base, "job");
         toml::table* place = find_table(job, table.path);
         ASSERT_NE(place, nullptr) << table.head;
         place->insert_or_assign("no_such_key", 1);
