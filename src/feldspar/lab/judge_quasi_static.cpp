@@ -90,6 +90,12 @@ std::string advice(const TestResult& result, double slower) {
     return {};
 }
 
+/// Between which forces are compared.
+const char* sides_of(const TestSpec& test) {
+    const Reading reading = method_of(test).reading;
+    return reading == Reading::column || reading == Reading::disc ? "platens" : "what loads and what holds";
+}
+
 std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& table, const TestResult& result, bool peak_reached) {
     const std::string until = peak_reached ? "up to the peak" : "up to the largest stress of the record (the peak was not reached)";
     const std::string after = peak_reached && !branch_is_followed(result) ? "; the branch after the peak is dynamic" : "";
@@ -97,8 +103,8 @@ std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& 
     const double slower = std::max(1.5, excess(table, e.grade != 'C'));
     const std::string grade_a = percent(table.front().limit_a);
     if (e.grade == 'A') {
-        return fmt::format("Quasi-static to about {} {} (estimated error of the strength {}, platens agree within {}{}){}.", grade_a, until,
-                           percent(e.error_estimate), percent(e.imbalance_mean), repeat, after);
+        return fmt::format("Quasi-static to about {} {} (estimated error of the strength {}, {} agree within {}{}){}.", grade_a, until,
+                           percent(e.error_estimate), sides_of(result.test), percent(e.imbalance_mean), repeat, after);
     }
     if (e.grade == 'B') {
         return fmt::format("Quasi-static to about 2 % {}: {}; to reach {}, {}{}.", until, failures(table, true), grade_a, advice(result, slower), after);

@@ -140,7 +140,7 @@ void move_fixtures(Experiment& e, double travel_m) {
     e.platen_travel_m += travel_m;
 }
 
-// Quarter of the loading mode's period over that of a bar's quarter wave: for a bar the time in which a wave crosses it (L16).
+// Quarter of the loading mode's period over that of a bar's quarter wave: for a bar the time in which a wave crosses it (L17).
 void learn_time_of_mode(Experiment& e, double stiffness) {
     const Nodes& nodes = e.assembly.nodes;
     double inertia = 0.0;

@@ -68,7 +68,7 @@ std::vector<GaugeSpec> gauges(const MethodInput& in) { return in.test.custom.gau
 const TestMethod custom{
     .kind = TestKind::custom,
     .purpose = "a test of your own: fixtures and gauges as the job gives them",
-    .words = {"Test of your own", "Load over width times thickness", "Loading motion over length"},
+    .words = {"Test of your own", "Load / (width \u00d7 thickness)", "Loading motion / length"},
     .build = {fixtures, length_m, section_m2, gauges, {}, check},
     .start = {.strained_evenly = false, .stays_in_touch = false, .time_of_mode = true},
     .reading = Reading::curve,

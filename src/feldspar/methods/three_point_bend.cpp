@@ -75,7 +75,7 @@ std::vector<GaugeSpec> gauges(const MethodInput& in) {
 const TestMethod three_point_bend{
     .kind = TestKind::three_point_bend,
     .purpose = "a beam on two rollers, pressed down by a third in the middle; with a notch from below, a test of toughness",
-    .words = {"Three-point bending", "Stress of the outermost fibre, by beam theory", "6 h w / S\u00b2, w the way of the loading roller"},
+    .words = {"Three-point bending", "Outermost fibre stress", "6 h w / S\u00b2, w the way of the loading roller"},
     .build = {rollers, length_m, section_m2, gauges, {"deflection", "CMOD"}, check},
     .start = {.strained_evenly = false, .stays_in_touch = false, .time_of_mode = true},
     .reading = Reading::beam,

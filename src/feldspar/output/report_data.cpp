@@ -242,7 +242,7 @@ Json specimens_json(std::span<const TestResult> results) {
         if (!outline.holes.empty()) shape += ", " + counted(outline.holes.size(), "hole");
         if (!outline.notches.empty()) shape += fmt::format(", {} {}", outline.notches.size(), outline.notches.size() == 1 ? "notch" : "notches");
         if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", in_degrees(outline.flat_angle_rad));
-        list.push_back({{"for", brazilian ? "Brazilian test" : "all other tests"},
+        list.push_back({{"for", brazilian ? "Brazilian test" : "all tests but the Brazilian"},
                         {"shape", shape},
                         {"thickness", rounded(specimen.spec.thickness_m * 1e3)},
                         {"grains", specimen.quality.grains},

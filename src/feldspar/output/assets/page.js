@@ -66,7 +66,7 @@ function pageHead(maker, title, facts) {
 
 /** "12.3 \u2013 14.1", or a dash where one packing gives no interval. */
 function intervalText(row) { return row.low === null || row.low === undefined ? "\u2013" : show(row.low) + " \u2013 " + show(row.high); }
-function unitText(unit) { return unit ? h("span", {class: "unit"}, " " + unit.replace("deg", "\u00b0")) : ""; }
+function unitText(unit) { return unit ? h("span", {class: "unit"}, " " + unit.replace("deg", "\u00b0").replace("MPa_sqrt_m", "MPa\u00a0m\u00bd").replace("J_m2", "J/m\u00b2")) : ""; }
 function gradeMark(grade) { return h("span", {class: "grade " + grade}, grade); }
 /** "12 A, 1 C" from {A: 12, B: 0, C: 1}. */
 function gradesText(grades) {

@@ -80,7 +80,7 @@ function rangeBar(row, reach) {
 
 function writeProperties() {
   page.append(h("h2", {}, "Properties of the rock"));
-  if (!data.properties.length) { page.append(h("p", {class: "soft"}, "No property could be read yet.")); return; }
+  if (!data.properties.length) { page.append(h("p", {class: "soft"}, data.complete ? "No test of this job defines a property of the rock, or none that does has reached its peak." : "No property could be read yet.")); return; }
   const compared = data.properties.some((p) => p.laboratory !== null);
   page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + "." +
     (data.model.grains === "flexible" ? " E and \u03bd hold for plane " + data.model.plane + "." : "")));
@@ -90,7 +90,7 @@ function writeProperties() {
   head.push(th("Spread" + (compared ? " and laboratory" : "")));
   page.append(table("", head, data.properties.map((p) => {
     const cells = [td(p.label), td([p.symbol], true, "unit"),
-      td([show(p.median), p.unit ? h("span", {class: "unit"}, " " + p.unit.replace("deg", "\u00b0")) : ""], true, "strong"),
+      td([show(p.median), p.unit ? h("span", {class: "unit"}, " " + p.unit.replace("deg", "\u00b0").replace("MPa_sqrt_m", "MPa\u00a0m\u00bd").replace("J_m2", "J/m\u00b2")) : ""], true, "strong"),
       td(p.packings < 2 ? "" : show(p.minimum) + " \u2013 " + show(p.maximum), true), td(String(p.packings), true)];
     if (compared) {
       const known = p.laboratory !== null && p.median !== null && p.laboratory !== 0;
@@ -207,7 +207,7 @@ function addBending(t, add) {
 /** The charts and numbers of one kind of test. */
 function writeTest(host, tests) {
   const peaks = tests.map((t) => t.peak).filter((p) => p !== null);
-  const summary = peaks.length ? "Strength " + show(median(peaks)) + " MPa" + (peaks.length > 1 ? ", median of " + peaks.length + " packings (" + show(Math.min(...peaks)) + " to " + show(Math.max(...peaks)) + ")" : "") + "." : "";
+  const summary = peaks.length ? (tests[0].peak_load !== null ? "Largest stress " : "Strength ") + show(median(peaks)) + " MPa" + (peaks.length > 1 ? ", median of " + peaks.length + " packings (" + show(Math.min(...peaks)) + " to " + show(Math.max(...peaks)) + ")" : "") + "." : "";
   const open = tests.filter((t) => !t.peak_reached).length;
   host.append(h("h3", {}, titleOf(tests[0])), h("p", {class: "soft"}, summary + (open ? " The peak was not reached in " + plural(open, "test") + "." : "")));
   const strainLabel = strainLabelOf(tests[0]);
