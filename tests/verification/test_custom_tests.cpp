@@ -99,6 +99,10 @@ TEST(TestsOfTheUsersOwn, GaugesOutsideAndOnFixturesThatAreNotThereAreRefused) {
     TestSetup unknown = pulled({}, TestKind::custom);
     unknown.test.custom.gauges.front().fixture = "nobody";
     EXPECT_THROW(Experiment(unknown, control), InputError);
+    TestSetup controlled = pulled({}, TestKind::custom);
+    controlled.test.control = LoadControl::gauge;
+    controlled.test.control_gauge = "CMOD";
+    EXPECT_THROW(Experiment(controlled, control), InputError);
 }
 
 TEST(Gauges, ReadNoExtensionFromAMotionOfTheWholeBody) {

@@ -1,10 +1,12 @@
 #include "feldspar/lab/experiment.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/geometry/polygon.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/model/assemble.hpp"
@@ -43,6 +45,15 @@ ElasticGuess guess(const TestSetup& setup, const Assembly& assembly) {
 
 MethodInput input_of(const TestSetup& setup) { return {*setup.specimen, setup.model, setup.grain, setup.contact, setup.test}; }
 
+// A method may have a gauge on some specimens only: CMOD on beams with a notch.
+void require_gauge(const Gauges& gauges, const std::string& name, const char* key) {
+    if (gauges.find(name) >= 0) return;
+    std::string known;
+    for (const GaugeSpec& gauge : gauges.specs()) known += (known.empty() ? "" : ", ") + gauge.name;
+    throw InputError({.key = key}, fmt::format("the test of this specimen has no gauge called \"{}\"", name), known.empty() ? "none" : known,
+                     name == "CMOD" ? "CMOD is measured on a beam with a notch in the middle of its lower side" : "");
+}
+
 }  // namespace
 
 double mean_body_diameter(const Assembly& assembly) {
@@ -70,6 +81,8 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     length_m = method.build.length_m(input);
     section_m2 = method.build.section_m2(input);
     if (method.build.gauges != nullptr) gauges = Gauges(assembly, *s.specimen, method.build.gauges(input));
+    if (s.test.control == LoadControl::gauge) require_gauge(gauges, s.test.control_gauge, "test.control");
+    if (s.test.stop_gauge) require_gauge(gauges, s.test.stop_gauge->gauge, "test.until");
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
     impose_motion();
 }
@@ -155,7 +168,12 @@ void choose_step(Experiment& e) {
                          fmt::format("leave the key out: 1 + damping = {:.4g} is then used", 1.0 + n.damping));
     }
     const double density = mass(e.assembly) / volume(*e.setup.specimen);
-    e.travel_time = e.length_m * std::sqrt(density / e.elastic_guess.E_Pa);   // refined by the elastic start
+    double distance = e.length_m;
+    if (e.method.start.time_of_mode) {   // its length may be any
+        const Box box = bounding_box(e.setup.specimen->mesh.nodes);
+        distance = std::max(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
+    }
+    e.travel_time = distance * std::sqrt(density / e.elastic_guess.E_Pa);   // refined by the elastic start
 }
 
 }  // namespace feldspar
