@@ -105,6 +105,13 @@ TEST(TestsOfTheUsersOwn, GaugesOutsideAndOnFixturesThatAreNotThereAreRefused) {
     EXPECT_THROW(Experiment(controlled, control), InputError);
 }
 
+TEST(TestsOfTheUsersOwn, PartsOfTheBoundaryMoveWithFlexibleGrainsOnly) {
+    const RunControl control = fixtures::threads(1);
+    TestSetup rigid = pulled(fixtures::model(GrainKind::rigid), TestKind::custom);
+    rigid.test.custom.fixtures = {end({}, true), end({}, false)};
+    EXPECT_THROW(Experiment(rigid, control), InputError);
+}
+
 TEST(Gauges, ReadNoExtensionFromAMotionOfTheWholeBody) {
     for (const ModelSpec& model : models()) {
         const RunControl control = fixtures::threads(1);

@@ -183,7 +183,15 @@ private:
         return assembly_.fixtures.back();
     }
 
+    // Rigid bodies have no nodes on the boundary: those of their sites are centre and turn.
+    void require_flexible(const FixtureSpec& spec) const {
+        if (assembly_.node_of_mesh.empty())
+            throw InputError({.key = "test.fixture"}, fmt::format("the fixture \"{}\" takes the nodes on the boundary, which only flexible grains have", spec.name),
+                             "a plate, roller or jaw for rigid grains and inner particles");
+    }
+
     void attach_nodes(const FixtureSpec& spec) {
+        require_flexible(spec);
         std::vector<std::int32_t> nodes;
         for (const std::size_t s : sites_of(spec, true)) nodes.insert(nodes.end(), {sites_[s].node[0], sites_[s].node[1]});
         require(!nodes.empty(), spec);
@@ -210,6 +218,7 @@ private:
     }
 
     void attach_pressure(const FixtureSpec& spec) {
+        require_flexible(spec);
         int begun = -1;   // sites come grain by grain
         for (const std::size_t s : sites_of(spec, false)) {
             const OutlineSite& site = sites_[s];
