@@ -62,6 +62,8 @@ void read_own_keys(const JobTable& table, TestSpec& test);
 /// Names of the gauges of a test: those of the method, or of the user.
 std::vector<std::string_view> gauge_names(const TestSpec& test);
 bool has_gauge(const TestSpec& test, std::string_view gauge);
+/// In which its readings are given.
+Dimension dimension_of_gauge(const TestSpec& test, std::string_view gauge);
 
 /// [run]: seeds, threads and tests at once.
 struct RunSettings {

@@ -60,6 +60,19 @@ long long JobTable::integer(std::string_view key) const {
 
 bool JobTable::flag(std::string_view key) const { return TableReader::flag(key, row(key).usual.value.value_or(0.0) != 0.0); }
 
+Vec2 JobTable::point(std::string_view key) const {
+    const toml::array& pair = array(key);
+    Vec2 point;
+    check({key}, [&] { point = point_of(pair, key); });
+    return point;
+}
+
+Vec2 JobTable::point_of(const toml::node& node, std::string_view key) const {
+    const toml::array* pair = node.as_array();
+    if (pair == nullptr || pair->size() != 2) fail_at(node, key, shown(node) + " is not a point", "a point such as [\"40 mm\", \"80 mm\"]");
+    return {quantity_of(*pair->get(0), key), quantity_of(*pair->get(1), key)};
+}
+
 double JobTable::quantity_of(const toml::node& node, std::string_view key) const { return element_of(node, key, row(key).value.element); }
 
 double JobTable::element_of(const toml::node& node, std::string_view key, const KeyElement& element) const {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "feldspar/base/vec2.hpp"
 #include "feldspar/job/keys.hpp"
 #include "feldspar/job/toml_reader.hpp"
 
@@ -38,6 +39,11 @@ public:
     Value choice(std::string_view key, const std::array<Value, count>& values) const {
         return TableReader::choice<Value>(key, values, usual(key, values));
     }
+
+    /// x and y of a point.
+    Vec2 point(std::string_view key) const;
+    /// The same for a point that stands in a list. @throws InputError also if mistakes are collected (see check())
+    Vec2 point_of(const toml::node& node, std::string_view key) const;
 
     /// Values in a list. @throws InputError also if mistakes are collected (see check())
     double quantity_of(const toml::node& node, std::string_view key) const;

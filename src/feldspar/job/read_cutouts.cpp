@@ -8,23 +8,12 @@ namespace {
 constexpr std::size_t most_vertices = 10000;
 constexpr double near_a_line_m = 1e-5;   // an edge on a straight side is on it to rounding
 
-Vec2 read_point(const JobTable& table, const toml::node& node, std::string_view key) {
-    const toml::array* pair = node.as_array();
-    if (pair == nullptr || pair->size() != 2) table.fail_at(node, key, shown(node) + " is not a point", "a point such as [\"40 mm\", \"80 mm\"]");
-    return {table.quantity_of(*pair->get(0), key), table.quantity_of(*pair->get(1), key)};
-}
-
-void read_point(const JobTable& table, std::string_view key, Vec2& point) {
-    const toml::array& pair = table.array(key);
-    table.check({key}, [&] { point = read_point(table, pair, key); });
-}
-
 void read_two_points(const JobTable& table, std::string_view key, Vec2& a, Vec2& b) {
     const toml::array& points = table.array(key);
     table.check({key}, [&] {
         if (points.size() != 2) table.fail(key, "is not two points", "two points such as [[\"0 mm\", \"0 mm\"], [\"1 mm\", \"80 mm\"]]");
-        a = read_point(table, *points.get(0), key);
-        b = read_point(table, *points.get(1), key);
+        a = table.point_of(*points.get(0), key);
+        b = table.point_of(*points.get(1), key);
     });
 }
 
@@ -37,12 +26,12 @@ HoleSpec read_hole(const JobTable& table) {
         table.check({"vertices"}, [&] {
             if (vertices.size() < 3 || vertices.size() > most_vertices)
                 table.fail("vertices", std::to_string(vertices.size()) + " vertices make no hole", "from three to 10000 vertices; or centre and diameter");
-            for (const toml::node& vertex : vertices) hole.vertices_m.push_back(read_point(table, vertex, "vertices"));
+            for (const toml::node& vertex : vertices) hole.vertices_m.push_back(table.point_of(vertex, "vertices"));
         });
         return hole;
     }
     table.require({"centre", "diameter"});
-    read_point(table, "centre", hole.centre_m);
+    hole.centre_m = table.point("centre");
     hole.diameter_m = table.quantity("diameter");
     return hole;
 }
@@ -50,8 +39,8 @@ HoleSpec read_hole(const JobTable& table) {
 NotchSpec read_notch(const JobTable& table) {
     table.require({"from", "to", "width"});
     NotchSpec notch;
-    read_point(table, "from", notch.from_m);
-    read_point(table, "to", notch.to_m);
+    notch.from_m = table.point("from");
+    notch.to_m = table.point("to");
     notch.width_m = table.quantity("width");
     notch.label = table.text("label", "");
     table.check({"from", "to"}, [&] {
@@ -71,7 +60,7 @@ PlaceLabelSpec read_label(const JobTable& table) {
         return label;
     }
     if (table.has("at")) {
-        read_point(table, "at", label.a_m);
+        label.a_m = table.point("at");
         label.within_m = table.quantity("within");
     } else if (table.has("box")) {
         label.kind = PlaceKind::box;

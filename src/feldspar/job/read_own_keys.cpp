@@ -13,16 +13,6 @@
 namespace feldspar {
 namespace {
 
-Vec2 read_point(const JobTable& table, std::string_view key) {
-    Vec2 point;
-    const toml::array& pair = table.array(key);
-    table.check({key}, [&] {
-        if (pair.size() != 2) table.fail(key, "is not a point", "x and y, such as [\"40 mm\", \"0 mm\"]");
-        point = {table.quantity_of(*pair.get(0), key), table.quantity_of(*pair.get(1), key)};
-    });
-    return point;
-}
-
 Vec2 read_direction(const JobTable& table, std::string_view key, bool unit) {
     Vec2 direction{0.0, 1.0};
     const toml::array& pair = table.array(key);
@@ -52,7 +42,7 @@ FixtureSpec read_fixture(const JobTable& table) {
     table.suit("kind", name(form));
     if (table.has("on")) fixture.part.label = table.text("on");
     if (table.has("at")) {
-        fixture.part.at = read_point(table, "at");
+        fixture.part.at = table.point("at");
         fixture.axis = fixture.part.at;
     }
     if (!table.has("on") && !table.has("at")) table.check({}, [&] { table.fail("on", "the fixture has no place", "on = the label of an edge, or at = a point"); });
@@ -96,7 +86,7 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
     switch (form) {
         case GaugeForm::extension:
         case GaugeForm::strain: {
-            const Vec2 from = read_point(table, "from"), to = read_point(table, "to"), line = to - from;
+            const Vec2 from = table.point("from"), to = table.point("to"), line = to - from;
             const double length = norm(line);
             table.check({"from", "to"}, [&] {
                 if (!(length > 0.0)) table.fail("to", "the gauge ends where it begins", "two different points");
@@ -109,7 +99,7 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
             break;
         }
         case GaugeForm::displacement:
-            gauge.points = {{read_point(table, "at"), read_direction(table, "direction", true)}};
+            gauge.points = {{table.point("at"), read_direction(table, "direction", true)}};
             gauge.meaning = "displacement of a point along a direction";
             break;
         case GaugeForm::force: {
@@ -162,13 +152,6 @@ void read_custom(const JobTable& table, TestSpec& test) {
         }
 }
 
-// The unit in which a gauge's end is given.
-Dimension dimension_of(const TestSpec& test, const std::string& gauge) {
-    for (const GaugeSpec& spec : test.custom.gauges)
-        if (spec.name == gauge) return spec.kind == GaugeKind::displacement ? Dimension::length : spec.kind == GaugeKind::force ? Dimension::force : Dimension::fraction;
-    return Dimension::length;
-}
-
 void read_until(const JobTable& table, TestSpec& test) {
     const JobTable until = table.table("until");
     until.require({"gauge", "at"});
@@ -179,11 +162,17 @@ void read_until(const JobTable& table, TestSpec& test) {
         if (!has_gauge(test, stop.gauge))
             until.fail("gauge", fmt::format("the test has no gauge called '{}'", stop.gauge), known.empty() ? "a test with gauges" : listed(known), did_you_mean(stop.gauge, known));
     });
-    if (until.sound({"gauge"})) stop.value = until.quantity_as("at", dimension_of(test, stop.gauge));
+    if (until.sound({"gauge"})) stop.value = until.quantity_as("at", dimension_of_gauge(test, stop.gauge));
     test.stop_gauge = stop;
 }
 
 }  // namespace
+
+Dimension dimension_of_gauge(const TestSpec& test, std::string_view gauge) {
+    for (const GaugeSpec& spec : test.custom.gauges)
+        if (spec.name == gauge) return spec.kind == GaugeKind::displacement ? Dimension::length : spec.kind == GaugeKind::force ? Dimension::force : Dimension::fraction;
+    return Dimension::length;   // those of methods are all displacements
+}
 
 std::vector<std::string_view> gauge_names(const TestSpec& test) {
     std::vector<std::string_view> names(method_of(test).build.gauge_names.begin(), method_of(test).build.gauge_names.end());

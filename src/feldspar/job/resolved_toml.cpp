@@ -7,6 +7,7 @@
 
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/keys.hpp"
 #include "feldspar/job/words.hpp"
 #include "feldspar/methods/method.hpp"
@@ -112,10 +113,7 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
             break;
         case Shape::polygon: {
             std::vector<std::string> items;
-            for (Vec2 v : outline.vertices_m)
-                items.push_back(fmt::format("[{}, {}]", si(v.x, Dimension::length), si(v.y, Dimension::length)));
-            out.raw("vertices", fmt::format("[{}]", fmt::join(items, ", ")));
-            items.clear();
+            out.raw("vertices", points(outline.vertices_m));
             for (const std::string& label : outline.edge_labels) items.push_back(quote(label));
             if (!items.empty()) out.raw("edge_labels", fmt::format("[{}]", fmt::join(items, ", ")));
             break;
@@ -233,10 +231,7 @@ std::string direction(Vec2 d) { return fmt::format("[{}, {}]", format_exact(d.x)
 void write_until(Lines& out, const TestSpec& test) {
     out.head("test.until");
     out.word("gauge", test.stop_gauge->gauge);
-    Dimension dimension = Dimension::length;
-    for (const GaugeSpec& gauge : test.custom.gauges)
-        if (gauge.name == test.stop_gauge->gauge && gauge.kind != GaugeKind::displacement) dimension = gauge.kind == GaugeKind::force ? Dimension::force : Dimension::fraction;
-    out.quantity("at", test.stop_gauge->value, dimension);
+    out.quantity("at", test.stop_gauge->value, dimension_of_gauge(test, test.stop_gauge->gauge));
 }
 
 void write_fixture(Lines& out, const FixtureSpec& fixture) {

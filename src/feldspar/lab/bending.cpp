@@ -1,8 +1,8 @@
 #include "feldspar/lab/bending.hpp"
 
-#include <algorithm>
 #include <cmath>
 
+#include "feldspar/lab/gauges.hpp"
 #include "feldspar/methods/beam.hpp"
 
 namespace feldspar {
@@ -11,16 +11,11 @@ namespace {
 constexpr double kHalf = 0.5;            // of the largest load: where the modulus is read
 constexpr double kWholeCurve = 0.11;     // share of the largest load below which a record has the whole work of fracture (it ends at 0.1)
 
-int gauge_number(const TestResult& result, std::string_view name) {
-    const auto found = std::ranges::find(result.gauges, name, &GaugeSpec::name);
-    return found == result.gauges.end() ? -1 : static_cast<int>(found - result.gauges.begin());
-}
-
 double load_N(const TestResult& result, const HistoryRow& row) { return row.axial_stress_Pa * result.section_m2; }
 
 // Load over reading when the load first reaches half of the largest; not-a-number without the gauge.
 double secant_N_m(const TestResult& result, const Peak& peak, std::string_view gauge) {
-    const int g = gauge_number(result, gauge);
+    const int g = gauge_number(result.gauges, gauge);
     if (g < 0) return BendingProperties::none;
     for (std::size_t i = 0; i <= peak.row; ++i) {
         const HistoryRow& row = result.history[i];
@@ -33,7 +28,7 @@ double secant_N_m(const TestResult& result, const Peak& peak, std::string_view g
 // Work that the loading has done until the end of the record: its elastic start, then the fixtures.
 double work_J(const TestResult& result) { return result.history.back().energy.supplied(); }
 
-// Area of all cracks (their shares of grain edges), over the ligament's.
+// Length of all cracks (their shares of grain edges), over the ligament's.
 double crack_path(const TestResult& result, const Beam& beam) {
     double length = 0.0;
     for (const Crack& crack : result.cracks) length += norm(crack.to - crack.from);

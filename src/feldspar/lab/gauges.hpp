@@ -41,6 +41,9 @@ private:
     SlopeWeights weights_;
 };
 
+/// The number of the gauge of this name, or -1.
+int gauge_number(std::span<const GaugeSpec> gauges, std::string_view name);
+
 /// Gauges that a method or a user has asked for, ready to be read.
 class Gauges {
 public:
@@ -49,8 +52,7 @@ public:
     Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs);
 
     const std::vector<GaugeSpec>& specs() const { return specs_; }
-    /// The number of the gauge of this name, or -1.
-    int find(std::string_view name) const;
+    int find(std::string_view name) const { return gauge_number(specs_, name); }
     /// Of all gauges, SI.
     std::vector<double> read(const Assembly& assembly) const;
 

@@ -92,8 +92,7 @@ std::string advice(const TestResult& result, double slower) {
 
 /// Between which forces are compared.
 const char* sides_of(const TestSpec& test) {
-    const Reading reading = method_of(test).reading;
-    return reading == Reading::column || reading == Reading::disc ? "platens" : "what loads and what holds";
+    return method_of(test).start.strained_evenly ? "platens" : "what loads and what holds";
 }
 
 std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& table, const TestResult& result, bool peak_reached) {

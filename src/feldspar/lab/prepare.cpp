@@ -46,29 +46,38 @@ double fixed_x(const Assembly& assembly, const Box& box) {
     return 0.5 * (box.lower.x + box.upper.x);
 }
 
-// Moves everything by an affine field: shortening by `travel_m` over the height, widening by nu. The contacts follow the motion
-// as they do in a step, so that gaps that it opens or closes between rigid bodies and at plates are felt.
+// Moves the nodes by what `set_motion` writes into their velocities. The contacts follow the motion as they do in a step, so that gaps that it
+// opens or closes between rigid bodies and at plates are felt.
+template <class SetMotion>
+void move_by(Experiment& e, double travel_m, SetMotion&& set_motion) {
+    Nodes& nodes = e.assembly.nodes;
+    const Array<Vec2> velocity = nodes.velocity;
+    set_motion();
+    StepSettings elastic;
+    elastic.strength = Strength::unlimited;
+    contact_forces(e.assembly, {0, static_cast<int>(e.assembly.contacts.size())}, elastic, -1);
+    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] += nodes.velocity[n];
+    nodes.velocity = velocity;
+    e.platen_travel_m += travel_m;
+}
+
+// Moves everything by an affine field: shortening by `travel_m` over the height, widening by nu.
 void add_affine(Experiment& e, double travel_m) {
     Assembly& assembly = e.assembly;
     Nodes& nodes = assembly.nodes;
     const Box box = bounding_box(nodes.reference);
     const Vec2 origin = {fixed_x(assembly, box), box.lower.y};
     const double strain = -e.direction * travel_m / e.length_m;
-    const Array<Vec2> velocity = nodes.velocity;
-    for (const Body& body : assembly.bodies)
-        for (const int n : body.nodes()) {
-            const Vec2 x = nodes.reference[n] - origin;
-            nodes.velocity[n] = share_of_field(assembly, body, n, {-e.elastic_guess.nu * strain * x.x, strain * x.y});
-        }
-    for (const Fixture& fixture : assembly.fixtures)
-        if (fixture.moves())
-            for (const int node : fixture.nodes) nodes.velocity[node].y = fixture.motion.y * travel_m;
-    StepSettings elastic;
-    elastic.strength = Strength::unlimited;
-    contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, elastic, -1);
-    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] += nodes.velocity[n];
-    nodes.velocity = velocity;
-    e.platen_travel_m += travel_m;
+    move_by(e, travel_m, [&] {
+        for (const Body& body : assembly.bodies)
+            for (const int n : body.nodes()) {
+                const Vec2 x = nodes.reference[n] - origin;
+                nodes.velocity[n] = share_of_field(assembly, body, n, {-e.elastic_guess.nu * strain * x.x, strain * x.y});
+            }
+        for (const Fixture& fixture : assembly.fixtures)
+            if (fixture.moves())
+                for (const int node : fixture.nodes) nodes.velocity[node].y = fixture.motion.y * travel_m;
+    });
 }
 
 double platen_force(const Experiment& e) { return loading_reaction(e.assembly); }
@@ -126,18 +135,12 @@ void elastic_loading(Experiment& e, const BodyState& base) {
 
 // Moves only what loads.
 void move_fixtures(Experiment& e, double travel_m) {
-    Assembly& assembly = e.assembly;
-    Nodes& nodes = assembly.nodes;
-    const Array<Vec2> velocity = nodes.velocity;
-    std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
-    for (const Fixture& fixture : assembly.fixtures)
-        for (const int node : fixture.nodes) nodes.velocity[node] = travel_m * Vec2{fixture.imposed.x * fixture.motion.x, fixture.imposed.y * fixture.motion.y};
-    StepSettings elastic;
-    elastic.strength = Strength::unlimited;
-    contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, elastic, -1);
-    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] += nodes.velocity[n];
-    nodes.velocity = velocity;
-    e.platen_travel_m += travel_m;
+    Nodes& nodes = e.assembly.nodes;
+    move_by(e, travel_m, [&] {
+        std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
+        for (const Fixture& fixture : e.assembly.fixtures)
+            for (const int node : fixture.nodes) nodes.velocity[node] = travel_m * Vec2{fixture.imposed.x * fixture.motion.x, fixture.imposed.y * fixture.motion.y};
+    });
 }
 
 // Quarter of the loading mode's period over that of a bar's quarter wave: for a bar the time in which a wave crosses it (L17).

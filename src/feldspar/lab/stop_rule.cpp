@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "feldspar/base/error.hpp"
-
 namespace feldspar {
 namespace {
 
@@ -17,10 +15,7 @@ constexpr long long kStepsAfterPeak = 100;
 
 StopRule::StopRule(const Experiment& experiment, const TestResult& result) : e_(&experiment), result_(&result) {
     if (const auto disc = loaded_disc(result)) splitting_.emplace(*disc);
-    if (const auto& stop = experiment.setup.test.stop_gauge) {
-        gauge_ = experiment.gauges.find(stop->gauge);
-        if (gauge_ < 0) throw InputError({.key = "test.until"}, fmt::format("the test has no gauge called \"{}\"", stop->gauge));
-    }
+    if (const auto& stop = experiment.setup.test.stop_gauge) gauge_ = experiment.gauges.find(stop->gauge);
 }
 
 bool StopRule::past_peak(double load_Pa) const { return load_Pa < kPastPeak * peak_Pa_ && (!splitting_ || split()); }

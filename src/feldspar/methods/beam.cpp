@@ -40,11 +40,7 @@ double mouth_width(const Outline& outline, double x, double bottom) {
 // A notch that rises upright from the lower side in the middle; anything else that is cut out makes the beam another one.
 void look_for_notch(const Outline& outline, Beam& beam) {
     for (const Cutout& cutout : outline.cutouts) {
-        Box box{cutout.vertices.front(), cutout.vertices.front()};
-        for (const Vec2 v : cutout.vertices) {
-            box.lower = {std::min(box.lower.x, v.x), std::min(box.lower.y, v.y)};
-            box.upper = {std::max(box.upper.x, v.x), std::max(box.upper.y, v.y)};
-        }
+        const Box box = bounding_box(cutout.vertices);
         constexpr double kClose = 1e-6;   // of the height
         const double axis = 0.5 * (box.lower.x + box.upper.x), close = kClose * beam.height_m, tall = box.upper.y - box.lower.y;
         const bool upright = cutout.is_cut() ? box.upper.x - box.lower.x < close : cutout.slit && tall > box.upper.x - box.lower.x;

@@ -13,13 +13,13 @@ constexpr double kHolds = 0.4;          // friction of the loading roller, which
 
 Beam beam(const MethodInput& in) { return beam_of(in.specimen.outline, in.specimen.spec.thickness_m, in.test); }
 
-FixtureSpec roller(const MethodInput& in, const char* name, Vec2 at, bool loads) {
+FixtureSpec roller(const MethodInput& in, const Beam& b, const char* name, Vec2 at, bool loads) {
     FixtureSpec roller;
     roller.name = name;
     roller.kind = FixtureKind::plate;
     roller.normal = {0.0, loads ? 1.0 : -1.0};
     roller.motion = {0.0, loads ? -1.0 : 0.0};
-    roller.radius_m = -in.test.roller_radius_m.value_or(kRoller * beam(in).height_m);
+    roller.radius_m = -in.test.roller_radius_m.value_or(kRoller * b.height_m);
     roller.axis = at;
     roller.touch = Touch::nearest_axis;
     roller.part.facing = roller.normal;
@@ -32,8 +32,8 @@ FixtureSpec roller(const MethodInput& in, const char* name, Vec2 at, bool loads)
 
 std::vector<FixtureSpec> rollers(const MethodInput& in) {
     const Beam b = beam(in);
-    return {roller(in, "loading roller", {b.middle_m, b.top_m()}, true), roller(in, "left support", {b.middle_m - 0.5 * b.span_m, b.bottom_m}, false),
-            roller(in, "right support", {b.middle_m + 0.5 * b.span_m, b.bottom_m}, false)};
+    return {roller(in, b, "loading roller", {b.middle_m, b.top_m()}, true), roller(in, b, "left support", {b.middle_m - 0.5 * b.span_m, b.bottom_m}, false),
+            roller(in, b, "right support", {b.middle_m + 0.5 * b.span_m, b.bottom_m}, false)};
 }
 
 // Strain of the outermost fibre in the middle of a plain slender beam: 6 h deflection / S^2.

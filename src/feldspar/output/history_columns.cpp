@@ -68,8 +68,7 @@ GaugeUnit unit_of(const GaugeSpec& gauge) {
 }
 
 std::vector<FileColumn> history_columns(const TestResult& result) {
-    const TestMethod& method = method_of(result.test);
-    const bool strained_evenly = method.reading == Reading::column || method.reading == Reading::disc;
+    const bool strained_evenly = method_of(result.test).start.strained_evenly;
     std::vector<FileColumn> all;
     for (const HistoryColumn& column : columns)
         if (strained_evenly || !std::string_view(column.name).ends_with("_gauge")) all.push_back({column.name, column.unit, column.meaning, column.whole, column.value});

@@ -56,7 +56,7 @@ Json history_json(const TestResult& result, std::size_t tests) {
     };
     using Row = const HistoryRow&;
     column("strain", [](Row r) { return r.axial_strain * 1e3; });  // strains in 10^-3
-    const bool strained_evenly = method_of(result.test).reading == Reading::column || method_of(result.test).reading == Reading::disc;
+    const bool strained_evenly = method_of(result.test).start.strained_evenly;
     column("gauge", [&](Row r) { return strained_evenly ? r.axial_strain_gauge * 1e3 : std::nan(""); });
     column("lateral", [&](Row r) { return strained_evenly ? r.lateral_strain_gauge * 1e3 : std::nan(""); });
     column("stress", [](Row r) { return r.axial_stress_Pa * MPa; });
@@ -104,6 +104,9 @@ Json brazilian_json(const TestResult& result) {
     return json;
 }
 
+/// What users read for a test: the method, or the name of a test of their own.
+std::string title_of(const TestSpec& test) { return test.custom.name.empty() ? method_of(test).words.title : test.custom.name; }
+
 /// What stands at the axes of a test's charts, without units.
 Json axes_json(const TestResult& result) {
     const MethodWords& words = method_of(result.test).words;
@@ -134,7 +137,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     if (!result.variant.empty()) test["variant"] = result.variant;
     test["stem"] = test_stem(result);
     test["kind"] = name(result.test.kind);
-    test["title"] = result.test.custom.name.empty() ? method_of(result.test).words.title : result.test.custom.name;
+    test["title"] = title_of(result.test);
     test["confined"] = method_of(result.test).specimen.confined;
     test["axes"] = axes_json(result);
     test["seed"] = result.seed;
@@ -321,7 +324,7 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     for (const TestResult& result : results) data["tests"].push_back(test_json(result, results.size()));
     data["failed"] = Json::array();
     for (const FailedTest& test : failed)
-        data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"title", test.test.custom.name.empty() ? method_of(test.test).words.title : test.test.custom.name},
+        data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"title", title_of(test.test)},
                                   {"confined", method_of(test.test).specimen.confined}, {"seed", test.seed},
                                   {"sigma3", rounded(test.test.sigma3_Pa * MPa)}, {"reason", test.reason}});
     data["provenance"] = provenance_json(provenance);

@@ -98,14 +98,10 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
         add(branch, result, QuantityGroup::post_peak);
     }
     if (!result.gauges.empty()) test["gauges"] = gauges_json(result);
-    if (reading == Reading::beam || reading == Reading::curve) {   // no modulus of a specimen strained evenly, and no threshold
-        for (const QuantityGroup group : {QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
-            add(test, result, group);
-    } else {
-        for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage, QuantityGroup::steps, QuantityGroup::cost,
-                                          QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
-            add(test, result, group);
-    }
+    if (method_of(result.test).start.strained_evenly)   // else there is no such modulus, and no threshold
+        for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage}) add(test, result, group);
+    for (const QuantityGroup group : {QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
+        add(test, result, group);
     test["quasi_static"] = std::string(1, result.evidence.grade);
     test["verdict"] = result.evidence.verdict;
     add(test, result, QuantityGroup::repeats);
