@@ -1,5 +1,6 @@
 // The program `feldspar`: reads the command line, calls a command, and turns what it throws into a message and an exit code.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -12,6 +13,7 @@
 
 #include "commands.hpp"
 #include "feldspar/base/printable.hpp"
+#include "feldspar/job/job_template.hpp"
 #include "feldspar/output/results.hpp"
 
 namespace feldspar {
@@ -288,12 +290,12 @@ struct NewOptions {
 void add_new(CommandLine& line) {
     const auto options = std::make_shared<NewOptions>();
     CLI::App& command = line.add("new", "print a commented job, study or calibration to start from");
-    CLI::Option* kind = command.add_option("kind", options->kind, "a job: uniaxial-compression, direct-tension, biaxial, brazilian, laboratory (all of them); study; calibration")->type_name("KIND");
+    CLI::Option* kind = command.add_option("kind", options->kind, fmt::format("a job: {} (the tests of one rock); study; calibration", fmt::join(job_template_kinds(), ", ")))->type_name("KIND");
     CLI::Option* file = command.add_option("--out", options->file, "write it to this new file instead")->type_name("FILE");
     command.add_flag("--presets", options->presets, "print the materials that a job may name instead")->excludes(kind)->excludes(file);
     line.does(command, [options] {
         if (options->presets) return presets_command();
-        if (options->kind.empty()) throw InputError({}, "new: kind is required", "uniaxial-compression, direct-tension, biaxial, brazilian, laboratory, study, calibration");
+        if (options->kind.empty()) throw InputError({}, "new: kind is required", fmt::format("{}, study, calibration", fmt::join(job_template_kinds(), ", ")));
         return new_command(options->kind, options->file);
     });
 }

@@ -91,17 +91,17 @@ std::string compared_table(const Job& job, const std::vector<VariantSummary>& su
 }
 
 std::string cost_table(const std::vector<VariantSummary>& summaries) {
-    std::vector<TestKind> kinds;
+    std::vector<MethodId> kinds;
     for (const VariantSummary& summary : summaries)
         for (const auto& [kind, cost] : summary.ms_per_step)
             if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
     if (kinds.empty()) return {};
     std::sort(kinds.begin(), kinds.end());
     std::vector<Row> rows{{"ms a step"}};
-    for (TestKind kind : kinds) rows.front().emplace_back(name(kind));
+    for (MethodId kind : kinds) rows.front().emplace_back(name(kind));
     for (const VariantSummary& summary : summaries) {
         rows.push_back({summary.variant->name});
-        for (TestKind kind : kinds) {
+        for (MethodId kind : kinds) {
             const auto own = summary.ms_per_step.find(kind), first = summaries.front().ms_per_step.find(kind);
             std::string cell = own == summary.ms_per_step.end() ? "-" : table_number(own->second);
             if (own != summary.ms_per_step.end() && first != summaries.front().ms_per_step.end())

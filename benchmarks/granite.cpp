@@ -57,7 +57,7 @@ Assembly make_assembly(GrainKind grains, Load load, const Specimen& specimen) {
     const ContactMaterial contact = granite_contact(grains);
     Assembly assembly = assemble(specimen, model, kGranite, contact);
     TestSpec test;
-    test.kind = load == Load::brazilian ? TestKind::brazilian : TestKind::uniaxial_compression;
+    test.kind = load == Load::brazilian ? methods::brazilian : methods::uniaxial_compression;
     attach(assembly, specimen, method_of(test).build.fixtures({specimen, model, kGranite, contact, test}));
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     Nodes& nodes = assembly.nodes;

@@ -120,7 +120,7 @@ void masses(benchmark::State& state) {
 void stability(benchmark::State& state) {
     Assembly assembly = granite(state.range(0));
     const ContactMaterial contact = benchmarks::granite_contact(GrainKind::flexible);
-    attach(assembly, specimen_of(state.range(0)), method_of(TestKind::uniaxial_compression).build.fixtures({specimen_of(state.range(0)), {}, benchmarks::kGranite, contact, {}}));
+    attach(assembly, specimen_of(state.range(0)), method_of(methods::uniaxial_compression).build.fixtures({specimen_of(state.range(0)), {}, benchmarks::kGranite, contact, {}}));
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     Team team(static_cast<int>(state.range(1)));
     for (auto _ : state) benchmark::DoNotOptimize(largest_omega2(assembly, team));

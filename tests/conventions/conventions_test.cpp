@@ -118,6 +118,27 @@ TEST(Conventions, IncludesGoOneWay) {
     EXPECT_GT(seen, 20u) << "no includes found: is this test looking at the right folder?";
 }
 
+/// A test method is one file and one line of a list: nothing outside its room asks for a method by its name, neither code nor the scripts of pages.
+TEST(Conventions, MethodsAreNamedInTheirRoomOnly) {
+    std::string names;
+    for (const std::string& line : read(fs::path(FELDSPAR_SOURCE_DIR) / "src/feldspar/methods/list.inc").lines) {
+        std::smatch method;
+        if (!std::regex_match(line, method, std::regex(R"re(FELDSPAR_METHOD\((\w+)\))re"))) continue;
+        std::string name = method[1];
+        std::replace(name.begin(), name.end(), '_', '-');
+        names += (names.empty() ? "" : "|") + name;
+    }
+    ASSERT_NE(names, "") << "the list of methods has changed its form";
+    std::vector<SourceFile> files;
+    for (const char* folder : {"src", "apps"})
+        for (SourceFile& file : files_under(folder, {".cpp", ".hpp", ".js"}))
+            if (file.name.rfind("src/feldspar/methods/", 0) != 0) files.push_back(std::move(file));
+    const std::string why = "ask a fact of the method (methods/method.hpp)";
+    expect_nowhere(files, std::regex(R"re(\bmethods::\w+)re"), why);
+    // compared with, or looked up: `kind == "biaxial"`, `seeds("biaxial")`
+    expect_nowhere(files, std::regex("(===? *|[a-z_]\\()\"(" + names + ")\""), why);
+}
+
 TEST(Conventions, SharedVocabularyIncludesNothing) {
     for (const std::string& header : vocabulary) {
         const SourceFile file = read(fs::path(FELDSPAR_SOURCE_DIR) / "src" / header);

@@ -45,17 +45,17 @@ std::uint64_t hash(const TestResult& r) {
 }
 
 struct Case {
-    TestKind kind;
+    MethodId kind;
     ModelSpec model;
 };
 
 class SameBits : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Tests, SameBits,
-                         testing::Values(Case{TestKind::uniaxial_compression, {}}, Case{TestKind::biaxial, {}}, Case{TestKind::brazilian, {}},
-                                         Case{TestKind::biaxial, fixtures::model(GrainKind::rigid)},
-                                         Case{TestKind::brazilian, fixtures::model(GrainKind::rigid, ContactKind::point)},
-                                         Case{TestKind::uniaxial_compression, fixtures::model(GrainKind::inner_particles)},
-                                         Case{TestKind::direct_tension, fixtures::model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge)}),
+                         testing::Values(Case{methods::uniaxial_compression, {}}, Case{methods::biaxial, {}}, Case{methods::brazilian, {}},
+                                         Case{methods::biaxial, fixtures::model(GrainKind::rigid)},
+                                         Case{methods::brazilian, fixtures::model(GrainKind::rigid, ContactKind::point)},
+                                         Case{methods::uniaxial_compression, fixtures::model(GrainKind::inner_particles)},
+                                         Case{methods::direct_tension, fixtures::model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge)}),
                          [](const auto& tested) {
                              std::string text = name(tested.param.kind);
                              std::erase(text, '-');
@@ -65,13 +65,13 @@ INSTANTIATE_TEST_SUITE_P(Tests, SameBits,
 TEST_P(SameBits, ForAnyNumberOfThreadsAndEveryTime) {
     const auto [kind, model] = GetParam();
     const bool inner = model.kind == GrainKind::inner_particles;   // ten times as many bodies: a smaller specimen
-    const SpecimenSpec spec = kind == TestKind::brazilian ? fixtures::disc(0.03) : inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04);
+    const SpecimenSpec spec = kind == methods::brazilian ? fixtures::disc(0.03) : inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04);
     TestSetup s = fixtures::setup(spec, kind, model, ContactLaw::bilinear, 11);
     s.numerics.accuracy = 0.02;
     s.test.membrane_plates = 8;
-    if (inner && kind == TestKind::uniaxial_compression) s.numerics.maximum_steps = 3000;   // beyond the first cracks
-    if (kind == TestKind::biaxial) s.test.sigma3_Pa = 4e6;
-    if (kind == TestKind::direct_tension) s.test.stop_fraction = 0.3;   // softening alone reaches the usual 0.8, without a crack
+    if (inner && kind == methods::uniaxial_compression) s.numerics.maximum_steps = 3000;   // beyond the first cracks
+    if (kind == methods::biaxial) s.test.sigma3_Pa = 4e6;
+    if (kind == methods::direct_tension) s.test.stop_fraction = 0.3;   // softening alone reaches the usual 0.8, without a crack
     const TestResult first = run_test(s, fixtures::threads(1));
     EXPECT_GT(first.cracks.size(), 0U);
     const std::uint64_t one = hash(first);

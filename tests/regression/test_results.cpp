@@ -33,7 +33,7 @@ protected:
         const auto disc = std::make_shared<const Specimen>(make_specimen(job.brazilian_specimen, 1));
         const Variant& rock = job.variants.front();
         for (const TestSpec& test : job.tests)
-            run_.results.push_back(run_test({test.kind == TestKind::brazilian ? disc : rectangle, rock.model, rock.grain, rock.contact, rock.numerics, test}, {}));
+            run_.results.push_back(run_test({test.kind == methods::brazilian ? disc : rectangle, rock.model, rock.grain, rock.contact, rock.numerics, test}, {}));
         const RunDirectory directory = RunDirectory::create(*run_.folder / "run", job.name);
         const Provenance provenance;   // empty
         for (const TestResult& result : run_.results) write_history_csv(directory, result, provenance);

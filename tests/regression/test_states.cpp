@@ -34,7 +34,7 @@ namespace {
 
 struct Case {
     GrainKind grains = GrainKind::flexible;
-    TestKind test = TestKind::uniaxial_compression;
+    MethodId test = methods::uniaxial_compression;
     ContactLaw law = ContactLaw::bilinear;
     NumericsKind numerics = NumericsKind::adaptive;
     std::string kernels = "portable";   ///< or "readable": the loading by the readable stages, after a start by the portable kernels
@@ -56,7 +56,7 @@ std::vector<Case> all_cases() {
     std::vector<Case> cases;
     std::size_t pair = 0;
     for (const GrainKind grains : grain_kinds)
-        for (const TestKind test : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian}) {   // beams need a longer specimen: tests/verification has them
+        for (const MethodId test : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension, methods::biaxial, methods::brazilian}) {   // beams need a longer specimen: tests/verification has them
             for (const ContactLaw law : contact_laws) cases.push_back({grains, test, law, NumericsKind::adaptive, "portable"});
             for (std::size_t k : {0, 2, 3}) cases.push_back({grains, test, contact_laws[(pair + k) % 4], NumericsKind::adaptive, all_sets[k]});
             cases.push_back({grains, test, contact_laws[(pair + 1) % 4], NumericsKind::paper, all_sets[(pair + pair / 4) % 4]});
@@ -65,26 +65,26 @@ std::vector<Case> all_cases() {
         }
     for (const char* kernels : {"readable", "portable", "avx2", "avx512"}) {
         const Case usual{.kernels = kernels};
-        const auto with = [&](GrainKind grains, TestKind test, const char* option) {
+        const auto with = [&](GrainKind grains, MethodId test, const char* option) {
             Case one = usual;
             one.grains = grains;
             one.test = test;
             one.option = option;
             cases.push_back(one);
         };
-        with(GrainKind::flexible, TestKind::uniaxial_compression, "beyond-friction");
-        with(GrainKind::rigid, TestKind::direct_tension, "secant");
-        with(GrainKind::rigid, TestKind::uniaxial_compression, "point");
-        with(GrainKind::inner_particles, TestKind::brazilian, "edge-normal");
-        with(GrainKind::flexible, TestKind::biaxial, "plane-strain");
-        with(GrainKind::flexible, TestKind::direct_tension, "fine-mesh");
+        with(GrainKind::flexible, methods::uniaxial_compression, "beyond-friction");
+        with(GrainKind::rigid, methods::direct_tension, "secant");
+        with(GrainKind::rigid, methods::uniaxial_compression, "point");
+        with(GrainKind::inner_particles, methods::brazilian, "edge-normal");
+        with(GrainKind::flexible, methods::biaxial, "plane-strain");
+        with(GrainKind::flexible, methods::direct_tension, "fine-mesh");
     }
     return cases;
 }
 
 // Loading steps after which the state is taken; by the last one every case has cracks.
 std::array<long long, 3> moments(const Case& one) {
-    const bool slowly = one.test == TestKind::direct_tension || one.numerics == NumericsKind::adaptive || (one.numerics == NumericsKind::paper && one.grains == GrainKind::inner_particles);
+    const bool slowly = one.test == methods::direct_tension || one.numerics == NumericsKind::adaptive || (one.numerics == NumericsKind::paper && one.grains == GrainKind::inner_particles);
     return {0, 100, slowly ? 4000 : 1500};
 }
 
@@ -97,7 +97,7 @@ golden::File& recorded() {
 
 std::shared_ptr<const Specimen> specimen_of(const Case& one) {
     static std::map<std::string, std::shared_ptr<const Specimen>> made;
-    const bool disc = one.test == TestKind::brazilian, filled = one.grains == GrainKind::inner_particles, fine = one.option == "fine-mesh";
+    const bool disc = one.test == methods::brazilian, filled = one.grains == GrainKind::inner_particles, fine = one.option == "fine-mesh";
     std::shared_ptr<const Specimen>& specimen = made[fmt::format("{} {} {}", disc, filled, fine)];
     if (!specimen) {
         SpecimenSpec spec = disc ? fixtures::disc(0.016) : fixtures::rectangle(0.010, 0.020);
@@ -118,7 +118,7 @@ TestSetup setup_of(const Case& one) {
     if (one.option == "plane-strain") s.model.plane = PlaneState::strain;
     if (one.option == "beyond-friction") s.contact.shear_measure = ShearMeasure::beyond_friction;
     if (one.option == "secant") s.contact.tension_unloading = TensionUnloading::secant;
-    if (one.test == TestKind::biaxial) s.test.sigma3_Pa = 4e6;
+    if (one.test == methods::biaxial) s.test.sigma3_Pa = 4e6;
     s.test.membrane_plates = 6;
     s.test.stop_fraction = 0.0;      // to the last step, whatever breaks
     s.test.maximum_strain = 1.0;
@@ -186,7 +186,7 @@ TEST(StatesRecorded, AreThoseOfTheCases) {
 
 TEST(StatesRecorded, AreThoseOfTwoThreadsToo) {
     for (const Case& one : all_cases()) {
-        if (one.test != TestKind::biaxial || one.law != ContactLaw::bilinear || one.numerics != NumericsKind::adaptive || one.kernels != "portable") continue;
+        if (one.test != methods::biaxial || one.law != ContactLaw::bilinear || one.numerics != NumericsKind::adaptive || one.kernels != "portable") continue;
         EXPECT_EQ(state_after(one, moments(one).back(), 2), state_after(one, moments(one).back())) << one.label();
     }
 }

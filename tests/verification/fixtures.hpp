@@ -62,7 +62,7 @@ inline std::shared_ptr<const Specimen> two_grain_bar(double h_m, double upper_m 
     return std::make_shared<const Specimen>(std::move(s));
 }
 
-inline TestSetup setup(std::shared_ptr<const Specimen> specimen, TestKind kind) {
+inline TestSetup setup(std::shared_ptr<const Specimen> specimen, MethodId kind) {
     TestSetup s;
     s.specimen = std::move(specimen);
     s.grain = granite();
@@ -74,7 +74,7 @@ inline TestSetup setup(std::shared_ptr<const Specimen> specimen, TestKind kind) 
 /// The platens and sides of a compressed specimen of flexible grains. @param sigma3_Pa  on its sides; 0: none
 inline std::vector<FixtureSpec> platen_rows(const Specimen& specimen, double sigma3_Pa = 0.0) {
     TestSpec test;
-    test.kind = TestKind::biaxial;
+    test.kind = methods::biaxial;
     test.sigma3_Pa = sigma3_Pa;
     const ContactMaterial contact = table7();
     return method_of(test).build.fixtures({specimen, ModelSpec{}, granite(), contact, test});
@@ -141,7 +141,7 @@ inline SpecimenSpec filled_for(const ModelSpec& m, SpecimenSpec spec) {
     return spec;
 }
 
-inline TestSetup setup(const SpecimenSpec& spec, TestKind kind, const ModelSpec& m, ContactLaw law = ContactLaw::bilinear,
+inline TestSetup setup(const SpecimenSpec& spec, MethodId kind, const ModelSpec& m, ContactLaw law = ContactLaw::bilinear,
                        std::uint64_t seed = 1) {
     TestSetup s = setup(make(filled_for(m, spec), seed), kind);
     s.model = m;

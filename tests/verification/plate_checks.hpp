@@ -23,7 +23,7 @@ inline std::vector<const Contact*> contacts_of(const Assembly& assembly, int pla
 /// The plates on a small disc have the stiffness and friction that are asked for, act over the diameters of the bodies, each of which
 /// they touch once, and start where the first is touched.
 inline void expect_plates_on_a_disc(const ModelSpec& model) {
-    TestSetup s = fixtures::setup(fixtures::disc(0.03), TestKind::brazilian, model);
+    TestSetup s = fixtures::setup(fixtures::disc(0.03), methods::brazilian, model);
     s.test.plate_stiffness_factor = 0.5;
     s.test.plate_mu = 0.25;
     const RunControl control = fixtures::threads(1);

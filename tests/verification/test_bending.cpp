@@ -25,7 +25,7 @@ struct Elastic {
 };
 
 Elastic elastic(const SpecimenSpec& spec, double span_m, const ModelSpec& model, const ContactMaterial& contact, int seed = 1) {
-    TestSetup s = fixtures::setup(fixtures::make(spec, seed), TestKind::three_point_bend);
+    TestSetup s = fixtures::setup(fixtures::make(spec, seed), methods::three_point_bend);
     s.model = model;
     s.contact = contact;
     s.test.span_m = span_m;
@@ -40,7 +40,7 @@ Elastic elastic(const SpecimenSpec& spec, double span_m, const ModelSpec& model,
 
 // Of the same grains and contacts, in compression.
 double modulus(const ModelSpec& model, const ContactMaterial& contact) {
-    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.06, 0.12)), TestKind::uniaxial_compression);
+    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.06, 0.12)), methods::uniaxial_compression);
     s.model = model;
     s.contact = contact;
     const RunControl control = fixtures::threads(2);

@@ -93,15 +93,15 @@ TEST(Boundaries, PlateContactsHaveTheirStiffnessFrictionAndFirstTouch) {   // (C
 
 TEST(Boundaries, StressRefersToTheInitialSectionOrToTheDiscsOwn) {   // (L2)
     const RunControl control = fixtures::threads(1);
-    const TestSetup disc = fixtures::setup(fixtures::make(fixtures::disc(0.03)), TestKind::brazilian);
+    const TestSetup disc = fixtures::setup(fixtures::make(fixtures::disc(0.03)), methods::brazilian);
     EXPECT_NEAR(Experiment(disc, control).stress(1.0) * std::numbers::pi * 0.03 * 0.08 / 2.0, 1.0, 1e-12);
-    const TestSetup bar = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    const TestSetup bar = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
     EXPECT_NEAR(Experiment(bar, control).stress(1.0) * 0.02 * 0.08, 1.0, 1e-12);
 }
 
 // Largest share of its elastic limit that any bonded point has reached, after the elastic start.
 double share_of_first_damage(double tau_Pa, double sigma_nt_Pa) {
-    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
     s.contact.tau_Pa = tau_Pa;
     s.contact.sigma_nt_Pa = sigma_nt_Pa;
     const RunControl control = fixtures::threads(1);

@@ -36,10 +36,10 @@ GaugeSpec between(const char* name, Vec2 from, Vec2 to, GaugeKind kind) {
     return gauge;
 }
 
-TestSetup pulled(const ModelSpec& model, TestKind kind) {
+TestSetup pulled(const ModelSpec& model, MethodId kind) {
     TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), kind, model);
     s.test = usual_test(kind);
-    if (kind != TestKind::custom) return s;
+    if (kind != methods::custom) return s;
     s.test.custom.name = "pull";
     s.test.custom.fixtures = {end(model, true), end(model, false)};
     GaugeSpec force;
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Models, CustomTests, testing::ValuesIn(models()), [](co
 
 TEST_P(CustomTests, OfTheFixturesOfDirectTensionHaveItsStiffnessAndItsFirstDamage) {
     const RunControl control = fixtures::threads(1);
-    const TestSetup own = pulled(GetParam(), TestKind::custom), method = pulled(GetParam(), TestKind::direct_tension);
+    const TestSetup own = pulled(GetParam(), methods::custom), method = pulled(GetParam(), methods::direct_tension);
     Experiment a(own, control), b(method, control);
     for (Experiment* e : {&a, &b}) {
         choose_step(*e);
@@ -82,10 +82,10 @@ TEST_P(CustomTests, OfTheFixturesOfDirectTensionHaveItsStiffnessAndItsFirstDamag
 
 TEST(TestsOfTheUsersOwn, DefineNoPropertyOfTheRock) {
     TestResult result;
-    result.test.kind = TestKind::custom;
+    result.test.kind = methods::custom;
     for (const TestQuantity& quantity : test_quantities())
         for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage, QuantityGroup::post_peak, QuantityGroup::brazilian,
-                                          QuantityGroup::flattened, QuantityGroup::bending})
+                                          QuantityGroup::flattened, QuantityGroup::of_method})
             if (quantity.group == group) {
                 EXPECT_TRUE(std::isnan(quantity.value(result))) << quantity.name;
             }
@@ -93,13 +93,13 @@ TEST(TestsOfTheUsersOwn, DefineNoPropertyOfTheRock) {
 
 TEST(TestsOfTheUsersOwn, GaugesOutsideAndOnFixturesThatAreNotThereAreRefused) {
     const RunControl control = fixtures::threads(1);
-    TestSetup outside = pulled({}, TestKind::custom);
+    TestSetup outside = pulled({}, methods::custom);
     outside.test.custom.gauges = {between("far", {0.01, 0.005}, {0.01, 0.06}, GaugeKind::displacement)};
     EXPECT_THROW(Experiment(outside, control), InputError);
-    TestSetup unknown = pulled({}, TestKind::custom);
+    TestSetup unknown = pulled({}, methods::custom);
     unknown.test.custom.gauges.front().fixture = "nobody";
     EXPECT_THROW(Experiment(unknown, control), InputError);
-    TestSetup controlled = pulled({}, TestKind::custom);
+    TestSetup controlled = pulled({}, methods::custom);
     controlled.test.control = LoadControl::gauge;
     controlled.test.control_gauge = "CMOD";
     EXPECT_THROW(Experiment(controlled, control), InputError);
@@ -107,7 +107,7 @@ TEST(TestsOfTheUsersOwn, GaugesOutsideAndOnFixturesThatAreNotThereAreRefused) {
 
 TEST(TestsOfTheUsersOwn, PartsOfTheBoundaryMoveWithFlexibleGrainsOnly) {
     const RunControl control = fixtures::threads(1);
-    TestSetup rigid = pulled(fixtures::model(GrainKind::rigid), TestKind::custom);
+    TestSetup rigid = pulled(fixtures::model(GrainKind::rigid), methods::custom);
     rigid.test.custom.fixtures = {end({}, true), end({}, false)};
     EXPECT_THROW(Experiment(rigid, control), InputError);
 }
@@ -115,7 +115,7 @@ TEST(TestsOfTheUsersOwn, PartsOfTheBoundaryMoveWithFlexibleGrainsOnly) {
 TEST(Gauges, ReadNoExtensionFromAMotionOfTheWholeBody) {
     for (const ModelSpec& model : models()) {
         const RunControl control = fixtures::threads(1);
-        const TestSetup s = pulled(model, TestKind::custom);
+        const TestSetup s = pulled(model, methods::custom);
         Experiment e(s, control);
         const Vec2 shift = {3e-6, -2e-6};
         const double turn = 1e-7;   // small: what it adds to lengths is of second order

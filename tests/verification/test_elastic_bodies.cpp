@@ -40,7 +40,7 @@ Vec2 closed_form_mean(double disc_radius, double radius) {
 TEST(ElasticBodies, BrazilianStressAroundTheCentreIsTheClosedForm) {
     const Vec2 expected = closed_form_mean(0.04, 0.008);
     EXPECT_NEAR(expected.x, 0.960, 1e-3);   // the guide's own figures for the closed form
-    const TestSetup s = setup(make(fixtures::disc(0.08)), TestKind::brazilian);
+    const TestSetup s = setup(make(fixtures::disc(0.08)), methods::brazilian);
     const RunControl control = threads(2);
     Experiment e(s, control);
     choose_step(e);
@@ -64,7 +64,7 @@ TEST(ElasticBodies, BrazilianStressAroundTheCentreIsTheClosedForm) {
 
 // Row of the elastic start of a disc of 80 mm between plates.
 HistoryRow start_of_disc(const TestSpec& test, double softer = 1.0, std::uint64_t seed = 1) {
-    TestSetup s = setup(make(fixtures::disc(0.08), seed), TestKind::brazilian);
+    TestSetup s = setup(make(fixtures::disc(0.08), seed), methods::brazilian);
     s.test = test;
     s.grain.E_Pa /= softer;
     s.contact.Kn_Pa_m /= softer;
@@ -75,7 +75,7 @@ HistoryRow start_of_disc(const TestSpec& test, double softer = 1.0, std::uint64_
 
 TestSpec brazilian(PlateShape plates, std::optional<double> plate_Kn_Pa_m) {
     TestSpec test;
-    test.kind = TestKind::brazilian;
+    test.kind = methods::brazilian;
     test.plates = plates;
     test.plate_Kn_Pa_m = plate_Kn_Pa_m;
     return test;
@@ -151,7 +151,7 @@ TEST(ElasticBodies, AFlattenedDiscHasTheTensionOfItsCoefficientInItsCentre) {
         spec.grain_sizes.minimum_m = 0.001;
         spec.grain_sizes.maximum_m = 0.002;
         spec.outline.flat_angle_rad = degrees * std::numbers::pi / 180.0;
-        TestSetup s = setup(make(spec), TestKind::brazilian);
+        TestSetup s = setup(make(spec), methods::brazilian);
         s.test = brazilian(PlateShape::flat, plate_Kn);
         const double k = flat_coefficient(*s.specimen, s.model, s.grain, s.contact, s.test);
         EXPECT_NEAR(tension_in_the_centre(s) / (0.958 * k), 1.0, 0.01) << degrees << " degrees";
@@ -161,7 +161,7 @@ TEST(ElasticBodies, AFlattenedDiscHasTheTensionOfItsCoefficientInItsCentre) {
 TEST(ElasticBodies, AFlattenedDiscIsPressedOverItsFlatsAndItsStressIsTheLoadsTimesK) {
     SpecimenSpec spec = fixtures::disc(0.08);
     spec.outline.flat_angle_rad = 20.0 * std::numbers::pi / 180.0;
-    TestSetup s = setup(make(spec), TestKind::brazilian);
+    TestSetup s = setup(make(spec), methods::brazilian);
     s.numerics.maximum_steps = 10;
     const TestResult r = run_test(s, threads(2));
     const HistoryRow& row = r.history.back();
@@ -176,7 +176,7 @@ TEST(ElasticBodies, AFlattenedDiscIsPressedOverItsFlatsAndItsStressIsTheLoadsTim
 // The stress in the centre under a uniform arc (Hondros 1959): 2P/(pi D t) (sin 2a - a)/sin a. Whole grain edges make the arc that is found
 // uncertain by a grain, 3 % of the stress at these arcs.
 TEST(ElasticBodies, BrazilianStressUnderCurvedJawsIsThatOfTheArcFound) {
-    TestSetup s = setup(make(fixtures::disc(0.08)), TestKind::brazilian);
+    TestSetup s = setup(make(fixtures::disc(0.08)), methods::brazilian);
     s.test = brazilian(PlateShape::curved, 1.6e12);
     const HistoryRow row = start_of_disc(s.test);
     const double a = 0.25 * (row.contact_arc_top_deg + row.contact_arc_bottom_deg) * std::numbers::pi / 180.0;
@@ -189,7 +189,7 @@ struct Elastic {
 };
 
 Elastic elastic_constants(PlaneState plane) {
-    TestSetup s = setup(make(fixtures::rectangle(0.08, 0.16)), TestKind::uniaxial_compression);
+    TestSetup s = setup(make(fixtures::rectangle(0.08, 0.16)), methods::uniaxial_compression);
     s.model.plane = plane;
     s.numerics.maximum_steps = 10;
     const TestResult r = run_test(s, threads(2));
@@ -212,7 +212,7 @@ TEST(ElasticBodies, PlaneStrainGivesTheHigherRatio) {   // nu / (1 - nu) = 0.299
 TEST(ElasticBodies, StiffContactsLeaveTheGrainsOwnConstants) {
     // With contacts in series, 1/E = 1/E_grain + 1/(Kn d): a thousand times stiffer contacts leave E_grain, here on a small
     // specimen whose staircase of contacts shortens nothing.
-    TestSetup s = setup(make(fixtures::rectangle(0.03, 0.06)), TestKind::uniaxial_compression);
+    TestSetup s = setup(make(fixtures::rectangle(0.03, 0.06)), methods::uniaxial_compression);
     s.numerics.maximum_steps = 10;
     s.contact.Kn_Pa_m *= 30.0;
     const TestResult r = run_test(s, threads(1));
@@ -223,7 +223,7 @@ TEST(ElasticBodies, StiffContactsLeaveTheGrainsOwnConstants) {
 
 TEST(ElasticBodies, ConsolidationIsIsotropicBeforeShearing) {
     for (const NumericsKind kind : {NumericsKind::adaptive, NumericsKind::paper}) {
-        TestSetup s = setup(make(fixtures::rectangle(0.02, 0.04)), TestKind::biaxial);
+        TestSetup s = setup(make(fixtures::rectangle(0.02, 0.04)), methods::biaxial);
         s.test.sigma3_Pa = 10e6;
         s.numerics.kind = kind;
         s.numerics.maximum_steps = 50;

@@ -73,7 +73,7 @@ class PlatesOf : public testing::TestWithParam<ModelSpec> {};
 INSTANTIATE_TEST_SUITE_P(Models, PlatesOf, testing::ValuesIn(plate_models()), [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
-    const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, GetParam());
+    const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::uniaxial_compression, GetParam());
     const RunControl control = fixtures::threads(1);
     const Experiment e(s, control);
     EXPECT_EQ(e.assembly.laws[at_plates].mu, 0.0);
@@ -97,7 +97,7 @@ TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
 TEST_P(PlatesOf, OnADiscHaveTheStiffnessOfTheirDiametersAndStartAtFirstTouch) { expect_plates_on_a_disc(GetParam()); }   // (C19)
 
 TEST_P(PlatesOf, FeelTheSumOfTheirContactsForces) {
-    TestSetup s = fixtures::setup(fixtures::disc(0.03), TestKind::brazilian, GetParam());
+    TestSetup s = fixtures::setup(fixtures::disc(0.03), methods::brazilian, GetParam());
     const RunControl control = fixtures::threads(1);
     Experiment e(s, control);
     choose_step(e);
@@ -115,7 +115,7 @@ TEST_P(PlatesOf, FeelTheSumOfTheirContactsForces) {
 }
 
 TestSetup pressed(const ModelSpec& model, NumericsKind numerics) {
-    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::biaxial, model);
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::biaxial, model);
     s.test.sigma3_Pa = 5e6;
     s.test.membrane_plates = 8;   // of 5 mm, each with a grain behind it
     s.numerics.kind = numerics;
@@ -123,7 +123,7 @@ TestSetup pressed(const ModelSpec& model, NumericsKind numerics) {
 }
 
 TEST_P(PlatesOf, MembranesMoveSidewaysOnlyAndCarryThePressureOverTheWholeHeight) {
-    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.08), TestKind::biaxial, GetParam());   // with the usual 16 plates
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.08), methods::biaxial, GetParam());   // with the usual 16 plates
     s.test.sigma3_Pa = 5e6;
     const RunControl control = fixtures::threads(1);
     Experiment e(s, control);
@@ -224,7 +224,7 @@ TEST_P(PlatesOf, SlantedSidesAreRefusedUnderAMembrane) {
     spec.outline.shape = Shape::polygon;
     spec.outline.vertices_m = {{0, 0}, {0.02, 0}, {0.018, 0.04}, {0.002, 0.04}};
     spec.outline.edge_labels = {"bottom", "right", "top", "left"};
-    TestSetup s = fixtures::setup(spec, TestKind::biaxial, GetParam());
+    TestSetup s = fixtures::setup(spec, methods::biaxial, GetParam());
     s.test.sigma3_Pa = 5e6;
     const RunControl control = fixtures::threads(1);
     try {

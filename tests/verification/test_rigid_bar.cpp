@@ -63,7 +63,7 @@ TEST(TwoRigidGrains, TornApartOrShearedOffTheyTakeTheFractureEnergyAndHaveTheStr
     }
 }
 
-TestSetup bar(TestKind kind, ContactKind contact) {
+TestSetup bar(MethodId kind, ContactKind contact) {
     TestSetup s = fixtures::setup(fixtures::two_grain_bar(kSide), kind);
     s.model = fixtures::model(GrainKind::rigid, contact);
     s.contact = fixtures::table1(GrainKind::rigid);
@@ -74,7 +74,7 @@ TestSetup bar(TestKind kind, ContactKind contact) {
 
 TEST(TwoRigidGrains, BetweenPlatesTheyHaveThreeContactsInSeries) {
     for (const ContactKind kind : {ContactKind::lobatto3, ContactKind::point}) {
-        TestSetup s = bar(TestKind::direct_tension, kind);
+        TestSetup s = bar(methods::direct_tension, kind);
         s.test.maximum_strain = 0.006;   // 3.6e-5 m, beyond x_f = 2.7e-5 m
         const TestResult r = run_test(s, fixtures::threads(1));
         const HistoryRow& elastic = r.history[10];
@@ -100,7 +100,7 @@ TEST(TwoRigidGrains, BetweenPlatesTheyHaveThreeContactsInSeries) {
 TEST(TwoRigidGrains, TheStepOfABodyThatAttainsTheBoundKeepsAMargin) {
     // All stiffness of the two grains lies in one direction, where the bound behind the masses is exact.
     for (const NumericsKind kind : {NumericsKind::adaptive, NumericsKind::paper}) {
-        TestSetup s = bar(TestKind::direct_tension, ContactKind::point);
+        TestSetup s = bar(methods::direct_tension, ContactKind::point);
         s.numerics.kind = kind;
         const TestPreview preview = preview_test(s, fixtures::threads(1));
         EXPECT_NEAR(preview.omega2 / preview.omega2_limit, 0.99, 1e-6) << name(kind);
@@ -108,7 +108,7 @@ TEST(TwoRigidGrains, TheStepOfABodyThatAttainsTheBoundKeepsAMargin) {
 }
 
 TEST(TwoRigidGrains, PressedBetweenPlatesTheyHaveThreeContactsInSeriesToo) {
-    TestSetup s = bar(TestKind::uniaxial_compression, ContactKind::lobatto3);
+    TestSetup s = bar(methods::uniaxial_compression, ContactKind::lobatto3);
     s.numerics.kind = NumericsKind::paper;
     s.numerics.speed_m = 3e-10;   // many travel times of a wave over 6 mm
     s.test.maximum_strain = 0.0001;

@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(Models, ElasticSpecimens, testing::ValuesIn([] {
                          [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(ElasticSpecimens, AreInEquilibriumAndTheirGrainsCarryThePlatensStressOnAverage) {
-    const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, GetParam());
+    const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::uniaxial_compression, GetParam());
     const Elastic e = elastic(s);
     EXPECT_NEAR(e.top_over_bottom, 1.0, 2e-3);
     EXPECT_NEAR(e.mean_over_platens, 1.0, 0.01);
@@ -67,7 +67,7 @@ TEST_P(ElasticSpecimens, AreInEquilibriumAndTheirGrainsCarryThePlatensStressOnAv
 TEST(ElasticSpecimensOfPaperSize, RigidGrainsHaveTheConstantsThatWereMeasured) {   // golden: no closed form says them
     double E = 0.0, nu = 0.0;
     for (const std::uint64_t seed : {1, 2, 3}) {
-        const TestSetup s = fixtures::setup(fixtures::rectangle(0.08, 0.16), TestKind::uniaxial_compression, fixtures::model(GrainKind::rigid),
+        const TestSetup s = fixtures::setup(fixtures::rectangle(0.08, 0.16), methods::uniaxial_compression, fixtures::model(GrainKind::rigid),
                                             ContactLaw::bilinear, seed);
         const Elastic e = elastic(s);
         E += e.E_Pa / 3.0;
@@ -79,7 +79,7 @@ TEST(ElasticSpecimensOfPaperSize, RigidGrainsHaveTheConstantsThatWereMeasured) {
 }
 
 TEST(ElasticSpecimensOfHalfThePapersSize, InnerParticlesHaveTheConstantsThatWereMeasured) {   // golden, too
-    const TestSetup s = fixtures::setup(fixtures::rectangle(0.04, 0.08), TestKind::uniaxial_compression, fixtures::model(GrainKind::inner_particles));
+    const TestSetup s = fixtures::setup(fixtures::rectangle(0.04, 0.08), methods::uniaxial_compression, fixtures::model(GrainKind::inner_particles));
     const Elastic e = elastic(s);
     EXPECT_NEAR(e.E_Pa, 26.2e9, 0.03 * 26.2e9);
     EXPECT_NEAR(e.nu, 0.22, 0.02);
@@ -89,7 +89,7 @@ TEST(ElasticSpecimensOfHalfThePapersSize, InnerParticlesHaveTheConstantsThatWere
 // A free bar, struck along its axis: first mode cos(pi y / H), omega = pi / H sqrt(E / rho) with the bar's own E.
 double note_over_closed_form(const ModelSpec& model) {
     constexpr double kHeight = 0.04, kDensity = 2650.0;
-    const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, kHeight), TestKind::uniaxial_compression, model);
+    const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, kHeight), methods::uniaxial_compression, model);
     const double E = elastic(s).E_Pa;
     Assembly assembly = assemble(*s.specimen, s.model, s.grain, s.contact);
     set_real_masses(assembly, kDensity);

@@ -6,11 +6,11 @@
 namespace feldspar {
 namespace {
 
-TestResult followed(LoadControl control, TestKind kind = TestKind::uniaxial_compression, double stop_fraction = 0.4) {
+TestResult followed(LoadControl control, MethodId kind = methods::uniaxial_compression, double stop_fraction = 0.4) {
     TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.024, 0.048)), kind);
     setup.test.control = control;
     setup.test.stop_fraction = stop_fraction;
-    if (kind == TestKind::biaxial) setup.test.sigma3_Pa = 2e6;
+    if (kind == methods::biaxial) setup.test.sigma3_Pa = 2e6;
     setup.numerics.accuracy = 0.02;
     return run_test(setup, {});
 }
@@ -53,7 +53,7 @@ TEST_P(ServoBranch, IsFollowedDownByPlatensThatGoBack) {
 }
 
 TEST(ServoBranch, UnderPressureItIsFollowedToo) {
-    const TestResult result = followed(LoadControl::dissipation, TestKind::biaxial, 0.8);
+    const TestResult result = followed(LoadControl::dissipation, methods::biaxial, 0.8);
     EXPECT_TRUE(result.properties.peak_reached);
     expect_books_in_order(result);
 }

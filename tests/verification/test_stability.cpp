@@ -78,9 +78,9 @@ INSTANTIATE_TEST_SUITE_P(Models, StabilityOfRigidModels, testing::ValuesIn(fixtu
                          [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(StabilityOfRigidModels, TheBoundHoldsAndIsTightWithPlatesAndMembranesToo) {
-    for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian}) {
-        TestSetup s = fixtures::setup(kind == TestKind::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04), kind, GetParam());
-        s.test.sigma3_Pa = kind == TestKind::biaxial ? 5e6 : 0.0;
+    for (const MethodId kind : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension, methods::biaxial, methods::brazilian}) {
+        TestSetup s = fixtures::setup(kind == methods::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04), kind, GetParam());
+        s.test.sigma3_Pa = kind == methods::biaxial ? 5e6 : 0.0;
         s.test.membrane_plates = 8;
         const RunControl control = fixtures::threads(1);
         Experiment e(s, control);
@@ -94,7 +94,7 @@ TEST_P(StabilityOfRigidModels, TheBoundHoldsAndIsTightWithPlatesAndMembranesToo)
 }
 
 TEST_P(StabilityOfRigidModels, MotionGrowsJustAboveTheLimitAndNotBelow) {
-    TestSetup s = fixtures::setup(fixtures::rectangle(0.014, 0.028), TestKind::direct_tension, GetParam());   // glued plates are linear
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.014, 0.028), methods::direct_tension, GetParam());   // glued plates are linear
     const RunControl control = fixtures::threads(1);
     Experiment e(s, control);
     set_scaled_masses(e.assembly, MassBound::tensor, 1.0);
@@ -108,7 +108,7 @@ TEST_P(StabilityOfRigidModels, MotionGrowsJustAboveTheLimitAndNotBelow) {
 }
 
 TEST(Stability, ThePrintedMassWithLocalDampingIsRefusedBeforeItRuns) {
-    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
     s.numerics.kind = NumericsKind::paper;
     s.numerics.mass_factor = 1.0;
     try {
@@ -123,7 +123,7 @@ TEST(Stability, ThePrintedMassWithLocalDampingIsRefusedBeforeItRuns) {
 }
 
 TEST(Stability, ATimeStepAboveTheLimitIsRefused) {
-    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
     s.numerics.kind = NumericsKind::dynamic;
     s.numerics.speed_m = 0.1;
     const double stable = preview_test(s, fixtures::threads(1)).stable_time_step_s;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSide = 0.003;
 
-TestSetup bar(TestKind kind) {
+TestSetup bar(MethodId kind) {
     TestSetup s = fixtures::setup(fixtures::two_grain_bar(kSide), kind);
     s.grain.nu = 0.0;   // the ends slide freely, so the bar is in uniaxial stress for any nu; 0 makes it homogeneous too
     s.test.stop_fraction = -1.0;   // to the end of the envelope and beyond
@@ -21,7 +21,7 @@ TestSetup bar(TestKind kind) {
 }
 
 TEST(TwoGrains, PulledApartTheyShowStiffnessStrengthAndFractureEnergy) {
-    const TestSetup s = bar(TestKind::direct_tension);
+    const TestSetup s = bar(methods::direct_tension);
     const TestResult r = run_test(s, fixtures::threads(1));
     const HistoryRow& elastic = r.history[10];
     ASSERT_EQ(elastic.phase, Phase::elastic);
@@ -38,7 +38,7 @@ TEST(TwoGrains, PulledApartTheyShowStiffnessStrengthAndFractureEnergy) {
 }
 
 TEST(TwoGrains, EndAtTheStressThatIsEnough) {
-    TestSetup s = bar(TestKind::direct_tension);
+    TestSetup s = bar(methods::direct_tension);
     s.test.maximum_stress_Pa = 6e6;   // the strength is 8.5 MPa
     const TestResult r = run_test(s, fixtures::threads(1));
     EXPECT_FALSE(r.properties.peak_reached) << r.stop_reason;
@@ -49,7 +49,7 @@ TEST(TwoGrains, EndAtTheStressThatIsEnough) {
 }
 
 TEST(TwoGrains, BrittleContactBreaksAtItsStrengthAllAtOnce) {
-    TestSetup s = bar(TestKind::direct_tension);
+    TestSetup s = bar(methods::direct_tension);
     s.contact.law = ContactLaw::brittle;
     const TestResult r = run_test(s, fixtures::threads(1));
     EXPECT_NEAR(r.properties.peak_stress_Pa, 8.5e6, 5e-3 * 8.5e6);
@@ -58,7 +58,7 @@ TEST(TwoGrains, BrittleContactBreaksAtItsStrengthAllAtOnce) {
 }
 
 TEST(TwoGrains, OnePointCarriesTheSameForceAsThree) {
-    TestSetup s = bar(TestKind::direct_tension);
+    TestSetup s = bar(methods::direct_tension);
     s.model.contact = ContactKind::point;
     const TestResult r = run_test(s, fixtures::threads(1));
     EXPECT_NEAR(r.properties.peak_stress_Pa, 8.5e6, 5e-3 * 8.5e6);
@@ -67,7 +67,7 @@ TEST(TwoGrains, OnePointCarriesTheSameForceAsThree) {
 }
 
 TEST(TwoGrains, CompressionStaysElasticFarBeyondTheTensileStrength) {
-    TestSetup s = bar(TestKind::uniaxial_compression);
+    TestSetup s = bar(methods::uniaxial_compression);
     s.test.maximum_strain = 0.001;
     EXPECT_THROW(run_test(s, fixtures::threads(1)), std::runtime_error);   // nothing ever comes closer to failure: said, not looped
     s.numerics.kind = NumericsKind::paper;

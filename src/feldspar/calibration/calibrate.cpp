@@ -45,7 +45,7 @@ struct LeastRuns {
 };
 
 LeastRuns least_runs(const Calibration& calibration) {
-    std::set<std::pair<TestKind, double>> tests;
+    std::set<std::pair<MethodId, double>> tests;
     for (const Observable& q : observables_for(calibration)) tests.insert({q.test, q.sigma3_Pa});
     const auto elastic = static_cast<std::size_t>(std::count_if(calibration.unknowns.begin(), calibration.unknowns.end(), [](const Unknown& u) { return u.elastic; }));
     LeastRuns least;
@@ -265,7 +265,7 @@ private:
     }
 
     int run_count(const std::vector<std::size_t>& wanted) const {
-        std::set<std::pair<TestKind, double>> tests;
+        std::set<std::pair<MethodId, double>> tests;
         for (const std::size_t q : wanted) tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa});
         return static_cast<int>(tests.size());
     }
@@ -274,7 +274,7 @@ private:
     std::vector<std::size_t> worth_seeing(const Learner& learner, const std::vector<double>& x) const {
         const std::vector<double> doubts = learner.doubts(x);
         const double largest = *std::max_element(doubts.begin(), doubts.end());
-        std::set<std::pair<TestKind, double>> tests;
+        std::set<std::pair<MethodId, double>> tests;
         for (std::size_t q = 0; q < quantities_.size(); ++q)
             if (doubts[q] >= std::min(test_share, largest)) tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa});
         std::vector<std::size_t> wanted;
@@ -291,10 +291,10 @@ private:
 
     // ---- both
 
-    std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) {
+    std::vector<std::vector<RunReading>> see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) {
         auto readings = laboratory_.see(requests, learner.quantities());
         for (std::size_t r = 0; r < requests.size(); ++r) {
-            std::set<std::pair<TestKind, double>> tests;
+            std::set<std::pair<MethodId, double>> tests;
             for (std::size_t i = 0; i < requests[r].quantities.size(); ++i) {
                 const Observable& quantity = learner.quantities()[requests[r].quantities[i]];
                 learner.observe(requests[r].quantities[i], points[r], requests[r].seed, readings[r][i]);
@@ -450,13 +450,13 @@ private:
     }
 
     // Of the tests that the target needs, each once.
-    TestGrades grades_of(const Target& target, const std::vector<std::vector<Reading>>& by_packing) const {
+    TestGrades grades_of(const Target& target, const std::vector<std::vector<RunReading>>& by_packing) const {
         TestGrades grades;
         for (const auto& readings : by_packing) {
-            std::set<std::pair<TestKind, double>> tests;
+            std::set<std::pair<MethodId, double>> tests;
             for (std::size_t q = 0; q < quantities_.size(); ++q) {
                 if (!needs(target, quantities_, q) || !tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa}).second) continue;
-                const Reading& reading = readings[q];
+                const RunReading& reading = readings[q];
                 const bool failed = reading.grade == 'x' || (reading.grade == '-' && !std::isfinite(reading.value));
                 if (failed) ++grades.failed;
                 else if (reading.grade == 'C') ++grades.C;

@@ -102,7 +102,7 @@ public:
     virtual ~Laboratory() = default;
 
     /// Of each request its quantities, in their order. @throws Interrupted
-    virtual std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) = 0;
+    virtual std::vector<std::vector<RunReading>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) = 0;
 
     /// Tests made so far, those that were in the ledger before too.
     virtual int used() const = 0;
@@ -111,13 +111,13 @@ public:
 /// What a run says of a quantity. A run that is not quasi-static (grade C) shows too much strength if it went too fast through a law that softens: it
 /// is an upper bound then, and says nothing else. The estimated error of runs of grades A and B becomes part of their noise.
 /// @param elastic  a short test for E and nu before damage, which has no strength and needs no grade; @param brittle  the law of the contacts
-Reading reading_of(const RunRecord& record, const Observable& quantity, bool elastic, bool brittle);
+RunReading reading_of(const RunRecord& record, const Observable& quantity, bool elastic, bool brittle);
 
 /// Makes the tests by runs on a ledger: those that are done are not repeated.
 class RunLaboratory : public Laboratory {
 public:
     RunLaboratory(const Calibration& calibration, Ledger& ledger, ExecuteControl control) : calibration_(calibration), ledger_(ledger), control_(std::move(control)) {}
-    std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) override;
+    std::vector<std::vector<RunReading>> see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) override;
     int used() const override { return static_cast<int>(numbers_.size()) - left_; }
 
     /// Of a run that was asked for: the how many-th of the calibration it is, from 1 on, those in the ledger before it counted too.

@@ -18,7 +18,7 @@ inline constexpr const char* strength_column = "strength_Pa";   ///< of the ledg
 /// What is read off one run.
 struct Observable {
     std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "sigma1 at 10 MPa", ...
-    TestKind test = TestKind::uniaxial_compression;
+    MethodId test;
     double sigma3_Pa = 0.0;  ///< of biaxial tests
     std::string column;      ///< of the ledger
     bool logarithmic = true; ///< learned as its logarithm; else as it is

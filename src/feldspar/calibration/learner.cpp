@@ -35,7 +35,7 @@ bool as_seen(Observation& bound, double sign, const Belief& rest, double scatter
 
 }  // namespace
 
-void Learner::observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, const Reading& reading) {
+void Learner::observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, const RunReading& reading) {
     const bool logarithmic = quantities_[quantity].logarithmic;
     const double value = reading.value;
     if (!std::isfinite(value) || (logarithmic && value <= 0.0)) return;

@@ -18,7 +18,7 @@ enum class Says {
 };
 
 /// What a test says of a quantity.
-struct Reading {
+struct RunReading {
     double value = std::numeric_limits<double>::quiet_NaN();   ///< not-a-number where the test says nothing
     Says says = Says::value;
     double error = 0.0;    ///< standard deviation of what the test's own error adds, relative to the value
@@ -55,7 +55,7 @@ public:
     const std::vector<Target>& targets() const { return targets_; }
 
     /// A quantity seen on one packing. What is not a positive number of a logarithmic quantity teaches nothing, nor a nu that no solid has.
-    void observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, const Reading& reading);
+    void observe(std::size_t quantity, const std::vector<double>& x, std::uint64_t seed, const RunReading& reading);
 
     /// Multiplies (or, of a quantity that is not logarithmic, adds to) all that was seen of a quantity: when what it follows from besides x has changed.
     void correct(std::size_t quantity, double by);

@@ -8,6 +8,7 @@
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/lab/rock_properties.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/study/reader_on_job.hpp"
 
 namespace feldspar {
@@ -132,7 +133,7 @@ private:
         if (!root_.sound({"job", "set", "targets"})) return;
         std::vector<double>& sigma3 = result_.sigma3_Pa;
         for (const TestSpec& test : rock_.tests)
-            if (test.kind == TestKind::biaxial) sigma3.push_back(test.sigma3_Pa);
+            if (method_of(test).specimen.confined) sigma3.push_back(test.sigma3_Pa);
         for (const Target& target : result_.targets) {
             const bool envelope = target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
             table.check({}, [&] {

@@ -8,6 +8,7 @@
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/laws/softening.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -41,8 +42,8 @@ double number_in(const RunRecord& record, const std::string& column) {
 
 }  // namespace
 
-Reading reading_of(const RunRecord& record, const Observable& quantity, bool elastic, bool brittle) {
-    Reading reading;
+RunReading reading_of(const RunRecord& record, const Observable& quantity, bool elastic, bool brittle) {
+    RunReading reading;
     reading.grade = 'x';
     if (record.state != RunState::done) return reading;
     const double value = number_in(record, column_of(quantity, elastic));
@@ -73,7 +74,7 @@ Reading reading_of(const RunRecord& record, const Observable& quantity, bool ela
 Run RunLaboratory::run_for(const Request& request, const Observable& quantity) const {
     const Job job = calibration_.job_with(request.values);
     for (const TestSpec& test : job.tests) {
-        if (test.kind != quantity.test || (test.kind == TestKind::biaxial && test.sigma3_Pa != quantity.sigma3_Pa)) continue;
+        if (test.kind != quantity.test || (method_of(test).specimen.confined && test.sigma3_Pa != quantity.sigma3_Pa)) continue;
         TestSpec wanted = test;
         if (!request.whole) end_when_known(wanted);
         if (request.elastic) wanted.maximum_strain = elastic_strain(calibration_);
@@ -89,11 +90,11 @@ void RunLaboratory::end_when_known(TestSpec& test) const {
     if (std::isfinite(wanted)) test.maximum_stress_Pa = std::min(wanted, test.maximum_stress_Pa.value_or(wanted));
 }
 
-std::vector<std::vector<Reading>> RunLaboratory::see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) {
+std::vector<std::vector<RunReading>> RunLaboratory::see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) {
     std::vector<Run> runs;
     std::vector<std::vector<std::size_t>> run_of;   // of each request's quantities
     for (const Request& request : requests) {
-        std::map<std::pair<TestKind, double>, std::size_t> of_test;
+        std::map<std::pair<MethodId, double>, std::size_t> of_test;
         std::vector<std::size_t>& own = run_of.emplace_back();
         for (const std::size_t q : request.quantities) {
             const auto [found, fresh] = of_test.try_emplace({quantities[q].test, quantities[q].sigma3_Pa}, runs.size());
@@ -104,9 +105,9 @@ std::vector<std::vector<Reading>> RunLaboratory::see(const std::vector<Request>&
     for (const Run& run : runs) numbers_.try_emplace(run.id, static_cast<int>(numbers_.size()) + 1);
     left_ = execute(runs, ledger_, control_).left;
     if (left_ > 0) throw Interrupted();
-    std::vector<std::vector<Reading>> readings;
+    std::vector<std::vector<RunReading>> readings;
     for (std::size_t r = 0; r < requests.size(); ++r) {
-        std::vector<Reading>& own = readings.emplace_back();
+        std::vector<RunReading>& own = readings.emplace_back();
         for (std::size_t i = 0; i < requests[r].quantities.size(); ++i) {
             const auto record = ledger_.find(runs[run_of[r][i]].id);
             const Run& run = runs[run_of[r][i]];

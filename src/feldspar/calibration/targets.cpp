@@ -8,6 +8,7 @@
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
@@ -38,7 +39,7 @@ double mean_of(const std::string& name, const std::vector<Observable>& quantitie
 EnvelopeFit envelope(const std::vector<Observable>& quantities, const std::vector<double>& means) {
     std::vector<double> sigma3, sigma1;
     for (std::size_t q = 0; q < quantities.size(); ++q) {
-        const bool confined = quantities[q].test == TestKind::biaxial;
+        const bool confined = method_of(quantities[q].test).specimen.confined;
         if (!confined && quantities[q].name != "UCS") continue;
         sigma3.push_back(quantities[q].sigma3_Pa);
         sigma1.push_back(means[q]);
@@ -56,7 +57,7 @@ std::vector<Observable> observables_for(const std::vector<Target>& targets, cons
         if (std::none_of(all.begin(), all.end(), [&](const Observable& q) { return q.name == quantity.name; })) all.push_back(quantity);
     };
     const Observable ucs = observable("UCS", "UCS_Pa"), dts = observable("DTS", "DTS_Pa"), bts = observable("BTS", "BTS_Pa");
-    const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), TestKind::biaxial, sigma3_Pa, strength_column}); };
+    const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), method_of_confined_strength(), sigma3_Pa, strength_column}); };
     for (const Target& target : targets) {
         if (target.name == "E" || target.name == "nu" || target.name == "sigma_ci") add(observable(target.name, property_of(target)));
         if (target.name == "UCS" || target.name.starts_with("UCS_over") || of_envelope(target)) add(ucs);
@@ -88,7 +89,7 @@ double value_of(const Target& target, const std::vector<Observable>& quantities,
 bool needs(const Target& target, const std::vector<Observable>& quantities, std::size_t quantity) {
     std::vector<double> sigma3_Pa;
     for (const Observable& q : quantities)
-        if (q.test == TestKind::biaxial) sigma3_Pa.push_back(q.sigma3_Pa);
+        if (method_of(q.test).specimen.confined) sigma3_Pa.push_back(q.sigma3_Pa);
     const std::vector<Observable> own = observables_for({target}, sigma3_Pa);
     return std::any_of(own.begin(), own.end(), [&](const Observable& q) { return q.name == quantities[quantity].name; });
 }
@@ -105,8 +106,8 @@ double wanted_UCS_Pa(const std::vector<Target>& targets) {
 
 double wanted_strength_Pa(const TestSpec& test, const std::vector<Target>& targets) {
     const double UCS = wanted_UCS_Pa(targets);
-    if (test.kind == TestKind::uniaxial_compression) return UCS;
-    if (test.kind != TestKind::biaxial) return nan;
+    if (!method_of(test).loading.on_envelope) return nan;
+    if (!is_confined(test)) return UCS;
     for (const Target& target : targets)
         if (target.name == "sigma1" && target.sigma3_Pa == test.sigma3_Pa) return target.value;
     return UCS + mohr_coulomb_slope(target_value("friction_angle", targets)) * test.sigma3_Pa;

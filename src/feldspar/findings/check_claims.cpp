@@ -8,17 +8,16 @@
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/findings/claims.hpp"
 #include "feldspar/lab/rock_properties.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
 namespace {
 
-using enum TestKind;
-
 /// Names of PropertySummary and the tests that they are read from.
-const std::map<std::string, std::set<TestKind>, std::less<>>& summary_properties() {
-    static const std::map<std::string, std::set<TestKind>, std::less<>> known = [] {
-        std::map<std::string, std::set<TestKind>, std::less<>> map;
+const std::map<std::string, std::set<MethodId>, std::less<>>& summary_properties() {
+    static const std::map<std::string, std::set<MethodId>, std::less<>> known = [] {
+        std::map<std::string, std::set<MethodId>, std::less<>> map;
         for (const RockProperty& property : rock_properties()) {
             using enum RockProperty::Source;
             if (property.source == test || property.source == ratio || property.source == envelope) map[property.kept_name()] = property.tests;
@@ -59,14 +58,14 @@ private:
     void check_quantity(const std::string& key, const Quantity& quantity) const {
         for (const std::string& property : {quantity.property, quantity.divisor}) {
             if (property.empty()) continue;
-            const std::set<TestKind> kinds = tests_behind(property);
+            const std::set<MethodId> kinds = tests_behind(property);
             if (kinds.empty()) {
                 std::vector<std::string_view> names;
                 for (const auto& [known, tests] : summary_properties()) names.push_back(known);
                 fail(list_, statement_, key, "'" + property + "' is not a property", listed(names) + ", or a number of the ledger as 'ms_per_step of brazilian'",
                      did_you_mean(property, names));
             }
-            for (const TestKind kind : kinds)
+            for (const MethodId kind : kinds)
                 if (std::none_of(study_.runs.begin(), study_.runs.end(), [&](const Run& run) { return run.test().kind == kind; }))
                     fail(list_, statement_, key, fmt::format("'{}' needs a test that the study '{}' does not run: {}", property, statement_.study, name(kind)),
                          "a property of the study's tests");
@@ -147,16 +146,16 @@ private:
 
 }  // namespace
 
-std::set<TestKind> tests_behind(const std::string& property) {
+std::set<MethodId> tests_behind(const std::string& property) {
     const auto& known = summary_properties();
     if (const auto found = known.find(property); found != known.end()) return found->second;
-    if (pressure_of_confined_strength_MPa(property)) return {biaxial};
+    if (pressure_of_confined_strength_MPa(property)) return {method_of_confined_strength()};
     const auto of = property.find(" of ");
     if (of == std::string::npos) return {};
     const std::vector<std::string>& columns = number_columns();
     if (std::find(columns.begin(), columns.end(), property.substr(0, of)) == columns.end()) return {};
-    for (const TestKind kind : {uniaxial_compression, direct_tension, brazilian})
-        if (property.substr(of + 4) == name(kind)) return {kind};
+    // a column of a test that is run once on a packing: under confinement there is one for each pressure
+    if (const auto method = find_method(property.substr(of + 4)); method && !method_of(*method).specimen.confined) return {*method};
     return {};
 }
 

@@ -105,7 +105,7 @@ struct StudyResults {
 using StudiesByName = std::map<std::string, StudyResults>;
 
 /// Which kinds of test a property is read from; empty for a name that is no property.
-std::set<TestKind> tests_behind(const std::string& property);
+std::set<MethodId> tests_behind(const std::string& property);
 
 /// What the job's [laboratory] says of a property, SI (degrees for angles); not-a-number if nothing.
 double laboratory_value(const Job& job, const Quantity& quantity);

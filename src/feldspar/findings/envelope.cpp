@@ -21,12 +21,12 @@ namespace {
 
 constexpr int usual_packings = 5;
 
-bool has(const Job& job, TestKind kind) {
+bool has(const Job& job, MethodId kind) {
     return std::any_of(job.tests.begin(), job.tests.end(), [kind](const TestSpec& test) { return test.kind == kind; });
 }
 
 /// The job's first test of a kind, else one with default settings.
-TestSpec pattern_of(const Job& job, TestKind kind) {
+TestSpec pattern_of(const Job& job, MethodId kind) {
     const auto found = std::find_if(job.tests.begin(), job.tests.end(), [kind](const TestSpec& test) { return test.kind == kind; });
     if (found != job.tests.end()) return *found;
     const MethodSpecimen& method = method_of(kind).specimen;
@@ -89,22 +89,23 @@ EnvelopePlan plan_envelope(const Job& job, const EnvelopeOptions& options) {
     Job whole = job;
     whole.seeds = choose_seeds(job, options.seeds, usual_packings);
     for (Variant& variant : whole.variants) variant.seeds.clear();
-    whole.tests = {pattern_of(job, TestKind::uniaxial_compression)};
+    const MethodId compression = method_of_strength("UCS"), confined = method_of_confined_strength(), tension = method_of_strength("DTS"), splitting = method_of_strength("BTS");
+    whole.tests = {pattern_of(job, compression)};
     for (const double sigma3_Pa : stresses_of(job, options, plan.remarks)) {
-        whole.tests.push_back(pattern_of(job, TestKind::biaxial));
+        whole.tests.push_back(pattern_of(job, confined));
         whole.tests.back().sigma3_Pa = sigma3_Pa;
     }
-    whole.tests.push_back(pattern_of(job, TestKind::direct_tension));
-    if (has(job, TestKind::brazilian)) {
-        whole.tests.push_back(pattern_of(job, TestKind::brazilian));
+    whole.tests.push_back(pattern_of(job, tension));
+    if (has(job, splitting)) {
+        whole.tests.push_back(pattern_of(job, splitting));
     } else if (const auto disc = usual_disc(job.specimen)) {
         whole.brazilian_specimen = *disc;
-        whole.tests.push_back(pattern_of(job, TestKind::brazilian));
+        whole.tests.push_back(pattern_of(job, splitting));
     } else {
         plan.remarks.emplace_back("No Brazilian test: the specimen is a polygon, which does not say how large the disc is to be.");
     }
     for (TestSpec& test : whole.tests) test.seeds.clear();
-    for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::brazilian})
+    for (const MethodId kind : {compression, tension, splitting})
         if (!has(job, kind) && has(whole, kind)) plan.remarks.push_back(fmt::format("The job has no {} test: one with default settings was added.", name(kind)));
     plan.study = study_of(whole, job.name + "-envelope", options.results.value_or(std::filesystem::path("results") / (job.name + "-envelope")));
     plan.study.title = "Strength envelope of " + job.name;

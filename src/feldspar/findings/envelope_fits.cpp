@@ -12,6 +12,7 @@
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/counted.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
@@ -23,7 +24,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using BySeed = std::map<std::uint64_t, double>;
 
 /// Strengths of the tests of a kind whose peak was reached. A packing tested twice in the same way counts once.
-BySeed strengths_of(std::span<const TestResult> results, TestKind kind) {
+BySeed strengths_of(std::span<const TestResult> results, MethodId kind) {
     BySeed found;
     for (const TestResult& r : results)
         if (r.test.kind == kind && r.properties.peak_reached && std::isfinite(r.properties.peak_stress_Pa)) found.emplace(r.seed, r.properties.peak_stress_Pa);
@@ -33,10 +34,8 @@ BySeed strengths_of(std::span<const TestResult> results, TestKind kind) {
 std::vector<StrengthPoint> compression_points(std::span<const TestResult> results) {
     std::map<std::pair<std::uint64_t, double>, double> found;
     for (const TestResult& r : results) {
-        const bool uniaxial = r.test.kind == TestKind::uniaxial_compression;
-        if (!uniaxial && r.test.kind != TestKind::biaxial) continue;
-        if (!r.properties.peak_reached || !std::isfinite(r.properties.peak_stress_Pa)) continue;
-        found.emplace(std::pair(r.seed, uniaxial ? 0.0 : r.test.sigma3_Pa), r.properties.peak_stress_Pa);
+        if (!method_of(r.test).loading.on_envelope || !r.properties.peak_reached || !std::isfinite(r.properties.peak_stress_Pa)) continue;
+        found.emplace(std::pair(r.seed, r.test.sigma3_Pa), r.properties.peak_stress_Pa);
     }
     std::vector<StrengthPoint> points;
     for (const auto& [place, sigma1] : found) points.push_back({place.first, place.second, sigma1});
@@ -210,8 +209,8 @@ EnvelopeFits fit_series(std::span<const TestResult> results, bool with_tension) 
     fits.with_tension = with_tension;
     fits.points = compression_points(results);
     fits.strengths = by_stress(fits.points);
-    const BySeed UCS = strengths_of(results, TestKind::uniaxial_compression), DTS = strengths_of(results, TestKind::direct_tension),
-                 BTS = strengths_of(results, TestKind::brazilian);
+    const BySeed UCS = strengths_of(results, method_of_strength("UCS")), DTS = strengths_of(results, method_of_strength("DTS")),
+                 BTS = strengths_of(results, method_of_strength("BTS"));
     fits.UCS_measured = mean_interval(values_of(UCS));
     if (!DTS.empty()) fits.tension.push_back({"DTS_Pa", mean_interval(values_of(DTS))});
     if (!BTS.empty()) fits.tension.push_back({"BTS_Pa", mean_interval(values_of(BTS))});

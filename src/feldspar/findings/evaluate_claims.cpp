@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "feldspar/findings/claims.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -189,7 +190,7 @@ private:
     double number(const Labels& labels, const std::string& axis) const { return results_.study.points[points_.at(labels)].values[axis_number(axis)].number; }
 
     void count_runs(std::size_t point, int& runs, int& missing, int& failed) const {
-        std::set<TestKind> kinds;
+        std::set<MethodId> kinds;
         for (const Quantity& quantity : {statement_.first.quantity, statement_.second.quantity})
             for (const std::string& name : {quantity.property, quantity.divisor})
                 if (!name.empty()) kinds.merge(tests_behind(name));
@@ -431,7 +432,8 @@ Verdict together(std::span<const Verdict> verdicts) {
 
 void add_run_numbers(PointResults& point, std::span<const RunRecord> records) {
     for (const RunRecord& record : records) {
-        if (record.state != RunState::done || record.test == name(TestKind::biaxial)) continue;
+        const auto method = find_method(record.test);
+        if (record.state != RunState::done || (method && method_of(*method).specimen.confined)) continue;
         for (const auto& [column, value] : record.numbers) {
             if (!std::isfinite(value)) continue;
             PropertyStatistics& statistics = point.properties.values[column + " of " + record.test];

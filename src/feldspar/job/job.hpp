@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "feldspar/model/spec.hpp"
+#include "feldspar/methods/test_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -22,9 +22,9 @@ struct Variant {
     ContactMaterial contact;
     NumericsSpec numerics;
     std::vector<std::uint64_t> seeds;  ///< of the job's; empty = all
-    std::vector<TestKind> tests;       ///< of the job's; empty = all
+    std::vector<MethodId> tests;       ///< of the job's; empty = all
 
-    bool runs(TestKind kind) const { return tests.empty() || std::find(tests.begin(), tests.end(), kind) != tests.end(); }
+    bool runs(MethodId kind) const { return tests.empty() || std::find(tests.begin(), tests.end(), kind) != tests.end(); }
     bool runs(const TestSpec& test, std::uint64_t seed) const {
         return runs(test.kind) && (seeds.empty() || std::find(seeds.begin(), seeds.end(), seed) != seeds.end());
     }

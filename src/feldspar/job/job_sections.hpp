@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "feldspar/model/spec.hpp"
+#include "feldspar/methods/test_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/job/job.hpp"
 #include "feldspar/job/job_table.hpp"
@@ -79,7 +79,7 @@ std::map<std::string, double> read_laboratory(const JobTable& root);
 std::vector<ConfinedStrength> read_laboratory_confined(const JobTable& root);
 
 /// `tests` of a table: kinds of test, each once; none if the key is not there.
-std::vector<TestKind> read_kinds(const TableReader& table);
+std::vector<MethodId> read_kinds(const TableReader& table);
 
 /// A list of seeds: whole numbers, each once.
 std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_view key);

@@ -35,9 +35,9 @@ public:
     long long integer(std::string_view key) const;
     bool flag(std::string_view key) const;
     /// One of the row's words, which are the names of `values`.
-    template <class Value, std::size_t count>
-    Value choice(std::string_view key, const std::array<Value, count>& values) const {
-        return TableReader::choice<Value>(key, values, usual(key, values));
+    template <std::ranges::range Values>
+    std::ranges::range_value_t<Values> choice(std::string_view key, const Values& values) const {
+        return TableReader::choice(key, values, usual(key, values));
     }
 
     /// x and y of a point.
@@ -72,9 +72,9 @@ public:
 private:
     const JobKey& row(std::string_view key) const { return rows_->key(key); }
     double element_of(const toml::node& node, std::string_view key, const KeyElement& element) const;
-    template <class Value, std::size_t count>
-    std::optional<Value> usual(std::string_view key, const std::array<Value, count>& values) const {
-        for (const Value value : values)
+    template <std::ranges::range Values>
+    std::optional<std::ranges::range_value_t<Values>> usual(std::string_view key, const Values& values) const {
+        for (const auto value : values)
             if (row(key).usual.toml == "\"" + std::string(name(value)) + "\"") return value;
         return std::nullopt;
     }

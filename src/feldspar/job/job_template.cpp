@@ -9,11 +9,13 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/keys.hpp"
 #include "feldspar/job/toml_reader.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
 
-constexpr std::array<std::string_view, 7> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "three-point-bend", "custom", "laboratory"};
+constexpr std::string_view whole_laboratory = "laboratory";   // what the tests of one rock are called together
+constexpr std::size_t comment_column = 36;
 
 // A line "#= key" shows a key that may be left out, with the default and the sentence of its row (keys.hpp).
 constexpr const char* common_head = R"(#
@@ -100,115 +102,26 @@ friction_angle = "53.0 deg"
 # hoek_brown_mi = 25                # Hoek-Brown
 )";
 
-std::string uniaxial_test() {
-    return std::string(R"(
-[[test]]
-kind = "uniaxial-compression"       # gives E, nu, UCS, crack initiation and crack damage stress
-)") + compression_control + common_test;
+// The [[test]] of a method.
+std::string test_of(const TestMethod& method) {
+    std::string kind = fmt::format("kind = \"{}\"", method.name);
+    kind.resize(std::max(kind.size() + 1, comment_column), ' ');
+    const char* control = method.build.gauges != nullptr ? "" : method.loading.widens ? compression_control : other_control;   // else among its own keys
+    return "\n[[test]]\n" + kind + "# " + method.job.gives + "\n" + method.job.keys + control + common_test + method.job.tables;
 }
 
-std::string tension_test() {
-    return std::string(R"(
-[[test]]
-kind = "direct-tension"             # gives the direct tensile strength DTS
-)") + other_control + common_test;
-}
-
-std::string biaxial_test() {
-    return std::string(R"(
-[[test]]
-kind = "biaxial"                    # isotropic consolidation, then axial loading at constant sigma3
-sigma3 = ["4 MPa", "10 MPa"]        # one test for each; with a uniaxial test they give cohesion, friction angle and mi
-)") + compression_control + common_test;
-}
-
-std::string brazilian_test() {
-    return std::string(R"(
-[[test]]
-kind = "brazilian"                  # a disc pressed between two jaws: gives the indirect tensile strength BTS
-# diameter = "80 mm"                # of the disc; the specimen's width unless given
-# plates = "curved"                 # jaws of 1.5 times the disc's radius (jaw_radius), as ISRM suggests; or "flat"
-# plate_Kn = "1600 GPa/m"           # of what lies between jaw and disc: a layer of masking tape. Flat plates are as hard as the contacts unless it is given
-# disc = "whole"                    # or "flattened": two flats, each of flat_angle = "20 deg" seen from the centre (10 to 40 deg), between flat plates
-# plate_mu = 0.4                    # friction between plates and disc
-)") + other_control + common_test;
-}
-
-std::string bending_test() {
-    return std::string(R"(
-[[test]]
-kind = "three-point-bend"           # a beam that lies along x: flexural strength and modulus; with a notch K_Ic and work of fracture
-# span = "200 mm"                   # distance of the two supports; 4 times the height unless given, at most 0.9 of the length
-# roller_radius = "5 mm"            # of the three rollers; a tenth of the height unless given
-# control = "dissipation"           # behind the peak; also "displacement", or a gauge: "CMOD" of a notched beam, "deflection"
-# until = { gauge = "CMOD", at = "0.3 mm" }   # ends the test there
-)") + common_test;
-}
-
-std::string custom_test() {
-    return std::string(R"(
-[[test]]
-kind = "custom"                     # a test of your own: curves, cracks, fields, energies, and no property of the rock
-name = "four-point-bend"            # names its results
-# length = "50 mm"                  # strain = loading motion / length: the specimen's extent along the loading unless given
-# width = "220 mm"                  # stress = load / (width x thickness): its extent across the loading unless given
-# control = "dissipation"           # behind the peak; also "displacement", or a gauge
-# until = { gauge = "deflection", at = "0.5 mm" }
-)") + common_test + R"(
-[[test.fixture]]                    # what loads the specimen: "roller", flat "plate", hollow "jaw", or "boundary", which its own nodes follow
-name = "left load"
-kind = "roller"
-at = ["80 mm", "50 mm"]             # where it touches
-radius = "5 mm"
-normal = [0, 1]                     # from the specimen into the roller: up
-motion = [0, -1]                    # it comes down; without motion it is at rest
-mu = 0.4                            # keeps the beam from sliding away
-
-[[test.fixture]]
-name = "right load"
-kind = "roller"
-at = ["140 mm", "50 mm"]
-radius = "5 mm"
-normal = [0, 1]
-motion = [0, -1]
-mu = 0.4
-
-[[test.fixture]]
-name = "left support"
-kind = "roller"
-at = ["20 mm", "0 mm"]
-radius = "5 mm"
-normal = [0, -1]
-
-[[test.fixture]]
-name = "right support"
-kind = "roller"
-at = ["200 mm", "0 mm"]
-radius = "5 mm"
-normal = [0, -1]
-
-[[test.gauge]]                      # what is read: "extension" or "strain" between two points, "displacement" of a point, "force" on a fixture
-name = "deflection"
-kind = "displacement"
-at = ["110 mm", "0 mm"]
-direction = [0, -1]                 # downwards
-)";
-}
-
-// The common head with a beam in place of an upright specimen.
-std::string beam_head() {
+// The common head, with the method's own measures of the specimen.
+std::string head_for(const TestMethod& method) {
     std::string head = common_head;
     const auto replace = [&](std::string_view line, std::string_view by) {
+        if (by.empty()) return;
         const std::size_t at = head.find(line);
         head.replace(at, head.find('\n', at) - at, by);
     };
-    replace("width = \"80 mm\"", "width = \"220 mm\"                    # along the beam");
-    replace("height = \"160 mm\"", "height = \"50 mm\"                    # the load acts downwards\n"
-                                     "# notches = [{ from = [\"110 mm\", \"0 mm\"], to = [\"110 mm\", \"15 mm\"], width = \"1 mm\" }]   # sawn slits; \"0 mm\": a cut");
+    replace("width = \"80 mm\"", method.job.width);
+    replace("height = \"160 mm\"", method.job.height);
     return head;
 }
-
-constexpr std::size_t comment_column = 36;
 
 std::string shown_default(const JobKey& key) {
     std::string line = fmt::format("# {} = {}", key.name, usual_text(key));
@@ -230,22 +143,27 @@ std::string with_defaults(const std::string& text) {
 }
 
 std::string unfinished_template(std::string_view kind) {
-    if (kind == "uniaxial-compression") return "# A uniaxial compression test.\n" + std::string(common_head) + uniaxial_test() + common_end;
-    if (kind == "direct-tension") return "# A direct tension test.\n" + std::string(common_head) + tension_test() + common_end;
-    if (kind == "brazilian") return "# A Brazilian test.\n" + std::string(common_head) + brazilian_test() + common_end;
-    if (kind == "biaxial")  // the envelope needs the uniaxial point
-        return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" + std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
-    if (kind == "three-point-bend") return "# Three-point bending of a beam on the packing of each seed.\n" + beam_head() + bending_test() + common_end;
-    if (kind == "custom") return "# A test of your own: here a beam on four rollers.\n" + beam_head() + custom_test() + common_end;
-    if (kind == "laboratory")
-        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() +
-               biaxial_test() + common_end;
-    throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(kinds), did_you_mean(kind, kinds));
+    if (kind == whole_laboratory) {
+        std::string tests;
+        for (const std::string_view strength : {"UCS", "DTS", "BTS"}) tests += test_of(method_of_strength(strength).definition());
+        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + tests +
+               test_of(method_of_confined_strength().definition()) + common_end;
+    }
+    const auto id = find_method(kind);
+    if (!id) throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(job_template_kinds()), did_you_mean(kind, job_template_kinds()));
+    const TestMethod& method = id->definition();
+    const std::string before = method.job.behind != nullptr ? test_of(*method.job.behind) : "";
+    return fmt::format("# {}\n", method.job.title) + head_for(method) + before + test_of(method) + common_end;
 }
 
 }  // namespace
 
-std::vector<std::string_view> job_template_kinds() { return {kinds.begin(), kinds.end()}; }
+std::vector<std::string_view> job_template_kinds() {
+    std::vector<std::string_view> kinds;
+    for (const MethodId id : test_methods()) kinds.emplace_back(name(id));
+    kinds.push_back(whole_laboratory);
+    return kinds;
+}
 
 std::string job_template(std::string_view kind) { return with_defaults(unfinished_template(kind)); }
 

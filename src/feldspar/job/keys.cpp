@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <ranges>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -46,10 +48,10 @@ KeyValue integer(double low, double high = infinite, std::vector<std::string> wo
 KeyValue flag() { return {{ValueForm::flag}}; }
 KeyValue text(std::string_view allowed = "text in quotes") { return {{ValueForm::text, fraction, {.words = allowed}}}; }
 KeyValue choice(std::vector<std::string> words) { return {{ValueForm::choice, fraction, any_value, std::move(words)}}; }
-template <class Value, std::size_t count>
-KeyValue choice(const std::array<Value, count>& values) {
+template <std::ranges::range Values>
+KeyValue choice_of(const Values& values) {
     std::vector<std::string> words;
-    for (const Value value : values) words.emplace_back(name(value));
+    for (const auto value : values) words.emplace_back(name(value));
     return choice(std::move(words));
 }
 KeyValue choice(std::span<const Preset> presets) {
@@ -84,22 +86,22 @@ KeyCondition with(std::string_view key, std::initializer_list<Value> values) {
     for (const Value value : values) condition.words.emplace_back(name(value));
     return condition;
 }
-template <class Value, std::size_t count, class Takes>
-KeyCondition where(std::string_view key, const std::array<Value, count>& values, Takes takes) {
+template <std::ranges::range Values, class Takes>
+KeyCondition where(std::string_view key, const Values& values, Takes takes) {
     KeyCondition condition{key, {}};
-    for (const Value value : values)
+    for (const auto value : values)
         if (takes(value)) condition.words.emplace_back(name(value));
     return condition;
 }
-KeyCondition methods_that_are(bool (*such)(const TestMethod&)) {
-    return where("kind", test_kinds, [&](TestKind kind) { return such(method_of(kind)); });
+template <class Such>
+KeyCondition methods_that_are(const Such& such) {
+    return where("kind", test_methods(), [&](MethodId kind) { return such(method_of(kind)); });
 }
 KeyCondition numerics_that_are(bool (*such)(NumericsKind)) { return where("kind", numerics_kinds, such); }
 bool own_disc(const TestMethod& method) { return method.specimen.own_disc; }
 bool confined(const TestMethod& method) { return method.specimen.confined; }
-bool takes_friction(const TestMethod& method) { return !method.specimen.glued && method.reading != Reading::curve; }
-bool beam(const TestMethod& method) { return method.reading == Reading::beam; }
-bool users_own(const TestMethod& method) { return method.reading == Reading::curve; }
+bool takes_friction(const TestMethod& method) { return !method.specimen.glued && !method.specimen.fixtures_of_job; }
+bool users_own(const TestMethod& method) { return method.specimen.fixtures_of_job; }
 bool has_gauges(const TestMethod& method) { return method.build.gauges != nullptr; }
 bool adaptive(NumericsKind kind) { return kind == NumericsKind::adaptive; }
 bool not_adaptive(NumericsKind kind) { return kind != NumericsKind::adaptive; }
@@ -108,14 +110,14 @@ bool not_dynamic(NumericsKind kind) { return kind != NumericsKind::dynamic; }
 
 // The stiffness and friction of plates that tests have unless a job says otherwise.
 std::string usual_plate_Kn() {
-    for (const TestKind kind : test_kinds)
+    for (const MethodId kind : test_methods())
         if (const auto Kn = usual_test(kind).plate_Kn_Pa_m)
             return fmt::format("curved plates: `{}`, a layer of masking tape", as_written(quantity(stiffness_gradient), *Kn));
     return "none";
 }
 std::string usual_plate_mu() {
     std::string text;
-    for (const TestKind kind : test_kinds)
+    for (const MethodId kind : test_methods())
         if (const double mu = method_of(kind).specimen.plate_mu; mu > 0.0) text += fmt::format("{:g} with `kind = \"{}\"`, ", mu, name(kind));
     return text + "else 0";
 }
@@ -138,7 +140,7 @@ std::vector<JobKey> specimen_keys() {
     const SpecimenSpec spec;
     const KeyCondition rectangle = with("shape", {Shape::rectangle}), disc = with("shape", {Shape::disc, Shape::half_disc, Shape::ring}), polygon = with("shape", {Shape::polygon});
     return {
-        {"shape", choice(shapes), needed, "the outline: a rectangle (`width`, `height`: from (0, 0)), a disc (`diameter`: around (0, 0)), a polygon (`vertices`, `edge_labels`), a half disc (`diameter`; it stands on y = 0 with the middle of its flat at (0, 0); labels `\"flat\"`, `\"arc\"`) or a ring (`diameter`, `hole_diameter`; labels `\"circle\"`, `\"hole\"`)"},
+        {"shape", choice_of(shapes), needed, "the outline: a rectangle (`width`, `height`: from (0, 0)), a disc (`diameter`: around (0, 0)), a polygon (`vertices`, `edge_labels`), a half disc (`diameter`; it stands on y = 0 with the middle of its flat at (0, 0); labels `\"flat\"`, `\"arc\"`) or a ring (`diameter`, `hole_diameter`; labels `\"circle\"`, `\"hole\"`)"},
         {"width", quantity(length), must, "across the load; the Brazilian test cuts its own disc of this diameter", rectangle},
         {"height", quantity(length), must, "in the direction of loading", rectangle},
         {"diameter", quantity(length), must, "outer diameter", disc},
@@ -208,7 +210,7 @@ std::vector<JobKey> diameter_keys() {
     const KeyCondition bounded_kinds = with("distribution", {GrainSizeKind::uniform, GrainSizeKind::log_normal}),
                        log_normal = with("distribution", {GrainSizeKind::log_normal});
     return {
-        {"distribution", choice(grain_size_kinds), needed, "how diameters are distributed"},
+        {"distribution", choice_of(grain_size_kinds), needed, "how diameters are distributed"},
         {"minimum", quantity(length), must, "the smallest", bounded_kinds},
         {"maximum", quantity(length), must, "the largest", bounded_kinds},
         {"median", quantity(length), must, "the median, between the smallest and the largest", log_normal},
@@ -223,14 +225,14 @@ std::vector<JobKey> diameter_keys() {
 std::vector<JobKey> model_keys() {
     const ModelSpec spec;
     return {
-        {"kind", choice(grain_kinds), usual_word(name(spec.kind)),
+        {"kind", choice_of(grain_kinds), usual_word(name(spec.kind)),
          "`\"flexible\"`: grains of elastic triangles; `\"rigid\"`: three degrees of freedom a grain; `\"inner-particles\"`: grains filled with small rigid "
          "particles on unbreakable elastic contacts"},
-        {"contact", choice(contact_kinds), usual_word(name(spec.contact)),
+        {"contact", choice_of(contact_kinds), usual_word(name(spec.contact)),
          "`\"lobatto3\"`: three points on a grain edge; `\"point\"`: one. Inner particles always have one"},
-        {"normal", choice(contact_normals), usual_word(name(spec.normal)),
+        {"normal", choice_of(contact_normals), usual_word(name(spec.normal)),
          "`\"centres\"`: from centre to centre; `\"edge\"`: that of the Laguerre edge, between inner particles of two grains"},
-        {"plane", choice(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", {}, false, {}, "of flexible grains"},
+        {"plane", choice_of(plane_states), usual_word(name(spec.plane)), "plane stress or plane strain", {}, false, {}, "of flexible grains"},
     };
 }
 
@@ -260,7 +262,7 @@ std::vector<JobKey> contact_keys() {
     const KeyCondition softening = where("law", contact_laws, [](ContactLaw law) { return law != ContactLaw::brittle; });
     constexpr std::string_view why_not = ", which does not soften";
     return {
-        {"law", choice(contact_laws), usual_word(name(spec.law)), "how a contact softens ([laws](theory/contacts.md))"},
+        {"law", choice_of(contact_laws), usual_word(name(spec.law)), "how a contact softens ([laws](theory/contacts.md))"},
         {"Kn", quantity(stiffness_gradient), must, "normal stiffness per area"},
         {"eta", number(positive), words("must be given, or `kratio`"), "shear over normal stiffness, ks/kn"},
         {"kratio", number(positive), words("must be given, or `eta`"), "the inverse, kn/ks, in place of `eta`"},
@@ -269,9 +271,9 @@ std::vector<JobKey> contact_keys() {
         {"mu", number(not_negative), must, "friction coefficient"},
         {"Gfn", quantity(fracture_energy), must, "fracture energy in tension", softening, false, why_not},
         {"Gfs", quantity(fracture_energy), must, "fracture energy in shear", softening, false, why_not},
-        {"shear_measure", choice(shear_measures), usual_word(name(spec.shear_measure)),
+        {"shear_measure", choice_of(shear_measures), usual_word(name(spec.shear_measure)),
          "damage counts the whole slip, or with `\"beyond-friction\"` only what friction does not carry", softening, false, why_not},
-        {"tension_unloading", choice(tension_unloadings), usual_word(name(spec.tension_unloading)),
+        {"tension_unloading", choice_of(tension_unloadings), usual_word(name(spec.tension_unloading)),
          "with the initial stiffness, or with `\"secant\"` back to the origin", softening, false, why_not},
     };
 }
@@ -279,7 +281,7 @@ std::vector<JobKey> contact_keys() {
 std::vector<JobKey> numerics_keys() {
     const NumericsSpec spec;
     return {
-        {"kind", choice(numerics_kinds), usual_word(name(spec.kind)),
+        {"kind", choice_of(numerics_kinds), usual_word(name(spec.kind)),
          "`\"adaptive\"`: finds its own loading rate; `\"paper\"`: fixed speed, local damping; `\"dynamic\"`: real masses"},
         {"accuracy", share_of_one(accuracies, "%"), usual(spec.accuracy),
          "relative accuracy wanted of a strength: the peak is passed again, more slowly, until the estimated error is that", numerics_that_are(adaptive)},
@@ -304,26 +306,40 @@ std::vector<JobKey> variant_keys() {
         {"name", text("up to 60 letters, digits, blanks and , . - _ % ( ) + =, with a letter or digit among them"), needed,
          "the files of the variant begin with it, so no two may differ only in blanks and signs"},
         {"seeds", list_of(integer(0)), words("all"), "some of `[run] seeds`"},
-        {"tests", list_of(choice(test_kinds)), words("all"), "kinds of test that the job has"},
+        {"tests", list_of(choice_of(test_methods())), words("all"), "kinds of test that the job has"},
         {"model", table("model"), words("the job's own"), "keys of `[model]`"},
         {"material", table("material"), words("the job's own"), "keys of `[material]`"},
         {"numerics", table("numerics"), words("the job's own"), "keys of `[numerics]`"},
     };
 }
 
+// The keys that methods add. One that several have stands once.
+std::vector<JobKey> keys_of_methods() {
+    std::vector<JobKey> rows;
+    for (const MethodId id : test_methods())
+        for (const MethodKey& key : method_of(id).keys) {
+            if (std::ranges::find(rows, key.name, &JobKey::name) != rows.end()) continue;
+            const auto has_it = [&](const TestMethod& method) { return std::ranges::find(method.keys, key.name, &MethodKey::name) != method.keys.end(); };
+            const KeyValue one = key.dimension == fraction ? number(key.range) : quantity(key.dimension, key.range);
+            rows.push_back({key.name, key.list ? one_or_list_of(one) : one, key.needed ? must : words(key.usual), key.meaning, methods_that_are(has_it)});
+        }
+    return rows;
+}
+
 std::vector<JobKey> test_keys() {
     const TestSpec spec;
-    return {
-        {"kind", choice(test_kinds), needed, "the method"},
+    std::vector<JobKey> keys{
+        {"kind", choice_of(test_methods()), needed, "the method"},
         {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", methods_that_are(confined)},
         {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
-        {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
+        {"disc", choice_of(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
          methods_that_are(own_disc)},
         {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad),
          "angle over which each flat of a flattened disc is seen from the centre; from 20 degrees on cracks start in the centre", methods_that_are(own_disc)},
         {"name", text("1 to 40 letters, digits, '_' and '-'"), must, "names the results of a test of your own", methods_that_are(users_own)},
-        {"span", quantity(length), words("4 times the beam's height, at most 0.9 of its length"), "distance of the two supports", methods_that_are(beam)},
-        {"roller_radius", quantity(length), words("a tenth of the beam's height"), "radius of the three rollers", methods_that_are(beam)},
+    };
+    std::ranges::move(keys_of_methods(), std::back_inserter(keys));
+    std::vector<JobKey> further{
         {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction),
          "the test ends when the stress has fallen to this fraction of the peak; in bending 0.1 unless it is given"},
         {"control", control_words(), words("`\"dissipation\"` with adaptive numerics, in direct tension and the Brazilian test `\"displacement\"`"),
@@ -341,7 +357,7 @@ std::vector<JobKey> test_keys() {
          methods_that_are(users_own)},
         {"snapshots", integer(0, 1000), usual(spec.snapshots), "fields kept between the first crack and the end"},
         {"seeds", list_of(integer(0)), words("those of the run"), "the packings of this test"},
-        {"plates", choice(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
+        {"plates", choice_of(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
          "`\"curved\"` for jaws whose arcs embrace the disc ([why](decisions/2026-11-27-brazilian-fixture.md)), or `\"flat\"`", methods_that_are(own_disc),
          true},
         {"jaw_radius", number({1.0, 1000.0, false, true, "more than 1, in radii of the disc (ISRM: 1.5)"}), usual(spec.jaw_radius),
@@ -364,6 +380,8 @@ std::vector<JobKey> test_keys() {
         {"membrane_plates", integer(1, 1000), usual(spec.membrane_plates), "plates of the membrane on each side; each must have a grain behind it",
          methods_that_are(confined), true},
     };
+    std::ranges::move(further, std::back_inserter(keys));
+    return keys;
 }
 
 std::vector<JobKey> until_keys() {
@@ -379,7 +397,7 @@ std::vector<JobKey> fixture_keys() {
                        curved = forms({FixtureForm::roller, FixtureForm::jaw});
     return {
         {"name", text("1 to 40 letters, digits, blanks, '_' and '-'"), needed, "of messages and of gauges that read its force"},
-        {"kind", choice(fixture_forms), needed,
+        {"kind", choice_of(fixture_forms), needed,
          "`\"boundary\"`: the nodes on a part of the boundary of flexible grains follow it; a rigid plate that the specimen is pressed against: flat, `\"roller\"` or hollow `\"jaw\"`"},
         {"on", text("the label of an edge"), words("`on` or `at` must be given"), "the part of the boundary with this label"},
         {"at", point(), words("`on` or `at` must be given"), "the part of the boundary near this point; of a roller or jaw the point where its surface touches"},
@@ -400,7 +418,7 @@ std::vector<JobKey> gauge_keys() {
     const KeyCondition between = with("kind", {GaugeForm::extension, GaugeForm::strain});
     return {
         {"name", text("1 to 40 letters, digits, '_' and '-'"), needed, "its column in the results; `control` and `until` may name it"},
-        {"kind", choice(gauge_forms), needed,
+        {"kind", choice_of(gauge_forms), needed,
          "`\"extension\"`: by how much two points move apart; `\"strain\"`: the same over their distance; `\"displacement\"` of a point; `\"force\"` on a fixture"},
         {"from", point(), must, "first point", between},
         {"to", point(), must, "second point", between},

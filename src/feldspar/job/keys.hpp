@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "feldspar/base/units.hpp"
-#include "feldspar/job/range.hpp"
+#include "feldspar/base/range.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {

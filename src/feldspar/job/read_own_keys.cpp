@@ -129,14 +129,25 @@ void check_name(const JobTable& table, const std::string& given, std::set<std::s
     });
 }
 
+void read_method_key(const JobTable& table, const MethodKey& key, TestSpec& test) {
+    if (!table.has(key.name)) return;
+    std::vector<double>& values = test.own[std::string(key.name)];
+    const toml::array* list = key.list ? table.find(key.name)->as_array() : nullptr;
+    if (list == nullptr) values.push_back(key.dimension == Dimension::fraction ? table.number(key.name) : table.quantity(key.name));
+    else
+        for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, key.name)); });
+    table.check({key.name}, [&] {
+        if (values.empty()) table.fail(key.name, "the list is empty", "one value or more");
+    });
+}
+
 void read_custom(const JobTable& table, TestSpec& test) {
     table.require({"name", "fixture"});
     std::set<std::string> tests, fixtures, gauges;
     test.custom.name = table.text("name");
     check_name(table, test.custom.name, tests, "a test");
     table.check({"name"}, [&] {
-        for (const TestKind kind : test_kinds)
-            if (test.custom.name == name(kind)) table.fail("name", fmt::format("'{}' is a test method", test.custom.name), "another name");
+        if (find_method(test.custom.name)) table.fail("name", fmt::format("'{}' is a test method", test.custom.name), "another name");
     });
     if (table.has("length")) test.custom.length_m = table.quantity("length");
     if (table.has("width")) test.custom.width_m = table.quantity("width");
@@ -186,9 +197,8 @@ bool has_gauge(const TestSpec& test, std::string_view gauge) { return [&] {
 }(); }
 
 void read_own_keys(const JobTable& table, TestSpec& test) {
-    if (table.has("span")) test.span_m = table.quantity("span");
-    if (table.has("roller_radius")) test.roller_radius_m = table.quantity("roller_radius");
-    if (method_of(test).reading == Reading::curve) read_custom(table, test);
+    for (const MethodKey& key : method_of(test).keys) read_method_key(table, key, test);
+    if (method_of(test).specimen.fixtures_of_job) read_custom(table, test);
     if (table.has("until")) read_until(table, test);
 }
 

@@ -28,7 +28,7 @@ struct Known {
 };
 
 // Platens need a flat top and bottom.
-void check_outline(const JobTable& table, TestKind kind, const OutlineSpec& outline) {
+void check_outline(const JobTable& table, MethodId kind, const OutlineSpec& outline) {
     if (method_of(kind).specimen.own_disc) {
         if ((outline.shape == Shape::disc || outline.shape == Shape::ring) && outline.is_cut())
             table.fail("kind", "'" + std::string(name(kind)) + "' cuts its own whole disc: the holes and notches of the specimen would not be in it", "a disc without holes and notches");
@@ -105,14 +105,14 @@ std::vector<double> confining_stresses(const JobTable& table) {
 }
 
 // Rigid grains and inner particles are loaded by plates: does any variant bring them to this kind of test?
-bool has_particles(TestKind kind, const std::vector<Variant>& variants) {
+bool has_particles(MethodId kind, const std::vector<Variant>& variants) {
     return std::any_of(variants.begin(), variants.end(),
                        [&](const Variant& variant) { return variant.runs(kind) && variant.model.kind != GrainKind::flexible; });
 }
 
 // Which motion of the platens follows the branch behind the strength. Fixed speeds know none.
 void read_control(const JobTable& table, const std::vector<Variant>& variants, TestSpec& test) {
-    const TestKind kind = test.kind;
+    const MethodId kind = test.kind;
     const bool adaptive = std::any_of(variants.begin(), variants.end(), [&](const Variant& variant) {
         return variant.runs(kind) && variant.numerics.kind == NumericsKind::adaptive;
     });
@@ -142,7 +142,7 @@ void read_control(const JobTable& table, const std::vector<Variant>& variants, T
 // "kind = \"brazilian\", ...": those that load by plates whatever the grains are.
 std::string plated_methods() {
     std::string text;
-    for (const TestKind kind : test_kinds)
+    for (const MethodId kind : test_methods())
         if (method_of(kind).specimen.plates) text += (text.empty() ? "kind = \"" : ", \"") + std::string(name(kind)) + "\"";
     return text;
 }
@@ -163,8 +163,8 @@ void check_by_method(const JobTable& table, const TestSpec& test, const Specimen
 // Keys of plates where none load the specimen. Those that are another method's are refused already.
 void refuse_plates(const JobTable& table, const TestMethod& method) {
     for (const JobKey& key : table.rows().keys)
-        if (key.of_plates && (key.when.key.empty() || key.when.holds(name(method.kind))))
-            table.refuse({key.name}, "kind = \"" + std::string(name(method.kind)) + "\" of flexible grains",
+        if (key.of_plates && (key.when.key.empty() || key.when.holds(method.name)))
+            table.refuse({key.name}, "kind = \"" + std::string(method.name) + "\" of flexible grains",
                          "only with " + plated_methods() + ", or with rigid grains or inner particles, which are loaded by plates");
 }
 
@@ -184,7 +184,7 @@ void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn");
     else if (test.plates != usual || table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m.reset();   // that of the usual plates
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", test.plate_stiffness_factor);
-    if (!method.glued && method_of(test).reading != Reading::curve) test.plate_mu = table.number("plate_mu", method.plate_mu);
+    if (!method.glued && !method_of(test).specimen.fixtures_of_job) test.plate_mu = table.number("plate_mu", method.plate_mu);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates"));
 }
 
@@ -195,12 +195,12 @@ struct ReadTest {
 };
 
 ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants, const Known& known) {
-    const TestMethod& method = method_of(table.choice("kind", test_kinds));
+    const TestMethod& method = table.choice("kind", test_methods()).definition();
     const bool kind_known = table.sound({"kind"}), own_disc = method.specimen.own_disc;
-    if (kind_known) table.suit("kind", name(method.kind));
-    if (kind_known && known.kinds && !method.specimen.plates && !has_particles(method.kind, variants)) refuse_plates(table, method);
+    if (kind_known) table.suit("kind", method.name);
+    if (kind_known && known.kinds && !method.specimen.plates && !has_particles(method, variants)) refuse_plates(table, method);
     const bool flattened = kind_known && own_disc && is_flattened(table);
-    TestSpec test = usual_test(method.kind, flattened);
+    TestSpec test = usual_test(method, flattened);
     if (known.outline && method.build.check == nullptr) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
 
     if (table.has("stop_fraction")) test.stop_fraction = table.fraction("stop_fraction");

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -52,7 +53,7 @@ void check_variant(const JobTable& table, const Variant& variant, const Job& job
     for (std::uint64_t seed : variant.seeds)
         if (std::find(job.seeds.begin(), job.seeds.end(), seed) == job.seeds.end())
             table.fail("seeds", "the seed " + std::to_string(seed) + " is not one of the run's", "some of [run] seeds");
-    for (TestKind kind : variant.tests)
+    for (MethodId kind : variant.tests)
         if (std::none_of(job.tests.begin(), job.tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
             table.fail("tests", "the job has no test of kind '" + std::string(name(kind)) + "'",
                        "kinds that stand in a [[test]]");
@@ -66,16 +67,16 @@ void check_variant(const JobTable& table, const Variant& variant, const Job& job
 
 }  // namespace
 
-std::vector<TestKind> read_kinds(const TableReader& table) {
-    std::vector<TestKind> kinds;
+std::vector<MethodId> read_kinds(const TableReader& table) {
+    std::vector<MethodId> kinds;
     if (!table.has("tests")) return kinds;
     std::vector<std::string_view> words;
-    for (TestKind kind : test_kinds) words.emplace_back(name(kind));
+    for (MethodId kind : test_methods()) words.emplace_back(name(kind));
     for (const toml::node& node : table.array("tests"))
         table.check({}, [&] {
             const std::string word = table.text_of(node, "tests");
-            const auto found = std::find_if(test_kinds.begin(), test_kinds.end(), [&](TestKind kind) { return word == name(kind); });
-            if (found == test_kinds.end())
+            const auto found = find_method(word);
+            if (!found)
                 table.fail_at(node, "tests", "'" + word + "' is not a kind of test", listed(words), did_you_mean(word, words));
             if (std::find(kinds.begin(), kinds.end(), *found) != kinds.end())
                 table.fail_at(node, "tests", "'" + word + "' is given twice", "each kind once");

@@ -282,13 +282,21 @@ void write_gauge(Lines& out, const GaugeSpec& gauge) {
     }
 }
 
+void write_method_key(Lines& out, const TestSpec& test, const MethodKey& key) {
+    const auto found = test.own.find(key.name);
+    if (found == test.own.end()) return;
+    if (!key.list) return key.dimension == Dimension::fraction ? out.number(std::string(key.name), found->second.front()) : out.quantity(std::string(key.name), found->second.front());
+    std::string values;
+    for (const double value : found->second) values += (values.empty() ? "" : ", ") + as_written(job_key("test", key.name).value, value);
+    out.raw(std::string(key.name), "[" + values + "]");
+}
+
 void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.head("test");
     out.word("kind", name(test.kind));
     if (!test.custom.name.empty()) out.word("name", test.custom.name);
     if (method_of(test).specimen.confined) out.quantity("sigma3", test.sigma3_Pa);
-    if (test.span_m) out.quantity("span", *test.span_m);
-    if (test.roller_radius_m) out.quantity("roller_radius", *test.roller_radius_m);
+    for (const MethodKey& key : method_of(test).keys) write_method_key(out, test, key);
     out.number("stop_fraction", test.stop_fraction);
     out.word("control", test.control == LoadControl::gauge ? test.control_gauge : name(test.control));
     out.number("maximum_strain", test.maximum_strain);
@@ -321,7 +329,7 @@ void write_variant(Lines& out, const Variant& variant) {
     out.word("name", variant.name);
     if (!variant.seeds.empty()) out.raw("seeds", list(variant.seeds));
     std::vector<std::string> kinds;
-    for (TestKind kind : variant.tests) kinds.push_back(quote(name(kind)));
+    for (MethodId kind : variant.tests) kinds.push_back(quote(name(kind)));
     if (!kinds.empty()) out.raw("tests", list(kinds));
     write_physics(out, variant, "variant.");
 }

@@ -19,7 +19,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/mistakes.hpp"
-#include "feldspar/job/range.hpp"
+#include "feldspar/base/range.hpp"
 #include "feldspar/job/toml_include.hpp"
 
 namespace feldspar {
@@ -130,10 +130,10 @@ public:
         return choice_among<Value>(key, std::span(choices.begin(), choices.size()), fallback);
     }
     /// One of several values, by the names that name(value) gives them.
-    template <class Value, std::size_t count>
-    Value choice(std::string_view key, const std::array<Value, count>& values, std::optional<Value> fallback = {}) const {
-        std::array<std::pair<std::string_view, Value>, count> choices;
-        std::transform(values.begin(), values.end(), choices.begin(), [](Value value) { return std::pair<std::string_view, Value>(name(value), value); });
+    template <std::ranges::range Values, class Value = std::ranges::range_value_t<Values>>
+    Value choice(std::string_view key, const Values& values, std::optional<Value> fallback = {}) const {
+        std::vector<std::pair<std::string_view, Value>> choices;
+        for (const Value value : values) choices.emplace_back(name(value), value);
         return choice_among<Value>(key, choices, fallback);
     }
 

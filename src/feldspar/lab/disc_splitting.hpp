@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

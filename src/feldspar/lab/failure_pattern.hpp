@@ -1,7 +1,7 @@
 // How a specimen failed, in a few numbers: which cracks, in which direction, how concentrated, how abruptly (P15)-(P17), docs/theory/properties.md.
 #pragma once
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

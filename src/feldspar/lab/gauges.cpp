@@ -141,11 +141,6 @@ void Gauges::add_point(const Assembly& assembly, const Specimen& specimen, const
     terms_.push_back({rigid.centre_node + 1, {dot(point.weight, rot90(arm)) / rigid.radius_m, 0.0}});
 }
 
-int gauge_number(std::span<const GaugeSpec> gauges, std::string_view name) {
-    const auto found = std::ranges::find(gauges, name, &GaugeSpec::name);
-    return found == gauges.end() ? -1 : static_cast<int>(found - gauges.begin());
-}
-
 std::vector<double> Gauges::read(const Assembly& assembly) const {
     std::vector<double> values;
     values.reserve(specs_.size());

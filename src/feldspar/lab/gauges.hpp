@@ -41,9 +41,6 @@ private:
     SlopeWeights weights_;
 };
 
-/// The number of the gauge of this name, or -1.
-int gauge_number(std::span<const GaugeSpec> gauges, std::string_view name);
-
 /// Gauges that a method or a user has asked for, ready to be read.
 class Gauges {
 public:

@@ -44,7 +44,7 @@ struct Criterion {
 
 std::string percent(double value) { return fmt::format("{:.2g} %", 100.0 * value); }
 
-std::vector<Criterion> criteria(const QuasiStaticEvidence& e, TestKind kind) {
+std::vector<Criterion> criteria(const QuasiStaticEvidence& e, MethodId kind) {
     const MethodVerdict& allowed = method_of(kind).verdict;
     return {{e.error_estimate, allowed.error_a, grade_b_error,
              e.confirmed ? "one and a half times the change of the strength in a slower repeat" : "the estimated error of the strength"},

@@ -70,7 +70,7 @@ void maintain_contacts(Experiment& e, ContactFinder& finder, ShapeWatch& watch, 
 
 double typical_steps(const Experiment& e) {
     const NumericsSpec& n = e.setup.numerics;
-    const TestKind kind = e.setup.test.kind;
+    const MethodId kind = e.setup.test.kind;
     if (n.kind != NumericsKind::adaptive) {
         return e.method.rate.fixed_speed_strain * e.length_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
     }

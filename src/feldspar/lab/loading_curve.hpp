@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "feldspar/lab/bending.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
 #include "feldspar/lab/disc_splitting.hpp"
@@ -65,9 +64,10 @@ TestProperties read_record(const TestResult& result) {
     if (!peak) return p;
     p.peak_stress_Pa = peak->stress_Pa;
     p.peak_reached = peak->reached;
+    const std::span<const MethodProperty> own = method_of(result.test).properties;
+    for (std::size_t i = 0; i < own.size(); ++i) p.of_method[i] = own[i].value({result, peak->row, peak->stress_Pa, peak->reached});
     switch (method_of(result.test).reading) {
         case Reading::disc: p.brazilian = brazilian_failure(result, *peak); return p;
-        case Reading::beam: p.bending = bending(result, *peak); return p;
         case Reading::curve: return p;
         case Reading::column: break;
     }

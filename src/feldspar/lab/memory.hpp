@@ -2,7 +2,7 @@
 #pragma once
 
 #include "feldspar/model/assembly.hpp"
-#include "feldspar/model/spec.hpp"
+#include "feldspar/methods/test_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {

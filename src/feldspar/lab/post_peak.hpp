@@ -2,7 +2,7 @@
 #pragma once
 
 #include "feldspar/lab/loading_curve.hpp"
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

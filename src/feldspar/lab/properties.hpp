@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

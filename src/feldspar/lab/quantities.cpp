@@ -55,11 +55,6 @@ QuantityPlace brazilian_failure() {
 }
 
 template <auto member>
-QuantityPlace bending() {
-    return at<&R::properties, &P::bending, member>();
-}
-
-template <auto member>
 QuantityPlace evidence() {
     return at<&R::evidence, member>();
 }
@@ -77,6 +72,15 @@ QuantityPlace pattern() {
 template <CrackMode mode>
 QuantityPlace count() {
     return {QuantityForm::whole, [](const R& r) { return static_cast<double>(std::ranges::count(r.cracks, mode, &Crack::mode)); }};
+}
+
+// Number `i` of those that the method adds.
+QuantityPlace of_method(std::size_t i) {
+    return {QuantityForm::real, [i](const R& r) { return i < r.properties.of_method.size() ? r.properties.of_method[i] : nan; },
+            [i](R& r, double value) {
+                if (r.properties.of_method.size() <= i) r.properties.of_method.resize(i + 1, nan);
+                r.properties.of_method[i] = value;
+            }};
 }
 
 QuantityPlace formed(double (*of)(const R&)) { return {QuantityForm::real, of}; }
@@ -102,19 +106,18 @@ std::vector<TestQuantity> table() {
     using namespace units;
     constexpr auto same = TestQuantity::same, absent = TestQuantity::absent;
     const auto those = [](bool (*fits)(const TestMethod&)) {
-        std::set<TestKind> kinds;
-        for (const TestKind kind : test_kinds)
+        std::set<MethodId> kinds;
+        for (const MethodId kind : test_methods())
             if (fits(method_of(kind))) kinds.insert(kind);
         return kinds;
     };
-    const std::set<TestKind> any(test_kinds.begin(), test_kinds.end());
-    const std::set<TestKind> discs = those([](const TestMethod& m) { return m.reading == Reading::disc; });
-    const std::set<TestKind> loaded = those([](const TestMethod& m) { return m.reading == Reading::column; });   // between platens
-    const std::set<TestKind> beams = those([](const TestMethod& m) { return m.reading == Reading::beam; });
-    const std::set<TestKind> forces = those([](const TestMethod& m) { return m.reading == Reading::beam || m.reading == Reading::curve; });
-    const std::set<TestKind> compressed = those([](const TestMethod& m) { return m.loading.widens; });
+    const std::set<MethodId> any(test_methods().begin(), test_methods().end());
+    const std::set<MethodId> discs = those([](const TestMethod& m) { return m.reading == Reading::disc; });
+    const std::set<MethodId> loaded = those([](const TestMethod& m) { return m.reading == Reading::column; });   // between platens
+    const std::set<MethodId> forces = those([](const TestMethod& m) { return m.reading == Reading::curve; });
+    const std::set<MethodId> compressed = those([](const TestMethod& m) { return m.loading.widens; });
     std::vector<TestQuantity> all;
-    const auto add = [&](QuantityGroup group, const std::set<TestKind>& tests, std::vector<TestQuantity> rows) {
+    const auto add = [&](QuantityGroup group, const std::set<MethodId>& tests, std::vector<TestQuantity> rows) {
         for (TestQuantity& row : rows) {
             row.group = group;
             row.tests = tests;
@@ -183,15 +186,10 @@ std::vector<TestQuantity> table() {
         {"BTS_flat_angle", angle, "(P31)", formed(flat_angle_deg), absent, "flat_angle", absent},
         {"BTS_flat_coefficient", pure, "(P31)", brazilian_failure<&B::flat_coefficient>(), same, "flat_coefficient", "flat_coefficient"},
     });
-    add(G::bending, beams, {
-        {"flexural_strength", stress, "(P36)", bending<&BendingProperties::flexural_strength_Pa>()},
-        {"E_bending", modulus, "(P37), (P39)", bending<&BendingProperties::E_Pa>()},
-        {"K_Ic", toughness, "(P38)", bending<&BendingProperties::K_Ic_Pa_sqrt_m>()},
-        {"work_of_fracture", fracture_work, "(P40)", bending<&BendingProperties::work_of_fracture_J_m2>()},
-        {"softening_length", length, "(P40)", bending<&BendingProperties::softening_length_m>()},
-        {"crack_path", pure, "(P40)", bending<&BendingProperties::crack_path_over_ligament>()},
-        {"notch", length, "", bending<&BendingProperties::notch_m>()},
-    });
+    for (const MethodId method : test_methods()) {
+        const std::span<const MethodProperty> properties = method_of(method).properties;
+        for (std::size_t i = 0; i < properties.size(); ++i) add(G::of_method, {method}, {{properties[i].name, properties[i].unit, properties[i].definition, of_method(i)}});
+    }
     add(G::cracks, any, {
         {"cracks_tensile", pure, "", count<CrackMode::tensile>(), same, same, "tensile"},
         {"cracks_shear", pure, "", count<CrackMode::shear>(), same, same, "shear"},
@@ -260,22 +258,12 @@ std::vector<TestQuantity> table() {
     return all;
 }
 
-std::string with_unit(std::string_view stem, std::string_view unit) {
-    std::string name(stem);
-    if (!unit.empty()) name.append("_").append(unit);
-    return name;
-}
-
 }  // namespace
-
-std::string QuantityUnit::kept_name(std::string_view stem) const { return with_unit(stem, kept); }
-
-std::string QuantityUnit::user_name(std::string_view stem) const { return with_unit(stem, user); }
 
 double TestQuantity::value(const TestResult& result) const { return tests.contains(result.test.kind) ? place.of(result) : nan; }
 
 void TestQuantity::put(TestResult& result, double value) const {
-    if (place.put != nullptr) place.put(result, value);
+    if (place.put) place.put(result, value);
 }
 
 std::span<const TestQuantity> test_quantities() {

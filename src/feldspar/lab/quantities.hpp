@@ -4,43 +4,20 @@
 // over its packings, which are read from these numbers, have a table of their own (lab/rock_properties.hpp).
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "feldspar/base/units.hpp"
-#include "feldspar/lab/result.hpp"
+#include "feldspar/base/quantity_unit.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 
-inline constexpr double MPa = 1e-6;  ///< times Pa
-inline constexpr double GPa = 1e-9;  ///< times Pa
-
-/// How a number is kept, and how users read it.
-struct QuantityUnit {
-    std::string_view kept;   ///< SI, but "deg" for angles; "" for a pure number
-    std::string_view user;
-    double factor = 1.0;     ///< value for the user = factor x value that is kept
-    std::optional<Dimension> written{};   ///< how files of users give it; none for a pure number, and for what they do not give
-
-    bool operator==(const QuantityUnit&) const = default;
-    /// "E_Pa": as a number that is kept is called
-    std::string kept_name(std::string_view stem) const;
-    /// "E_GPa": as users meet it
-    std::string user_name(std::string_view stem) const;
-};
-
-namespace units {
-inline constexpr QuantityUnit pure{"", ""}, stress{"Pa", "MPa", MPa, Dimension::stress}, modulus{"Pa", "GPa", GPa, Dimension::stress},
-    angle{"deg", "deg", 1.0, Dimension::angle}, length{"m", "mm", 1e3, Dimension::length}, force{"N", "kN", 1e-3, Dimension::force},
-    toughness{"Pa_sqrt_m", "MPa_sqrt_m", MPa, Dimension::toughness}, fracture_work{"J_m2", "J_m2", 1.0, Dimension::fracture_energy}, energy{"J", "J"}, duration{"s", "s", 1.0, Dimension::time};
-}
-
 /// Files list numbers group by group, each in its own order of groups; within a group the order is the same everywhere.
 enum class QuantityGroup {
-    strength, load, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, bending, cracks, pattern, evidence, repeats, balance, energies, steps,
+    strength, load, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, of_method, cracks, pattern, evidence, repeats, balance, energies, steps,
     bookkeeping, cost
 };
 
@@ -49,8 +26,8 @@ enum class QuantityForm { real, whole, yes_no };   ///< as a number, the last is
 /// A number's place in a result.
 struct QuantityPlace {
     QuantityForm form = QuantityForm::real;
-    double (*of)(const TestResult&) = nullptr;
-    void (*put)(TestResult&, double) = nullptr;   ///< none for what is counted or formed from the rest
+    std::function<double(const TestResult&)> of;
+    std::function<void(TestResult&, double)> put{};   ///< none for what is counted or formed from the rest
 };
 
 /// One number of one test.
@@ -65,7 +42,7 @@ struct TestQuantity {
     std::string_view summary = same;   ///< its name in summary.json, without unit, or absent
     std::string_view report = same;    ///< its name in the report's data, or absent
     QuantityGroup group{};
-    std::set<TestKind> tests{};        ///< that define it
+    std::set<MethodId> tests{};        ///< that define it
 
     /// As it is kept; not-a-number if the test does not define it.
     double value(const TestResult& result) const;

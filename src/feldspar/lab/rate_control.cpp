@@ -33,13 +33,13 @@ constexpr double kGrowth = 60.0, kMostGrowth = 0.6;
 
 }  // namespace
 
-double residual_target(const NumericsSpec& numerics, TestKind kind) {
+double residual_target(const NumericsSpec& numerics, MethodId kind) {
     return numerics.residual_target.value_or(method_of(kind).rate.residual_target * numerics.accuracy);
 }
 
-double accuracy_of(double residual_target, TestKind kind) { return residual_target / method_of(kind).rate.residual_target; }
+double accuracy_of(double residual_target, MethodId kind) { return residual_target / method_of(kind).rate.residual_target; }
 
-PassageLimits first_passage(const NumericsSpec& numerics, TestKind kind) {
+PassageLimits first_passage(const NumericsSpec& numerics, MethodId kind) {
     const double target = residual_target(numerics, kind);
     return {target, std::min(kMostGrowth, kGrowth * accuracy_of(target, kind))};
 }

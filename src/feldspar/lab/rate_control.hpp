@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "feldspar/model/assembly.hpp"
-#include "feldspar/model/spec.hpp"
+#include "feldspar/methods/test_spec.hpp"
 
 namespace feldspar {
 
 /// Target of R* with which a strength is first looked for, from the wanted relative accuracy; or what the user gives in its place.
-double residual_target(const NumericsSpec& numerics, TestKind kind);
+double residual_target(const NumericsSpec& numerics, MethodId kind);
 
 /// The accuracy that has this target: the inverse of residual_target().
-double accuracy_of(double residual_target, TestKind kind);
+double accuracy_of(double residual_target, MethodId kind);
 
 /// How fast the load may pass: both limits fall together when a passage was too fast.
 struct PassageLimits {
@@ -22,7 +22,7 @@ struct PassageLimits {
 };
 
 /// Of the first passage: wide, so that it is quick.
-PassageLimits first_passage(const NumericsSpec& numerics, TestKind kind);
+PassageLimits first_passage(const NumericsSpec& numerics, MethodId kind);
 
 /// What the free degrees of freedom leave unbalanced, sums of |F|.
 struct Unbalanced {

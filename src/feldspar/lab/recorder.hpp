@@ -6,7 +6,7 @@
 
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/rate_control.hpp"
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

@@ -4,19 +4,21 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <vector>
+
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
 namespace {
 
-using enum TestKind;
 using Source = RockProperty::Source;
 
 constexpr std::string_view confined_stem = "sigma1_at_sigma3", confined_start = "sigma1_at_sigma3_", confined_end = "MPa_Pa";
 
 /// A number of one kind of test, as each packing has it.
-RockProperty read(std::string_view quantity, TestKind kind, const char* label, const char* symbol, std::string_view laboratory = {}) {
+RockProperty read(std::string_view quantity, MethodId kind, const char* label, const char* symbol, std::string_view laboratory = {}) {
     const TestQuantity& read_from = test_quantity(quantity);
     RockProperty p{read_from.name, read_from.unit, label, symbol, read_from.definition, Source::test, {kind}, &read_from};
     p.laboratory = laboratory;
@@ -24,26 +26,31 @@ RockProperty read(std::string_view quantity, TestKind kind, const char* label, c
 }
 
 RockProperty in_compression(std::string_view quantity, const char* label, const char* symbol, std::string_view laboratory = {}) {
-    return read(quantity, uniaxial_compression, label, symbol, laboratory);
+    return read(quantity, method_of_strength("UCS"), label, symbol, laboratory);
 }
 
-RockProperty strength(std::string_view name, TestKind kind, const char* label) {
-    RockProperty p = read("strength", kind, label, "", name);
-    p.name = name;
-    p.symbol = name;
+RockProperty strength(MethodId kind) {
+    const MethodStrength& measured = method_of(kind).strength;
+    RockProperty p = read("strength", kind, measured.label, "", measured.name);
+    p.name = measured.name;
+    p.symbol = measured.name;
     p.of_broken_only = true;
     return p;
 }
 
+RockProperty in_splitting(std::string_view quantity, const char* label, const char* symbol, std::string_view laboratory = {}) {
+    return read(quantity, method_of_strength("BTS"), label, symbol, laboratory);
+}
+
 /// 1 or 0 of each packing: its mean over them is a share.
-RockProperty share(std::string_view name, std::string_view quantity, TestKind kind, const char* label, const char* symbol) {
-    RockProperty p = read(quantity, kind, label, symbol);
+RockProperty share(std::string_view name, RockProperty p) {
     p.name = name;
     return p;
 }
 
-RockProperty ratio(std::string_view name, std::string_view above, std::string_view below, const std::set<TestKind>& tests) {
-    RockProperty p{name, units::pure, fmt::format("Ratio {} / {}", above, below), fmt::format("{}/{}", above, below), "(P11)", Source::ratio, tests};
+RockProperty ratio(std::string_view name, std::string_view above, std::string_view below) {
+    RockProperty p{name, units::pure, fmt::format("Ratio {} / {}", above, below), fmt::format("{}/{}", above, below), "(P11)", Source::ratio,
+                   {method_of_strength(above), method_of_strength(below)}};
     p.above = above;
     p.below = below;
     return p;
@@ -51,7 +58,7 @@ RockProperty ratio(std::string_view name, std::string_view above, std::string_vi
 
 RockProperty fitted(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, std::string_view definition, double EnvelopeFit::* fit,
                     std::string_view laboratory = {}) {
-    RockProperty p{name, unit, label, symbol, definition, Source::envelope, {uniaxial_compression, biaxial}};
+    RockProperty p{name, unit, label, symbol, definition, Source::envelope, {method_of_strength("UCS"), method_of_confined_strength()}};
     p.fit = fit;
     p.laboratory = laboratory;
     return p;
@@ -59,25 +66,25 @@ RockProperty fitted(std::string_view name, QuantityUnit unit, const char* label,
 
 std::vector<RockProperty> table() {
     using namespace units;
-    return {
+    std::vector<RockProperty> all{
         in_compression("E", "Young's modulus, secant at 50 % of the peak", "E", "E"),
         in_compression("nu", "Poisson's ratio, secant at 50 % of the peak", "\u03bd", "nu"),
-        strength("UCS", uniaxial_compression, "Uniaxial compressive strength"),
-        strength("DTS", direct_tension, "Direct tensile strength"),
-        strength("BTS", brazilian, "Brazilian tensile strength"),
-        read("flexural_strength", three_point_bend, "Flexural strength, three-point bending", "\u03c3f", "flexural_strength"),
-        read("K_Ic", three_point_bend, "Fracture toughness, notched three-point bending", "KIc", "K_Ic"),
-        read("E_bending", three_point_bend, "Young's modulus, three-point bending", "E bending", "E"),
-        read("work_of_fracture", three_point_bend, "Work of fracture, notched three-point bending", "GF", "work_of_fracture"),
-        read("BTS_first_dip", brazilian, "Brazilian test, stress at the first fall of 5 %", "BTS dip", "BTS"),
-        read("BTS_largest", brazilian, "Brazilian test, largest stress of the record", "BTS largest", "BTS"),
+    };
+    for (const MethodId method : test_methods())
+        if (!method_of(method).strength.name.empty()) all.push_back(strength(method));
+    for (const MethodId method : test_methods())
+        for (const MethodProperty& p : method_of(method).properties)
+            if (*p.symbol != 0) all.push_back(read(p.name, method, p.label, p.symbol, p.laboratory));
+    const RockProperty further[]{
+        in_splitting("BTS_first_dip", "Brazilian test, stress at the first fall of 5 %", "BTS dip", "BTS"),
+        in_splitting("BTS_largest", "Brazilian test, largest stress of the record", "BTS largest", "BTS"),
         fitted("cohesion", stress, "Cohesion, Mohr-Coulomb", "c", "(P12)", &EnvelopeFit::cohesion_Pa, "cohesion"),
         fitted("friction_angle", angle, "Friction angle, Mohr-Coulomb", "\u03c6", "(P12)", &EnvelopeFit::friction_angle_deg, "friction_angle"),
         fitted("hoek_brown_mi", pure, "Hoek-Brown constant, intact rock", "mi", "(P13)", &EnvelopeFit::hoek_brown_mi, "hoek_brown_mi"),
-        ratio("UCS_over_BTS", "UCS", "BTS", {uniaxial_compression, brazilian}),
-        ratio("UCS_over_DTS", "UCS", "DTS", {uniaxial_compression, direct_tension}),
-        ratio("BTS_over_DTS", "BTS", "DTS", {brazilian, direct_tension}),
-        {confined_stem, stress, "Strength at \u03c3\u2083", "\u03c3\u2081", "(P1)", Source::confined_strength, {biaxial}},
+        ratio("UCS_over_BTS", "UCS", "BTS"),
+        ratio("UCS_over_DTS", "UCS", "DTS"),
+        ratio("BTS_over_DTS", "BTS", "DTS"),
+        {confined_stem, stress, "Strength at \u03c3\u2083", "\u03c3\u2081", "(P1)", Source::confined_strength, {method_of_confined_strength()}},
         fitted("UCS_fitted", stress, "UCS from the Mohr-Coulomb line", "UCS fit", "(P12)", &EnvelopeFit::UCS_fitted_Pa),
         {"mohr_coulomb_N", pure, "Slope of the Mohr-Coulomb line", "N", "(P12)"},
         {"mohr_coulomb_tension", stress, "Tensile strength, Mohr-Coulomb line", "\u03c3t M-C", "(P19)"},
@@ -96,8 +103,10 @@ std::vector<RockProperty> table() {
         in_compression("E_gauge", "Young's modulus, tangent, from the gauge", "E gauge", "E"),
         in_compression("E_initial", "Young's modulus before damage, to 10 % of the peak, from the gauge", "E initial", "E"),
         in_compression("nu_initial", "Poisson's ratio before damage, to 10 % of the peak", "\u03bd initial", "nu"),
-        share("BTS_valid_share", "BTS_valid", brazilian, "Brazilian test valid by ISRM: 1 yes, 0 no", "valid"),
+        share("BTS_valid_share", in_splitting("BTS_valid", "Brazilian test valid by ISRM: 1 yes, 0 no", "valid")),
     };
+    all.insert(all.end(), std::begin(further), std::end(further));
+    return all;
 }
 
 }  // namespace

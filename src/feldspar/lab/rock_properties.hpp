@@ -25,7 +25,7 @@ struct RockProperty {
     std::string symbol;         ///< "UCS"
     std::string_view definition;
     Source source = Source::formed;
-    std::set<TestKind> tests{};                ///< that it needs, all of them
+    std::set<MethodId> tests{};                ///< that it needs, all of them
     const TestQuantity* quantity = nullptr;    ///< of source test: the number of it
     bool of_broken_only = false;               ///< of source test: a strength, which a test has whose peak was reached
     std::string_view above{}, below{};         ///< of source ratio: names of properties

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

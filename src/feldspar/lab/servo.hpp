@@ -2,8 +2,8 @@
 // (docs/theory/loading.md).
 #pragma once
 
-#include "feldspar/lab/result.hpp"
-#include "feldspar/model/spec.hpp"
+#include "feldspar/methods/result.hpp"
+#include "feldspar/methods/test_spec.hpp"
 
 namespace feldspar {
 

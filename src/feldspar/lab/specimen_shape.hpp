@@ -2,7 +2,7 @@
 // whether a column of this shape would bend aside before it breaks.
 #pragma once
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

@@ -10,6 +10,7 @@
 #include "feldspar/base/median.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 
@@ -54,16 +55,15 @@ BySeed collect(std::span<const TestResult> results, const RockProperty& property
     return values;
 }
 
-/// A packing's strengths by confining stress: uniaxial at 0, biaxial at its sigma_3.
+/// A packing's strengths by confining stress: uniaxial at 0.
 using Envelope = std::map<double, double>;
 
 std::map<std::uint64_t, Envelope> envelopes(std::span<const TestResult> results) {
     std::map<std::uint64_t, Envelope> found;
     for (const TestResult& r : results) {
-        const bool uniaxial = r.test.kind == TestKind::uniaxial_compression;
-        if (!uniaxial && r.test.kind != TestKind::biaxial) continue;
+        if (!method_of(r.test).loading.on_envelope) continue;
         const double sigma1 = strength(r.properties);
-        if (std::isfinite(sigma1)) found[r.seed].emplace(uniaxial ? 0.0 : r.test.sigma3_Pa, sigma1);
+        if (std::isfinite(sigma1)) found[r.seed].emplace(r.test.sigma3_Pa, sigma1);
     }
     return found;
 }

@@ -68,7 +68,7 @@ Beam beam_of(const Outline& outline, double thickness_m, const TestSpec& test) {
     beam.thickness_m = thickness_m;
     beam.middle_m = 0.5 * (box.lower.x + box.upper.x);
     beam.bottom_m = box.lower.y;
-    beam.span_m = test.span_m.value_or(std::min(4.0 * beam.height_m, kUsualShare * length));
+    beam.span_m = test.own_value("span").value_or(std::min(4.0 * beam.height_m, kUsualShare * length));
     if (beam.span_m >= length)
         throw InputError({.key = "test.span"}, fmt::format("a span of {} is longer than the beam of {}", mm(beam.span_m), mm(length)), fmt::format("less than {}", mm(length)));
     if (beam.span_m < kLeastSpan * beam.height_m)

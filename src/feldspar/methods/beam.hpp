@@ -1,7 +1,7 @@
 // A bent beam: its measures, and the closed forms that turn loads into stresses and toughness (docs/theory/properties.md, (P36)-(P40)).
 #pragma once
 
-#include "feldspar/model/spec.hpp"
+#include "feldspar/methods/test_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -38,6 +38,11 @@ double notch_factor(double x, double height_over_span);
 
 /// Opening of the notch's mouth times E' t / P (P39), for a span of 4 h. @param x  a/h, 0 to 1
 double mouth_factor(double x);
+
+/// The specimen of a job with a beam, for `feldspar new`.
+inline constexpr const char* beam_width_line = R"(width = "220 mm"                    # along the beam)";
+inline constexpr const char* beam_height_line = R"(height = "50 mm"                    # the load acts downwards
+# notches = [{ from = ["110 mm", "0 mm"], to = ["110 mm", "15 mm"], width = "1 mm" }]   # sawn slits; "0 mm": a cut)";
 
 /// The ratio S/h for which mouth_factor() holds, and by how much a beam's may differ.
 inline constexpr double mouth_span = 4.0, mouth_span_tolerance = 0.02;

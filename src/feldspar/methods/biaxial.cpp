@@ -6,16 +6,21 @@
 namespace feldspar::methods {
 
 const TestMethod biaxial{
-    .kind = TestKind::biaxial,
+    .name = "biaxial",
     .purpose = "isotropic consolidation, then axial loading at a constant pressure on the sides",
     .words = {"Biaxial compression", "Axial stress", "Axial strain from the platens"},
     .build = between_its_platens,
     .start = {},
     .reading = Reading::column,
     .specimen = {.confined = true},
-    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true, .failure_state = {{0.0, 1.0}}},
+    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true, .on_envelope = true, .failure_state = {{0.0, 1.0}}},
     .rate = {.travel_times = 300.0, .seconds = 10.0},
     .verdict = {},
+    .job = {.title = "Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.",
+            .gives = "isotropic consolidation, then axial loading at constant sigma3",
+            .keys = R"(sigma3 = ["4 MPa", "10 MPa"]        # one test for each; with a uniaxial test they give cohesion, friction angle and mi
+)",
+            .behind = &uniaxial_compression},   // the envelope needs the uniaxial point
 };
 
 }  // namespace feldspar::methods

@@ -49,7 +49,7 @@ double section_m2(const MethodInput& in) {
 }  // namespace
 
 const TestMethod brazilian{
-    .kind = TestKind::brazilian,
+    .name = "brazilian",
     .purpose = "a disc pressed between two jaws until it splits",
     .words = {"Brazilian test", "2P / (πDt)", "Approach of the plates / diameter"},
     .build = {jaws, diameter_m, section_m2, nullptr, {}, nullptr},
@@ -59,6 +59,15 @@ const TestMethod brazilian{
     .loading = {.tensile = true, .failure_state = {{-1.0, 3.0}}},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 250.0, .seconds = 8.0},
     .verdict = {.error_a = 1e-2, .imbalance_a = 3e-2, .imbalance_b = 5e-2},
+    .strength = {"BTS", "Brazilian tensile strength"},
+    .job = {.title = "A Brazilian test.",
+            .gives = "a disc pressed between two jaws: gives the indirect tensile strength BTS",
+            .keys = R"(# diameter = "80 mm"                # of the disc; the specimen's width unless given
+# plates = "curved"                 # jaws of 1.5 times the disc's radius (jaw_radius), as ISRM suggests; or "flat"
+# plate_Kn = "1600 GPa/m"           # of what lies between jaw and disc: a layer of masking tape. Flat plates are as hard as the contacts unless it is given
+# disc = "whole"                    # or "flattened": two flats, each of flat_angle = "20 deg" seen from the centre (10 to 40 deg), between flat plates
+# plate_mu = 0.4                    # friction between plates and disc
+)"},
 };
 
 }  // namespace feldspar::methods

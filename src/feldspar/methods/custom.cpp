@@ -8,6 +8,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/methods/beam.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/methods/platens.hpp"
 
@@ -66,16 +67,65 @@ std::vector<GaugeSpec> gauges(const MethodInput& in) { return in.test.custom.gau
 }  // namespace
 
 const TestMethod custom{
-    .kind = TestKind::custom,
+    .name = "custom",
     .purpose = "a test of your own: fixtures and gauges as the job gives them",
     .words = {"Test of your own", "Load / (width \u00d7 thickness)", "Loading motion / length"},
     .build = {fixtures, length_m, section_m2, gauges, {}, check},
     .start = {.strained_evenly = false, .stays_in_touch = false, .time_of_mode = true},
     .reading = Reading::curve,
-    .specimen = {.plates = true},
+    .specimen = {.plates = true, .fixtures_of_job = true},
     .loading = {.control = LoadControl::dissipation},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 150.0, .seconds = 40.0, .fixed_speed_strain = 2e-3},
     .verdict = {.error_a = 1e-2, .imbalance_a = 2e-2, .imbalance_b = 4e-2},
+    .job = {.title = "A test of your own: here a beam on four rollers.",
+            .gives = "a test of your own: curves, cracks, fields, energies, and no property of the rock",
+            .keys = R"(name = "four-point-bend"            # names its results
+# length = "50 mm"                  # strain = loading motion / length: the specimen's extent along the loading unless given
+# width = "220 mm"                  # stress = load / (width x thickness): its extent across the loading unless given
+# control = "dissipation"           # behind the peak; also "displacement", or a gauge
+# until = { gauge = "deflection", at = "0.5 mm" }
+)",
+            .tables = R"(
+[[test.fixture]]                    # what loads the specimen: "roller", flat "plate", hollow "jaw", or "boundary", which its own nodes follow
+name = "left load"
+kind = "roller"
+at = ["80 mm", "50 mm"]             # where it touches
+radius = "5 mm"
+normal = [0, 1]                     # from the specimen into the roller: up
+motion = [0, -1]                    # it comes down; without motion it is at rest
+mu = 0.4                            # keeps the beam from sliding away
+
+[[test.fixture]]
+name = "right load"
+kind = "roller"
+at = ["140 mm", "50 mm"]
+radius = "5 mm"
+normal = [0, 1]
+motion = [0, -1]
+mu = 0.4
+
+[[test.fixture]]
+name = "left support"
+kind = "roller"
+at = ["20 mm", "0 mm"]
+radius = "5 mm"
+normal = [0, -1]
+
+[[test.fixture]]
+name = "right support"
+kind = "roller"
+at = ["200 mm", "0 mm"]
+radius = "5 mm"
+normal = [0, -1]
+
+[[test.gauge]]                      # what is read: "extension" or "strain" between two points, "displacement" of a point, "force" on a fixture
+name = "deflection"
+kind = "displacement"
+at = ["110 mm", "0 mm"]
+direction = [0, -1]                 # downwards
+)",
+            .width = beam_width_line,
+            .height = beam_height_line},
 };
 
 }  // namespace feldspar::methods

@@ -1,6 +1,7 @@
 // The flattened Brazilian disc: the share of 2P / (pi D t) that counts as its stress, (P31) in docs/theory/properties.md.
 #pragma once
 
+#include "feldspar/methods/test_spec.hpp"
 #include "feldspar/model/spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 

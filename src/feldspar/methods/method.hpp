@@ -4,11 +4,16 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "feldspar/base/quantity_unit.hpp"
+#include "feldspar/base/range.hpp"
+#include "feldspar/methods/result.hpp"
+#include "feldspar/methods/test_spec.hpp"
 #include "feldspar/model/fixture_spec.hpp"
-#include "feldspar/model/spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -28,7 +33,7 @@ struct MethodBuild {
     double (*length_m)(const MethodInput&) = nullptr;    ///< strain = loading motion / length
     double (*section_m2)(const MethodInput&) = nullptr;  ///< stress = load / section
     std::vector<GaugeSpec> (*gauges)(const MethodInput&) = nullptr;   ///< none: no gauges but those of the strain in the specimen's middle
-    std::vector<const char*> gauge_names{};   ///< that it may have
+    std::span<const char* const> gauge_names{};   ///< that it may have
     void (*check)(const Outline&, double thickness_m, const TestSpec&) = nullptr;   ///< throws InputError if the specimen is none for the test; none: it stands between platens
 };
 
@@ -46,12 +51,58 @@ struct MethodStart {
     bool time_of_mode = false;      ///< the time that rates are measured in is the loading mode's; else a wave's over the length
 };
 
-/// What is read from the record of a test.
+/// What is read from the record of a test, beside the properties that the method adds.
 enum class Reading {
     column,   ///< moduli, Poisson's ratio, thresholds and the branch behind the peak of a specimen that is strained evenly
     disc,     ///< how a disc was split
-    beam,     ///< flexural strength, modulus and toughness
     curve     ///< the largest load alone
+};
+
+/// A key that the method adds to [[test]]: a quantity with its unit, or a plain number.
+struct MethodKey {
+    std::string_view name;
+    Dimension dimension = Dimension::fraction;   ///< fraction: a plain number
+    Range range = positive;
+    const char* usual = "";         ///< in words, what holds without it
+    const char* meaning = "";       ///< one sentence in Markdown, without the full stop
+    bool needed = false;            ///< the test must give it
+    bool list = false;              ///< one value or a list
+};
+
+/// The record of a test, and its largest load.
+struct MethodReading {
+    const TestResult& result;
+    std::size_t peak_row = 0;       ///< in TestResult::history
+    double peak_Pa = 0.0;           ///< > 0
+    bool peak_reached = false;
+};
+
+/// A number that the method adds to those that every test has.
+struct MethodProperty {
+    std::string_view name;          ///< without unit: "K_Ic"; no two methods give one name to two things
+    QuantityUnit unit;
+    std::string_view definition;    ///< "(P38)": where docs/theory/properties.md defines it; empty for what needs no formula
+    double (*value)(const MethodReading&) = nullptr;   ///< as it is kept; not-a-number where the record does not define it
+    const char* label = "";         ///< "Fracture toughness, notched three-point bending"
+    const char* symbol = "";        ///< of a property of the rock, which tables and reports show over the packings; empty: it is none
+    std::string_view laboratory{};  ///< the key of a job's [laboratory] that it compares with; empty without one
+};
+
+/// The strength that a method measures, as a property of the rock.
+struct MethodStrength {
+    std::string_view name{};        ///< "UCS"; empty: its largest stress is no property of the rock
+    const char* label = "";
+};
+
+/// What `feldspar new` writes.
+struct MethodTemplate {
+    const char* title = "";         ///< "A Brazilian test."
+    const char* gives = "";         ///< what stands beside its kind
+    const char* keys = "";          ///< lines of its own, behind the kind; those of every test follow
+    const char* tables = "";        ///< what stands behind its [[test]]
+    const char* width = "";         ///< the line of the specimen's width, if not that of an upright specimen
+    const char* height = "";        ///< the same of its height
+    const TestMethod* behind = nullptr;   ///< another test that stands before it
 };
 
 /// What the specimen is, and what touches it.
@@ -61,6 +112,7 @@ struct MethodSpecimen {
     bool glued = false;        ///< the ends are glued to the platens; else they may slide and come off
     double plate_mu = 0.0;     ///< friction of plates, unless the job gives another
     bool plates = false;       ///< plates or rollers load it whatever its grains are; else only rigid grains and inner particles
+    bool fixtures_of_job = false;   ///< the job itself gives its fixtures, gauges and name
 };
 
 /// How it is loaded, and what is then known of it.
@@ -71,6 +123,7 @@ struct MethodLoading {
     bool widens = false;       ///< the specimen widens as it fails: the lateral strain can control the test, and tells of damage
     bool bends = false;        ///< a column that may bend aside before it breaks (Euler)
     bool tensile = false;      ///< the strength is a tensile one
+    bool on_envelope = false;  ///< the strength is a point of the strength envelope, at the confining pressure of the test
     /// Principal stresses at the strength, where they are known: sigma3 and sigma1 as multiples of it, and sigma3 with the confining pressure.
     std::optional<std::array<double, 2>> failure_state{};
 };
@@ -91,7 +144,7 @@ struct MethodVerdict {
 };
 
 struct TestMethod {
-    TestKind kind;
+    const char* name;      ///< as jobs and files call it: "uniaxial-compression"
     const char* purpose;   ///< one sentence
     MethodWords words;
     MethodBuild build;
@@ -101,16 +154,33 @@ struct TestMethod {
     MethodLoading loading;
     MethodRate rate;
     MethodVerdict verdict;
+    MethodStrength strength{};
+    const char* properties_table = "";          ///< what summary.json calls the table of these:
+    std::span<const MethodProperty> properties{};
+    std::span<const MethodKey> keys{};
+    MethodTemplate job{};
+
+    struct OnlyOne {                            // a definition is one object, known by its address
+        OnlyOne() = default;
+        OnlyOne(const OnlyOne&) = delete;
+    } only_one{};
 };
 
-/// One definition a file, named as jobs name the method.
-namespace methods {
-extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom;
-}
+/// All methods, in the order in which users are told.
+std::span<const MethodId> test_methods();
+
+/// The method that files call so; none if there is no such method.
+std::optional<MethodId> find_method(std::string_view name);
+
+/// The method that measures the strength of this name ("UCS"), which must exist.
+MethodId method_of_strength(std::string_view name);
+
+/// The method that gives the points of the strength envelope under a confining pressure.
+MethodId method_of_confined_strength();
 
 /// The facts of a method.
-const TestMethod& method_of(TestKind kind);
-inline const TestMethod& method_of(const TestSpec& test) { return method_of(test.kind); }
+inline const TestMethod& method_of(MethodId id) { return id.definition(); }
+inline const TestMethod& method_of(const TestSpec& test) { return test.kind.definition(); }
 
 /// What files call the test: the method, or the name that the user gave his own.
 inline std::string test_name(const TestSpec& test) { return test.custom.name.empty() ? name(test.kind) : test.custom.name; }
@@ -119,10 +189,10 @@ inline std::string test_name(const TestSpec& test) { return test.custom.name.emp
 inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }
 
 /// What the platens do behind the strength unless the job says otherwise. @param adaptive  the numerics can change the speed at all
-inline LoadControl usual_control(TestKind kind, bool adaptive) { return adaptive ? method_of(kind).loading.control : LoadControl::displacement; }
+inline LoadControl usual_control(MethodId kind, bool adaptive) { return adaptive ? method_of(kind).loading.control : LoadControl::displacement; }
 
 /// A test of this kind as a job has it that says nothing more, but for the control, which depends on the numerics (usual_control()).
 /// @param flattened  the disc has flats, on which flat plates press
-TestSpec usual_test(TestKind kind, bool flattened = false);
+TestSpec usual_test(MethodId kind, bool flattened = false);
 
 }  // namespace feldspar

@@ -1,4 +1,8 @@
-// The list of test methods.
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string>
+
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -7,16 +11,47 @@ namespace {
 // A laboratory wraps the disc in a layer of masking tape, about 0.25 mm of a modulus near 0.4 GPa (docs/decisions, fixture of the Brazilian test).
 constexpr double tape_Kn_Pa_m = 1.6e12;
 
-}  // namespace
-
-const TestMethod& method_of(TestKind kind) {
-    for (const TestMethod* method : {&methods::uniaxial_compression, &methods::direct_tension, &methods::biaxial, &methods::brazilian,
-                                     &methods::three_point_bend, &methods::custom})
-        if (method->kind == kind) return *method;
-    return methods::uniaxial_compression;   // never: every kind has its method
+template <class Such>
+MethodId the_one(const Such& such, std::string_view what) {
+    const std::span<const MethodId> all = test_methods();
+    const auto found = std::ranges::find_if(all, such);
+    if (found == all.end()) throw std::logic_error("no test method measures " + std::string(what));
+    return *found;
 }
 
-TestSpec usual_test(TestKind kind, bool flattened) {
+}  // namespace
+
+std::span<const MethodId> test_methods() {
+    static const std::array all{
+#define FELDSPAR_METHOD(definition) MethodId(methods::definition),
+#include "feldspar/methods/list.inc"
+#undef FELDSPAR_METHOD
+    };
+    return all;
+}
+
+std::size_t MethodId::place(MethodId id) {
+    const std::span<const MethodId> all = test_methods();
+    return static_cast<std::size_t>(std::ranges::find(all, id) - all.begin());
+}
+
+const char* name(MethodId method) { return method.definition().name; }
+
+std::optional<MethodId> find_method(std::string_view name) {
+    const std::span<const MethodId> all = test_methods();
+    const auto found = std::ranges::find_if(all, [&](MethodId id) { return name == id.definition().name; });
+    return found == all.end() ? std::nullopt : std::optional(*found);
+}
+
+MethodId method_of_strength(std::string_view name) {
+    return the_one([&](MethodId id) { return id.definition().strength.name == name; }, name);
+}
+
+MethodId method_of_confined_strength() {
+    return the_one([](MethodId id) { return id.definition().loading.on_envelope && id.definition().specimen.confined; }, "a confined strength");
+}
+
+TestSpec usual_test(MethodId kind, bool flattened) {
     TestSpec test;
     test.kind = kind;
     test.stop_fraction = method_of(kind).loading.stop_fraction;

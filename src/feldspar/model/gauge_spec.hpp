@@ -1,7 +1,10 @@
 // What is read on a specimen beside its load and its loading motion, as plain data.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "feldspar/base/vec2.hpp"
@@ -29,5 +32,12 @@ struct GaugeSpec {
     std::string fixture;               ///< force: the fixture's name
     Vec2 direction{};                  ///< force: unit vector
 };
+
+/// The number of the gauge of this name, or -1.
+inline int gauge_number(std::span<const GaugeSpec> gauges, std::string_view name) {
+    for (std::size_t g = 0; g < gauges.size(); ++g)
+        if (gauges[g].name == name) return static_cast<int>(g);
+    return -1;
+}
 
 }  // namespace feldspar

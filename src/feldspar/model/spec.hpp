@@ -1,13 +1,8 @@
-// What the user asks of the physics: the particle model, the materials, the numerics and the test, as plain data in SI.
+// What the user asks of the physics: the particle model, the materials and the numerics, as plain data in SI. The test: methods/test_spec.hpp.
 #pragma once
 
 #include <array>
 #include <optional>
-#include <string>
-#include <vector>
-
-#include "feldspar/model/fixture_spec.hpp"
-#include "feldspar/model/gauge_spec.hpp"
 
 namespace feldspar {
 
@@ -61,50 +56,6 @@ struct NumericsSpec {
     bool confirm = false;                           ///< repeat each test at a third of the target (or speed), and at another damping, and report the changes
 };
 
-enum class PlateShape { flat, curved };   ///< of the plates of a Brazilian test; curved: the jaws of ISRM
-
-enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom };
-
-/// What the loading keeps constant behind the strength: its own speed, the growth of the lateral strain, of the dissipated energy, or of a gauge.
-enum class LoadControl { displacement, lateral_strain, dissipation, gauge };
-
-/// A test of the user's own: what loads and holds the specimen, and what is read.
-struct CustomTest {
-    std::string name;                      ///< names its results, as a test method's name does
-    std::vector<FixtureSpec> fixtures;     ///< plates with a stiffness of 0 have that of the test
-    std::vector<GaugeSpec> gauges;
-    std::optional<double> length_m;        ///< strain = loading motion / length; default: the extent of the specimen along the loading
-    std::optional<double> width_m;         ///< stress = load / (width x thickness); default: its extent across
-};
-
-/// Ends a test when a gauge has reached a value, upwards or downwards.
-struct GaugeStop {
-    std::string gauge;
-    double value = 0.0;                    ///< SI
-};
-
-struct TestSpec {
-    TestKind kind = TestKind::uniaxial_compression;
-    double sigma3_Pa = 0.0;              ///< biaxial only
-    double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
-    LoadControl control = LoadControl::displacement;   ///< behind the strength; jobs: that of the method unless said; lateral strain: compression only
-    double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
-    std::optional<double> maximum_stress_Pa; ///< ... or when the stress has reached this, a positive magnitude (biaxial: sigma1)
-    PlateShape plates = PlateShape::flat;    ///< Brazilian only
-    double jaw_radius = 1.5;             ///< of curved plates, over the radius of the disc; more than 1
-    double plate_stiffness_factor = 1.0; ///< plates: their Kn as a multiple of the contacts' Kn
-    std::optional<double> plate_Kn_Pa_m; ///< plates: their Kn itself, as of a bearing strip; in place of the factor
-    std::optional<double> plate_mu;      ///< plates: friction; default 0.4 in the Brazilian test, else 0
-    int membrane_plates = 16;            ///< biaxial, rigid and inner particles: plates of the membrane on each side
-    int snapshots = 8;                   ///< fields kept between the first crack and the end, besides start, peak and end
-    std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
-    std::optional<double> span_m;        ///< bending: between the supports; default: of the method
-    std::optional<double> roller_radius_m;  ///< bending: default: of the method
-    std::string control_gauge;           ///< LoadControl::gauge: the gauge that controls
-    std::optional<GaugeStop> stop_gauge; ///< ends the test
-    CustomTest custom;                   ///< custom only
-};
-
 // All values of each, in the order in which users are told; name() is how files call them.
 inline constexpr std::array grain_kinds{GrainKind::flexible, GrainKind::rigid, GrainKind::inner_particles};
 inline constexpr std::array contact_kinds{ContactKind::lobatto3, ContactKind::point};
@@ -112,22 +63,7 @@ inline constexpr std::array contact_normals{ContactNormal::centres, ContactNorma
 inline constexpr std::array plane_states{PlaneState::stress, PlaneState::strain};
 inline constexpr std::array contact_laws{ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle};
 inline constexpr std::array numerics_kinds{NumericsKind::adaptive, NumericsKind::paper, NumericsKind::dynamic};
-inline constexpr std::array plate_shapes{PlateShape::flat, PlateShape::curved};
-inline constexpr std::array load_controls{LoadControl::displacement, LoadControl::lateral_strain, LoadControl::dissipation};   // and gauges, by their names
-inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian,
-                                       TestKind::three_point_bend, TestKind::custom};
 
-inline const char* name(TestKind kind) {
-    switch (kind) {
-        case TestKind::uniaxial_compression: return "uniaxial-compression";
-        case TestKind::direct_tension: return "direct-tension";
-        case TestKind::biaxial: return "biaxial";
-        case TestKind::brazilian: return "brazilian";
-        case TestKind::three_point_bend: return "three-point-bend";
-        case TestKind::custom: return "custom";
-    }
-    return "?";
-}
 inline const char* name(NumericsKind kind) {
     switch (kind) {
         case NumericsKind::adaptive: return "adaptive";
@@ -155,16 +91,6 @@ inline const char* name(GrainKind kind) {
     }
     return "?";
 }
-inline const char* name(LoadControl control) {
-    switch (control) {
-        case LoadControl::displacement: return "displacement";
-        case LoadControl::lateral_strain: return "lateral-strain";
-        case LoadControl::dissipation: return "dissipation";
-        case LoadControl::gauge: return "gauge";
-    }
-    return "?";
-}
-inline const char* name(PlateShape shape) { return shape == PlateShape::flat ? "flat" : "curved"; }
 inline const char* name(ContactNormal normal) { return normal == ContactNormal::centres ? "centres" : "edge"; }
 
 }  // namespace feldspar

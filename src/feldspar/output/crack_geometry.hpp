@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 
 namespace feldspar {
 

@@ -69,8 +69,12 @@ void HtmlPage::fill(const std::string& mark, const std::string& text) {
     from_ = found + text.size();
 }
 
-nlohmann::ordered_json with_titles(nlohmann::ordered_json data) {
-    for (const TestKind kind : test_kinds) data["titles"][name(kind)] = method_of(kind).words.title;
+nlohmann::ordered_json with_methods(nlohmann::ordered_json data) {
+    for (const MethodId id : test_methods()) {
+        const TestMethod& method = method_of(id);
+        data["methods"][method.name] = {{"title", method.words.title}, {"sign", method.loading.sign}, {"strength", method.strength.name},
+                                        {"on_envelope", method.loading.on_envelope}, {"confined", method.specimen.confined}};
+    }
     return data;
 }
 
@@ -79,7 +83,7 @@ std::string html_page(const std::string& title, const nlohmann::ordered_json& da
     page.fill("title", escaped(title));
     page.fill("uplot_css", asset_uPlot_min_css);
     page.fill("css", asset_report_css);
-    page.fill("data", script_json(with_titles(data)));
+    page.fill("data", script_json(with_methods(data)));
     page.fill("uplot_js", asset_uPlot_iife_min_js);
     page.fill("charts_js", asset_charts_js);
     page.fill("page_js", asset_page_js);

@@ -28,7 +28,7 @@ private:
 /// A page of tables and charts: `script` (from report_assets.hpp) lays out `data`.
 std::string html_page(const std::string& title, const nlohmann::ordered_json& data, const char* script);
 
-/// The data of a page with `titles`: what users read for each kind of test.
-nlohmann::ordered_json with_titles(nlohmann::ordered_json data);
+/// The data of a page with `methods`: what pages have to know of each test method.
+nlohmann::ordered_json with_methods(nlohmann::ordered_json data);
 
 }  // namespace feldspar

@@ -132,6 +132,15 @@ Json gauges_json(const TestResult& result, std::size_t tests) {
     return list;
 }
 
+/// The numbers that the method adds, in words.
+Json properties_json(const TestResult& result) {
+    Json list = Json::array();
+    for (const MethodProperty& property : method_of(result.test).properties)
+        if (const double value = test_quantity(property.name).value(result); std::isfinite(value))
+            list.push_back({{"label", property.label}, {"value", rounded(value * property.unit.factor)}, {"unit", property.unit.user}});
+    return list;
+}
+
 Json test_json(const TestResult& result, std::size_t tests) {
     Json test;
     if (!result.variant.empty()) test["variant"] = result.variant;
@@ -150,7 +159,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     add(test, result, QuantityGroup::first_crack);
     const Reading reading = method_of(result.test).reading;
     if (reading == Reading::disc) test["brazilian"] = brazilian_json(result);
-    if (reading == Reading::beam) add(test["bending"], result, QuantityGroup::bending);
+    test["properties"] = properties_json(result);
     test["gauges"] = gauges_json(result, tests);
     add(test["post_peak"], result, QuantityGroup::post_peak);
     add(test, result, QuantityGroup::elastic);

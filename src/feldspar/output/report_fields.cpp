@@ -219,7 +219,7 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B) {
-    using Group = std::tuple<std::string, TestKind, double>;  // variant, kind, sigma_3
+    using Group = std::tuple<std::string, MethodId, double>;  // variant, kind, sigma_3
     const auto group_of = [](const TestResult& r) { return Group(r.variant, r.test.kind, r.test.sigma3_Pa); };
     std::set<Group> open;
     std::set<std::string> variants;

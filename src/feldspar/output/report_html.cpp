@@ -43,7 +43,7 @@ void write_report(const RunDirectory& directory, const Job& job, std::span<const
     page.fill("title", escaped(job.name));
     page.fill("uplot_css", asset_uPlot_min_css);
     page.fill("css", asset_report_css);
-    page.fill("data", script_json(with_titles(data)));
+    page.fill("data", script_json(with_methods(data)));
     page.fill("fields", blocks);
     page.fill("uplot_js", asset_uPlot_iife_min_js);
     page.fill("charts_js", asset_charts_js);

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "feldspar/lab/properties.hpp"
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 #include "feldspar/job/job.hpp"
 
 namespace feldspar {

@@ -88,9 +88,9 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
         Json& disc = test["brazilian"] = {{"plates", name(result.test.plates)}};
         add(disc, result, QuantityGroup::brazilian);
         if (result.specimen && result.specimen->outline.flattened()) add(disc, result, QuantityGroup::flattened);
-    } else if (reading == Reading::beam) {
-        Json& beam = test["bending"] = {{"control", control_of(result.test)}};
-        add(beam, result, QuantityGroup::bending);
+    } else if (!method_of(result.test).properties.empty()) {
+        Json& own = test[method_of(result.test).properties_table] = {{"control", control_of(result.test)}};
+        add(own, result, QuantityGroup::of_method);
     } else if (reading == Reading::curve) {
         test["control"] = control_of(result.test);
     } else {

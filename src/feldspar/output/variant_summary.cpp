@@ -40,7 +40,7 @@ std::vector<VariantSummary> summarise_variants(const Job& job, std::span<const T
     std::vector<VariantSummary> summaries;
     for (const Variant& variant : job.variants) {
         std::vector<TestResult> own;
-        std::map<TestKind, std::vector<double>> costs;
+        std::map<MethodId, std::vector<double>> costs;
         for (const TestResult& result : results) {
             if (result.variant != variant.name) continue;
             own.push_back(numbers_of(result));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "feldspar/lab/properties.hpp"
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 #include "feldspar/job/job.hpp"
 
 namespace feldspar {
@@ -16,7 +16,7 @@ namespace feldspar {
 struct VariantSummary {
     const Variant* variant = nullptr;  ///< points into the job
     PropertySummary properties;
-    std::map<TestKind, double> ms_per_step;  ///< median over its tests of a kind
+    std::map<MethodId, double> ms_per_step;  ///< median over its tests of a kind
 };
 
 /// One for each variant of the job, in its order; those without results are there with nothing in them.

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -74,9 +75,7 @@ void lay_over(toml::table& under, const toml::table& over) {
 
 namespace {
 
-bool is_test_kind(std::string_view word) {
-    return std::any_of(test_kinds.begin(), test_kinds.end(), [&](TestKind kind) { return word == name(kind); });
-}
+bool is_test_kind(std::string_view word) { return find_method(word).has_value(); }
 
 // Keys for every test, and tables named as a kind of test, for the tests of that kind.
 void lay_over_tests(toml::array& tests, const toml::table& piece) {

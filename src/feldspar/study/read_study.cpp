@@ -21,7 +21,7 @@ struct Choice {
     AxisValue value;
     toml::table piece;
     std::vector<std::uint64_t> seeds;   // empty = all
-    std::vector<TestKind> tests;        // empty = all
+    std::vector<MethodId> tests;        // empty = all
 };
 
 struct Axis {
@@ -59,10 +59,10 @@ private:
         study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
         seeds_ = root_.has("seeds") ? read_seed_list(root_, "seeds") : std::vector<std::uint64_t>{};
         tests_ = read_kinds(root_);
-        for (TestKind kind : tests_) check_kind(root_, kind);
+        for (MethodId kind : tests_) check_kind(root_, kind);
     }
 
-    void check_kind(const TableReader& table, TestKind kind) const {
+    void check_kind(const TableReader& table, MethodId kind) const {
         const auto& tests = base_.job().tests;
         if (!root_.sound({"job"})) return;
         if (std::none_of(tests.begin(), tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
@@ -139,7 +139,7 @@ private:
             if (value.has("set")) choice.piece = read_piece(value, "set");
             if (value.has("seeds")) choice.seeds = read_seed_list(value, "seeds");
             choice.tests = read_kinds(value);
-            for (TestKind kind : choice.tests) check_kind(value, kind);
+            for (MethodId kind : choice.tests) check_kind(value, kind);
             axis.choices.push_back(std::move(choice));
         }
         return axis;
@@ -211,7 +211,7 @@ private:
             job.seeds = seeds_;
             for (TestSpec& test : job.tests) test.seeds.clear();
         }
-        const auto keep_tests = [&](const std::vector<TestKind>& kinds) {
+        const auto keep_tests = [&](const std::vector<MethodId>& kinds) {
             if (!kinds.empty())
                 std::erase_if(job.tests, [&](const TestSpec& test) { return std::find(kinds.begin(), kinds.end(), test.kind) == kinds.end(); });
         };
@@ -291,7 +291,7 @@ private:
 
     Study study_;
     std::vector<std::uint64_t> seeds_;   // empty = the job's
-    std::vector<TestKind> tests_;        // empty = the job's
+    std::vector<MethodId> tests_;        // empty = the job's
     std::vector<Axis> axes_;
     std::set<std::string> told_;         // of points' mistakes, without the point
 };

@@ -7,6 +7,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/quantities.hpp"
+#include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
@@ -108,8 +109,7 @@ SettledRuns settled_runs(std::span<const RunRecord> records, const Provenance* p
 
 TestResult result_of(const RunRecord& record) {
     TestResult result;
-    for (const TestKind kind : test_kinds)
-        if (record.test == name(kind)) result.test.kind = kind;
+    if (const auto method = find_method(record.test)) result.test.kind = *method;
     result.test.sigma3_Pa = record.sigma3_Pa;
     result.seed = record.seed;
     for (const TestQuantity& quantity : test_quantities()) {

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/study/study.hpp"
 

@@ -43,7 +43,7 @@ public:
     double seconds(const Run& run) const;
 
 private:
-    using Like = std::tuple<TestKind, GrainKind, NumericsKind, double>;
+    using Like = std::tuple<MethodId, GrainKind, NumericsKind, double>;
     static Like like(const Run& run);
 
     std::map<Like, double> per_thousand_;   // s for 1000 grains

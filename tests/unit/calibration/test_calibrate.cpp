@@ -36,13 +36,13 @@ Rock rock_of(const CalibrationResult& result) {
 // Strengths of the kind that the flexible model shows, with the scatter of packings and of the order of cracks.
 class FormulaLaboratory : public Laboratory {
 public:
-    std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<Observable>& observables) override {
-        std::vector<std::vector<Reading>> readings;
+    std::vector<std::vector<RunReading>> see(const std::vector<Request>& requests, const std::vector<Observable>& observables) override {
+        std::vector<std::vector<RunReading>> readings;
         for (const Request& request : requests) {
             ++requests_;
             if (stop_after > 0 && requests_ > stop_after) throw Interrupted();
-            std::set<std::pair<TestKind, double>> tests;
-            std::vector<Reading>& own = readings.emplace_back();
+            std::set<std::pair<MethodId, double>> tests;
+            std::vector<RunReading>& own = readings.emplace_back();
             const Rock rock = rock_of(request.values);
             if (!request.elastic && std::abs(std::log(mean(rock, "UCS") / wanted_UCS)) > std::log(2.1)) ++(observables[request.quantities.front()].sigma3_Pa > 0.0 ? far_confined : far_others);
             for (const std::size_t q : request.quantities) {
@@ -51,7 +51,7 @@ public:
                 const auto enough = enough_for.find(observables[q].name);
                 const bool too_far = !request.whole && enough != enough_for.end() && value > enough->second;
                 bounds += too_far;
-                own.push_back(too_far ? Reading{enough->second, Says::at_least} : Reading{value});
+                own.push_back(too_far ? RunReading{enough->second, Says::at_least} : RunReading{value});
             }
             used_ += static_cast<int>(tests.size());
         }

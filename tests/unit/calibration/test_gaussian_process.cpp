@@ -88,7 +88,7 @@ TEST(Search, PointsFillTheCubeEvenly) {
 
 // Known all over, and met: what a run could still show lies where the target is met, not at whatever candidate comes first.
 TEST(Search, RunsAreMadeOnlyWhereTheyPromiseSomething) {
-    const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"};
+    const Observable strength{"UCS", methods::uniaxial_compression, 0.0, "strength_Pa"};
     const auto truth = [](const std::vector<double>& x) { return 1e8 * std::exp(2.0 * x[0] - x[1] + 0.3 * std::sin(5.0 * x[1])); };
     Target target;
     target.name = "UCS";
@@ -107,7 +107,7 @@ TEST(Search, RunsAreMadeOnlyWhereTheyPromiseSomething) {
 
 // What ended at a bound is taken for what the rest says, and for the bound where the rest says less.
 TEST(Learner, BoundsHoldWhatIsLearnedUpAndNotDown) {
-    const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, strength_column};
+    const Observable strength{"UCS", methods::uniaxial_compression, 0.0, strength_column};
     const auto truth = [](double x) { return 1e8 * std::exp(2.0 * x); };
     Learner above({strength}, {Target{"UCS", 0.0, 1e8, 1e6}}), below = above;
     for (int i = 0; i < 8; ++i) {
@@ -132,7 +132,7 @@ TEST(Learner, BoundsHoldWhatIsLearnedUpAndNotDown) {
 
 // Two sets are predicted to meet the target; the one that was seen often is the answer.
 TEST(Search, OfEquallyGoodSetsTheBestKnownIsChosen) {
-    const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, "strength_Pa"};
+    const Observable strength{"UCS", methods::uniaxial_compression, 0.0, "strength_Pa"};
     Target target;
     target.name = "UCS";
     target.value = 1e8;

@@ -45,13 +45,13 @@ TEST(Targets, SayWhatStrengthACompressionTestIsToShow) {
     const std::vector<Target> targets{target("UCS", 100e6), target("friction_angle", 30.0), target("sigma1", 250e6, 20e6)};   // N = 3
     TestSpec test;
     EXPECT_DOUBLE_EQ(wanted_strength_Pa(test, targets), 100e6);
-    test.kind = TestKind::biaxial;
+    test.kind = methods::biaxial;
     test.sigma3_Pa = 10e6;
     EXPECT_NEAR(wanted_strength_Pa(test, targets), 130e6, 1.0);
     test.sigma3_Pa = 20e6;
     EXPECT_DOUBLE_EQ(wanted_strength_Pa(test, targets), 250e6);
     EXPECT_TRUE(std::isnan(wanted_strength_Pa(test, {target("UCS", 100e6)})));
-    test.kind = TestKind::brazilian;
+    test.kind = methods::brazilian;
     EXPECT_TRUE(std::isnan(wanted_strength_Pa(test, targets)));
 }
 

@@ -43,11 +43,11 @@ class SyntheticLaboratory : public Laboratory {
 public:
     explicit SyntheticLaboratory(const Scatter& scatter) : scatter_(scatter) {}
 
-    std::vector<std::vector<Reading>> see(const std::vector<Request>& requests, const std::vector<Observable>&) override {
-        std::vector<std::vector<Reading>> readings;
+    std::vector<std::vector<RunReading>> see(const std::vector<Request>& requests, const std::vector<Observable>&) override {
+        std::vector<std::vector<RunReading>> readings;
         for (const Request& request : requests) {
             const double x = std::log(request.values[0]);
-            Reading reading{median(request.values[0]) * std::exp(scatter_.at(x, request.seed, 1, static_cast<std::uint64_t>(++used_)))};
+            RunReading reading{median(request.values[0]) * std::exp(scatter_.at(x, request.seed, 1, static_cast<std::uint64_t>(++used_)))};
             reading.grade = 'A';
             const bool too_fast = request.whole ? request.seed < first_good : every_too_fast > 0 && used_ % every_too_fast == 0;
             if (too_fast) {
@@ -288,7 +288,7 @@ TEST(GaussianProcess, AnObservationsOwnVarianceIsItsWeight) {
 }
 
 TEST(Learner, UpperBoundsHoldDownAndNotUp) {
-    const Observable strength{"UCS", TestKind::uniaxial_compression, 0.0, strength_column};
+    const Observable strength{"UCS", methods::uniaxial_compression, 0.0, strength_column};
     Learner high({strength}, {Target{"UCS", 0.0, 1e8, 1e6}}), low = high;
     for (int i = 0; i < 10; ++i) {
         const double x = 0.06 * i;
@@ -308,12 +308,12 @@ TEST(Learner, UpperBoundsHoldDownAndNotUp) {
 }
 
 TEST(Readings, FollowFromTheGradeOfTheRun) {
-    const Observable strength{"BTS", TestKind::brazilian, 0.0, strength_column}, E{"E", TestKind::uniaxial_compression, 0.0, "E_Pa"};
+    const Observable strength{"BTS", methods::brazilian, 0.0, strength_column}, E{"E", methods::uniaxial_compression, 0.0, "E_Pa"};
     RunRecord record;
     record.state = RunState::done;
     record.numbers = {{strength_column, 10e6}, {"peak_reached", 1.0}, {"error_estimate", 0.01645}, {"E_Pa", 25e9}, {"E_initial_Pa", 26e9}};
     record.texts["grade"] = "B";
-    Reading reading = reading_of(record, strength, false, false);
+    RunReading reading = reading_of(record, strength, false, false);
     EXPECT_TRUE(reading.is_value());
     EXPECT_NEAR(reading.error, 0.02, 1e-12);   // twice the estimate covers nine tests in ten: 1.645 standard deviations
     EXPECT_EQ(reading_of(record, E, false, false).error, 0.0);

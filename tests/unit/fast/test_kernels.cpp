@@ -136,7 +136,7 @@ void mix_contacts(Assembly& assembly) {
 }
 
 struct Case {
-    TestKind test;
+    MethodId test;
     ModelSpec model;
     ContactLaw law;
     ShearMeasure measure = ShearMeasure::total;
@@ -149,12 +149,12 @@ std::vector<Case> cases() {
     models.push_back(fixtures::model(GrainKind::flexible));
     models.push_back(fixtures::model(GrainKind::flexible, ContactKind::point));
     for (const ModelSpec& model : models)
-        for (const TestKind test : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian})
+        for (const MethodId test : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension, methods::biaxial, methods::brazilian})
             all.push_back({test, model, ContactLaw::bilinear});
     for (const ContactLaw law : {ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle})
         for (const ShearMeasure measure : {ShearMeasure::total, ShearMeasure::beyond_friction})
             for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant})
-                all.push_back({TestKind::uniaxial_compression, fixtures::model(GrainKind::flexible), law, measure, unloading});
+                all.push_back({methods::uniaxial_compression, fixtures::model(GrainKind::flexible), law, measure, unloading});
     return all;
 }
 
@@ -172,11 +172,11 @@ class OneStep : public testing::TestWithParam<Case> {
 protected:
     static TestSetup make() {
         const Case& c = GetParam();
-        const SpecimenSpec spec = c.test == TestKind::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04);
+        const SpecimenSpec spec = c.test == methods::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04);
         TestSetup s = fixtures::setup(spec, c.test, c.model, c.law);
         s.contact.shear_measure = c.measure;
         s.contact.tension_unloading = c.unloading;
-        if (c.test == TestKind::biaxial) s.test.sigma3_Pa = 2e6;
+        if (c.test == methods::biaxial) s.test.sigma3_Pa = 2e6;
         s.test.membrane_plates = 4;
         return s;
     }
@@ -187,7 +187,7 @@ TEST_P(OneStep, IsThatOfTheReadableStages) {
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
     choose_step(e);
-    if (GetParam().test == TestKind::biaxial) e.assembly.pressure_Pa = setup.test.sigma3_Pa;
+    if (GetParam().test == methods::biaxial) e.assembly.pressure_Pa = setup.test.sigma3_Pa;
     stir(e.assembly);
     mix_contacts(e.assembly);
     for (const Damping damping : {Damping::viscous, Damping::local})
@@ -298,7 +298,7 @@ TEST_P(OneStep, LeavesTheMotionOfTheReadableFormulas) {
 
 TEST(Packs, HoldTheEnergyOfTheReadableFormulas) {
     for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant}) {
-        TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+        TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
         setup.contact.tension_unloading = unloading;
         const RunControl control = fixtures::threads(1);
         Experiment e(setup, control);
@@ -367,11 +367,11 @@ void expect_narrow_bands(const Assembly& assembly) {
 }
 
 TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
-    for (const TestKind test : {TestKind::uniaxial_compression, TestKind::biaxial, TestKind::brazilian})
+    for (const MethodId test : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::biaxial, methods::brazilian})
         for (const ModelSpec& model : {fixtures::model(GrainKind::flexible), fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}) {
-            const SpecimenSpec spec = test == TestKind::brazilian ? fixtures::disc(0.04) : fixtures::rectangle(0.02, 0.08);
+            const SpecimenSpec spec = test == methods::brazilian ? fixtures::disc(0.04) : fixtures::rectangle(0.02, 0.08);
             TestSetup setup = fixtures::setup(spec, test, model);
-            setup.test.sigma3_Pa = test == TestKind::biaxial ? 2e6 : 0.0;
+            setup.test.sigma3_Pa = test == methods::biaxial ? 2e6 : 0.0;
             setup.test.membrane_plates = 16;
             const RunControl control = fixtures::threads(1);
             Experiment e(setup, control);
@@ -384,7 +384,7 @@ TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
 }
 
 TEST(Packs, OfInnerParticlesStandInStripsWhateverGrainTheyAreOf) {
-    TestSetup setup = fixtures::setup(fixtures::rectangle(0.04, 0.08), TestKind::uniaxial_compression, fixtures::model(GrainKind::inner_particles));
+    TestSetup setup = fixtures::setup(fixtures::rectangle(0.04, 0.08), methods::uniaxial_compression, fixtures::model(GrainKind::inner_particles));
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
     const Filling& filling = e.setup.specimen->filling;
@@ -406,7 +406,7 @@ TEST(Packs, OfInnerParticlesStandInStripsWhateverGrainTheyAreOf) {
 
 TEST(Packs, HoldContactsWithANormalOfTheirOwnHoweverFarBodiesHaveTurned) {
     const ModelSpec model = fixtures::model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge);
-    TestSetup setup = fixtures::setup(fixtures::rectangle(0.02, 0.04), TestKind::uniaxial_compression, model);
+    TestSetup setup = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::uniaxial_compression, model);
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
     choose_step(e);
@@ -430,7 +430,7 @@ TEST(Packs, HoldContactsWithANormalOfTheirOwnHoweverFarBodiesHaveTurned) {
 }
 
 TEST(StepSequence, GoesOnWhereItsLastCallEnded) {
-    const TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), TestKind::uniaxial_compression);
+    const TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
     choose_step(e);
@@ -452,7 +452,7 @@ TEST(StepSequence, GoesOnWhereItsLastCallEnded) {
 TEST(Packs, LeaveFinelyMeshedGrainsLooseAndAgreeWithTheReadableStages) {
     SpecimenSpec spec = fixtures::rectangle(0.02, 0.04);
     spec.triangles_per_grain = 40;
-    TestSetup setup = fixtures::setup(fixtures::make(spec), TestKind::uniaxial_compression);
+    TestSetup setup = fixtures::setup(fixtures::make(spec), methods::uniaxial_compression);
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
     choose_step(e);

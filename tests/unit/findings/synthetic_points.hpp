@@ -13,7 +13,7 @@ namespace feldspar {
 
 inline constexpr double in_MPa = 1e6;   // Pa
 
-inline TestResult synthetic_test(TestKind kind, std::uint64_t seed, double strength_MPa, double sigma3_MPa = 0.0) {
+inline TestResult synthetic_test(MethodId kind, std::uint64_t seed, double strength_MPa, double sigma3_MPa = 0.0) {
     TestResult result;
     result.test.kind = kind;
     result.test.sigma3_Pa = sigma3_MPa * in_MPa;
@@ -31,8 +31,8 @@ inline std::vector<TestResult> synthetic_series(const std::vector<std::uint64_t>
                                                 const std::function<double(std::uint64_t, double)>& law) {
     std::vector<TestResult> results;
     for (const std::uint64_t seed : seeds) {
-        results.push_back(synthetic_test(TestKind::uniaxial_compression, seed, law(seed, 0.0)));
-        for (const double sigma3 : sigma3_MPa) results.push_back(synthetic_test(TestKind::biaxial, seed, law(seed, sigma3), sigma3));
+        results.push_back(synthetic_test(methods::uniaxial_compression, seed, law(seed, 0.0)));
+        for (const double sigma3 : sigma3_MPa) results.push_back(synthetic_test(methods::biaxial, seed, law(seed, sigma3), sigma3));
     }
     return results;
 }

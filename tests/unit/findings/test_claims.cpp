@@ -250,9 +250,9 @@ TEST(Claims, NumbersOfTheLedgerAreProperties) {
     add_run_numbers(point, std::vector{record});
     EXPECT_EQ(point.properties.values.at("ms_per_step of brazilian").values, std::vector<double>{0.5});
     EXPECT_FALSE(point.properties.values.contains("nu of brazilian"));
-    EXPECT_EQ(tests_behind("ms_per_step of brazilian"), std::set<TestKind>{TestKind::brazilian});
-    EXPECT_EQ(tests_behind("brittleness_k1"), std::set<TestKind>{TestKind::uniaxial_compression});
-    EXPECT_EQ(tests_behind("sigma1_at_sigma3_10MPa_Pa"), std::set<TestKind>{TestKind::biaxial});
+    EXPECT_EQ(tests_behind("ms_per_step of brazilian"), std::set<MethodId>{methods::brazilian});
+    EXPECT_EQ(tests_behind("brittleness_k1"), std::set<MethodId>{methods::uniaxial_compression});
+    EXPECT_EQ(tests_behind("sigma1_at_sigma3_10MPa_Pa"), std::set<MethodId>{methods::biaxial});
     EXPECT_TRUE(tests_behind("mohr_coulomb_N").empty()) << "no summary of a point has it";
     EXPECT_TRUE(tests_behind("ms_per_stride of brazilian").empty());
 }

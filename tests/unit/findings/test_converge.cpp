@@ -92,7 +92,7 @@ protected:
             std::vector<TestResult> results;
             for (const std::uint64_t seed : point.job.seeds) {
                 const double strength = 100.0 - 10.0 * (point.values[0].number - 3.0) + 0.1 * static_cast<double>(seed);
-                results.push_back(synthetic_test(TestKind::uniaxial_compression, seed, strength));
+                results.push_back(synthetic_test(methods::uniaxial_compression, seed, strength));
             }
             points.push_back(point_from(point.values, results));
         }
@@ -177,7 +177,7 @@ TEST_F(PlannedConvergence, AnEnvelopeTakesWhatTheJobLacks) {
     EXPECT_EQ(planned.seeds, (std::vector<std::uint64_t>{1, 2, 3}));
     EXPECT_EQ(planned.brazilian_specimen.outline.diameter_m, planned.specimen.outline.width_m);
     EXPECT_EQ(planned.tests[6].plates, PlateShape::curved);   // as a job has it that says nothing
-    EXPECT_EQ(planned.tests[6].plate_Kn_Pa_m, usual_test(TestKind::brazilian).plate_Kn_Pa_m);
+    EXPECT_EQ(planned.tests[6].plate_Kn_Pa_m, usual_test(methods::brazilian).plate_Kn_Pa_m);
     EXPECT_EQ(planned.tests[1].control, LoadControl::dissipation);
     EXPECT_EQ(plan.study.runs.size(), 21u);
     EXPECT_EQ(plan.remarks.size(), 2u);

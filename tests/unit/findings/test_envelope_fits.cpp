@@ -55,7 +55,7 @@ TEST(EnvelopeFits, AnExactParabolaIsFoundWithItsTension) {
 
 TEST(EnvelopeFits, TensilePointsAreInOnlyWhenAsked) {
     std::vector<TestResult> results = synthetic_series({1, 2}, {4, 10, 20}, [](std::uint64_t, double s) { return parabola(s); });
-    for (const std::uint64_t seed : {1, 2}) results.push_back(synthetic_test(TestKind::direct_tension, seed, 5.0));
+    for (const std::uint64_t seed : {1, 2}) results.push_back(synthetic_test(methods::direct_tension, seed, 5.0));
     const EnvelopeFits without = fit_series(results, false), with = fit_series(results, true);
     EXPECT_NEAR(without.joint.fit.hoek_brown_mi, 15.0, 1e-6);
     EXPECT_GT(std::abs(with.joint.fit.hoek_brown_mi - 15.0), 0.01);

@@ -47,7 +47,7 @@ TEST(Job, ReadsTheGuidesCompleteJob) {
     EXPECT_EQ(job.variants.front().numerics.kind, NumericsKind::adaptive);
     EXPECT_EQ(job.variants.front().numerics.accuracy, 0.005);
     ASSERT_EQ(job.tests.size(), 1u);
-    EXPECT_EQ(job.tests[0].kind, TestKind::uniaxial_compression);
+    EXPECT_EQ(job.tests[0].kind, methods::uniaxial_compression);
     EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
     EXPECT_EQ(job.threads, 0);
     EXPECT_EQ(job.at_once, 0);

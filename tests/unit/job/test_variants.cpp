@@ -122,8 +122,8 @@ TEST(Variants, LieOverTheJobsOwnTables) {
     EXPECT_EQ(flexible.numerics.kind, NumericsKind::paper);  // and has put the job's accuracy aside
     EXPECT_EQ(flexible.numerics.accuracy, NumericsSpec{}.accuracy);
     EXPECT_EQ(flexible.seeds, (std::vector<std::uint64_t>{2}));
-    EXPECT_TRUE(flexible.runs(TestKind::biaxial));
-    EXPECT_FALSE(flexible.runs(TestKind::direct_tension));
+    EXPECT_TRUE(flexible.runs(methods::biaxial));
+    EXPECT_FALSE(flexible.runs(methods::direct_tension));
     EXPECT_EQ(inner.model.normal, ContactNormal::edge);
     EXPECT_EQ(inner.contact.law, ContactLaw::brittle);
     EXPECT_EQ(inner.contact.mu, 0.45);

@@ -15,7 +15,7 @@ constexpr double peak = 120e6, ci = 54e6;
 /// Axially linear; the lateral strain is elastic up to `ci`, then grows by b (sigma - ci)^2 more.
 /// With eps_v = sigma (1 - nu) / E - b (sigma - ci)^2 the volumetric strain turns at ci + (1 - nu) / (2 b E).
 TestResult dilating(double b, double offset_Pa = 0.0, int rows = 1200) {
-    TestResult r = record(offset_Pa > 0.0 ? TestKind::biaxial : TestKind::uniaxial_compression);
+    TestResult r = record(offset_Pa > 0.0 ? methods::biaxial : methods::uniaxial_compression);
     r.test.sigma3_Pa = offset_Pa;
     if (offset_Pa > 0.0) r.history.push_back(row(Phase::consolidation, 0, 0.0, offset_Pa));
     for (int i = 1; i <= rows; ++i) {
@@ -81,7 +81,7 @@ TEST(DamageThresholds, FewCracksGiveTheFirst) {
 }
 
 TEST(DamageThresholds, TensionCountsCracksAsMagnitudes) {
-    TestResult r = linear(TestKind::direct_tension, 8e6, 100, -1.0);
+    TestResult r = linear(methods::direct_tension, 8e6, 100, -1.0);
     r.cracks = {crack(600, -4.8e6), crack(700, -5.6e6)};
     EXPECT_DOUBLE_EQ(measure(r).first_crack_Pa, 4.8e6);
     EXPECT_DOUBLE_EQ(measure(r).sigma_ci_crack_count_Pa, 4.8e6);

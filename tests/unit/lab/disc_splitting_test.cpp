@@ -163,7 +163,7 @@ TEST(BrazilianStrength, ItsMomentsAreMarkedInTheirOrder) {
     EXPECT_DOUBLE_EQ(marks[2].stress_Pa, 7e6);
     EXPECT_DOUBLE_EQ(marks[3].stress_Pa, 9e6);
     EXPECT_DOUBLE_EQ(marks[4].stress_Pa, 11e6);
-    EXPECT_TRUE(brazilian_marks(linear(TestKind::uniaxial_compression, 100e6)).empty());
+    EXPECT_TRUE(brazilian_marks(linear(methods::uniaxial_compression, 100e6)).empty());
     EXPECT_EQ(brazilian_marks(disc_record({1e6, 2e6})).size(), 2u) << "without cracks: the strength, and the dip that is where it is";
 }
 

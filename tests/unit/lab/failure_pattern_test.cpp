@@ -31,13 +31,13 @@ std::shared_ptr<const Specimen> rectangle() {
 }
 
 TEST(FailurePattern, SharesAreByLength) {
-    TestResult result = synthetic::linear(TestKind::uniaxial_compression, 100e6);
+    TestResult result = synthetic::linear(methods::uniaxial_compression, 100e6);
     result.cracks = {crack_at({0.04, 0.08}, 0.0, 1.5e-3), crack_at({0.04, 0.09}, 0.0, 0.5e-3, CrackMode::shear)};
     EXPECT_NEAR(failure_pattern(result).tensile_share, 0.75, 1e-12);
 }
 
 TEST(FailurePattern, DirectionsAreLinesWithoutAHead) {
-    TestResult result = synthetic::linear(TestKind::uniaxial_compression, 100e6);
+    TestResult result = synthetic::linear(methods::uniaxial_compression, 100e6);
     result.cracks = {crack_at({0.04, 0.08}, 175.0), crack_at({0.04, 0.08}, 5.0), crack_at({0.04, 0.08}, -5.0), crack_at({0.04, 0.08}, -175.0)};
     FailurePattern pattern = failure_pattern(result);
     EXPECT_NEAR(pattern.crack_angle_deg, 0.0, 1e-9);
@@ -51,7 +51,7 @@ TEST(FailurePattern, DirectionsAreLinesWithoutAHead) {
 }
 
 TEST(FailurePattern, OneBandIsAllInATenthAndEvenCrackingIsATenth) {
-    TestResult result = synthetic::linear(TestKind::uniaxial_compression, 100e6);
+    TestResult result = synthetic::linear(methods::uniaxial_compression, 100e6);
     result.specimen = rectangle();
     for (int i = 0; i < 10; ++i) result.cracks.push_back(crack_at({0.004 + 0.008 * i, 0.084}, 90.0));
     EXPECT_NEAR(failure_pattern(result).crack_localisation, 1.0, 1e-9);
@@ -64,11 +64,11 @@ TEST(FailurePattern, OneBandIsAllInATenthAndEvenCrackingIsATenth) {
 
 TEST(FailurePattern, TheFallIsMeasuredInStrainsAtThePeak) {
     // three rows at 0.9, 0.8 and 0.7 of the peak, each a hundredth of the peak's strain later
-    EXPECT_NEAR(failure_pattern(synthetic::linear(TestKind::uniaxial_compression, 100e6)).post_peak_strain, 0.02, 1e-9);
+    EXPECT_NEAR(failure_pattern(synthetic::linear(methods::uniaxial_compression, 100e6)).post_peak_strain, 0.02, 1e-9);
 }
 
 TEST(FailurePattern, NothingCrackedSaysNothing) {
-    const FailurePattern pattern = failure_pattern(synthetic::record(TestKind::brazilian));
+    const FailurePattern pattern = failure_pattern(synthetic::record(methods::brazilian));
     for (const double value : {pattern.tensile_share, pattern.crack_angle_deg, pattern.crack_alignment, pattern.crack_localisation, pattern.post_peak_strain})
         EXPECT_TRUE(std::isnan(value));
 }

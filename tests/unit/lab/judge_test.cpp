@@ -13,8 +13,8 @@ namespace {
 bool says(const QuasiStaticEvidence& e, const std::string& text) { return e.verdict.find(text) != std::string::npos; }
 
 template <class Change>
-QuasiStaticEvidence judged(TestKind kind, Change change) {
-    TestResult r = linear(kind, 100e6, 100, kind == TestKind::direct_tension ? -1.0 : 1.0);
+QuasiStaticEvidence judged(MethodId kind, Change change) {
+    TestResult r = linear(kind, 100e6, 100, kind == methods::direct_tension ? -1.0 : 1.0);
     for (HistoryRow& h : r.history) change(h);
     return judge(r);
 }
@@ -22,7 +22,7 @@ QuasiStaticEvidence judged(TestKind kind, Change change) {
 }  // namespace
 
 TEST(Judge, QuietRunIsGradeA) {
-    const QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [](HistoryRow&) {});
+    const QuasiStaticEvidence e = judged(methods::uniaxial_compression, [](HistoryRow&) {});
     EXPECT_EQ(e.grade, 'A');
     EXPECT_NEAR(e.residual_mean, 5e-3, 1e-15);
     EXPECT_DOUBLE_EQ(e.residual_at_peak, 5e-3);
@@ -37,7 +37,7 @@ TEST(Judge, QuietRunIsGradeA) {
 }
 
 TEST(Judge, OnlyNineTenthsOfThePeakToThePeakDecide) {
-    const QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [](HistoryRow& h) {
+    const QuasiStaticEvidence e = judged(methods::uniaxial_compression, [](HistoryRow& h) {
         if (h.axial_stress_Pa < 49e6 || h.step > 1000) h.residual = h.kinetic_deviation = 1.0;
         if (h.axial_stress_Pa < 89e6 || h.step > 1000) h.residual_median = 1.0;
     });
@@ -68,7 +68,7 @@ void set_tension_error(HistoryRow& h, double v) {
 
 struct Limit {
     const char* quantity;
-    TestKind kind;
+    MethodId kind;
     double a, b;
     void (*set)(HistoryRow&, double);
 };
@@ -76,14 +76,14 @@ struct Limit {
 // The verdict table (L9), line by line: just inside and just outside each limit.
 TEST(Judge, LimitsOfTheVerdictTable) {
     const Limit table[] = {
-        {"unbalanced force", TestKind::uniaxial_compression, 5e-3, 2e-2, set_error},
-        {"unbalanced force", TestKind::biaxial, 5e-3, 2e-2, set_error},
-        {"unbalanced force", TestKind::direct_tension, 1e-2, 2e-2, set_tension_error},
-        {"unbalanced force", TestKind::brazilian, 1e-2, 2e-2, set_tension_error},
-        {"overrun", TestKind::uniaxial_compression, 5e-3, 2e-2, set_overrun},
-        {"overrun", TestKind::direct_tension, 1e-2, 2e-2, set_overrun},
-        {"imbalance", TestKind::uniaxial_compression, 1e-2, 2e-2, set_imbalance},
-        {"imbalance", TestKind::brazilian, 3e-2, 5e-2, set_imbalance},
+        {"unbalanced force", methods::uniaxial_compression, 5e-3, 2e-2, set_error},
+        {"unbalanced force", methods::biaxial, 5e-3, 2e-2, set_error},
+        {"unbalanced force", methods::direct_tension, 1e-2, 2e-2, set_tension_error},
+        {"unbalanced force", methods::brazilian, 1e-2, 2e-2, set_tension_error},
+        {"overrun", methods::uniaxial_compression, 5e-3, 2e-2, set_overrun},
+        {"overrun", methods::direct_tension, 1e-2, 2e-2, set_overrun},
+        {"imbalance", methods::uniaxial_compression, 1e-2, 2e-2, set_imbalance},
+        {"imbalance", methods::brazilian, 3e-2, 5e-2, set_imbalance},
     };
     for (const Limit& line : table) {
         const auto grade = [&](double value) {
@@ -103,7 +103,7 @@ TEST(Judge, EstimatesTheErrorOfTheStrength) {
         set_median(h, std::abs(h.axial_stress_Pa) < 94.5e6 ? 0.0 : 1.1e-2);   // six of the eleven rows
         set_growth(h, 0.02);
     };
-    const QuasiStaticEvidence pressed = judged(TestKind::uniaxial_compression, change), pulled = judged(TestKind::direct_tension, change);
+    const QuasiStaticEvidence pressed = judged(methods::uniaxial_compression, change), pulled = judged(methods::direct_tension, change);
     EXPECT_NEAR(pressed.residual_median, 6e-3, 1e-12);
     EXPECT_NEAR(pressed.load_per_travel_time, 0.02, 1e-12);
     EXPECT_NEAR(pressed.error_estimate, 2.0 * 6e-3 + 5e-3, 1e-12);
@@ -112,7 +112,7 @@ TEST(Judge, EstimatesTheErrorOfTheStrength) {
 
 // A crack shakes a few bodies for a moment whatever the speed is: the sum and the largest values do not decide.
 TEST(Judge, AFewRestlessBodiesDoNotDecide) {
-    const QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [](HistoryRow& h) {
+    const QuasiStaticEvidence e = judged(methods::uniaxial_compression, [](HistoryRow& h) {
         h.residual = 0.1;
         if (h.step == 600) set_imbalance(h, 0.2);
         if (h.step == 700) h.kinetic_deviation = 0.1;
@@ -124,13 +124,13 @@ TEST(Judge, AFewRestlessBodiesDoNotDecide) {
 }
 
 TEST(Judge, SaysWhatFailedAndWhatToDo) {
-    QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [](HistoryRow& h) { set_imbalance(h, 0.042); });
+    QuasiStaticEvidence e = judged(methods::uniaxial_compression, [](HistoryRow& h) { set_imbalance(h, 0.042); });
     EXPECT_EQ(e.grade, 'C');
     EXPECT_TRUE(says(e, "Not shown to be quasi-static")) << e.verdict;
     EXPECT_TRUE(says(e, "two platens' loads is 4.2 % (2 % allowed)")) << e.verdict;
     EXPECT_TRUE(says(e, "run with accuracy = \"0.5 %\"")) << e.verdict;   // 2.1 times smaller than the default
 
-    TestResult r = linear(TestKind::uniaxial_compression, 100e6);
+    TestResult r = linear(methods::uniaxial_compression, 100e6);
     for (HistoryRow& h : r.history) set_error(h, 1e-2);
     r.numerics.accuracy = 0.02;
     EXPECT_EQ(judge(r).grade, 'B');
@@ -143,7 +143,7 @@ TEST(Judge, SaysWhatFailedAndWhatToDo) {
 }
 
 TEST(Judge, TheRepeatAtAThirdOfTheTargetTakesThePlaceOfTheEstimate) {
-    TestResult r = linear(TestKind::uniaxial_compression, 100e6);
+    TestResult r = linear(methods::uniaxial_compression, 100e6);
     for (HistoryRow& h : r.history) set_error(h, 0.03);
     EXPECT_EQ(judge(r).grade, 'C');
     r.evidence.confirmed = true;
@@ -159,7 +159,7 @@ TEST(Judge, TheRepeatAtAThirdOfTheTargetTakesThePlaceOfTheEstimate) {
 }
 
 TEST(Judge, WhereDampingMattersTheVerdictSaysSo) {
-    TestResult r = linear(TestKind::uniaxial_compression, 100e6);
+    TestResult r = linear(methods::uniaxial_compression, 100e6);
     EXPECT_FALSE(says(judge(r), "damping")) << judge(r).verdict;
     r.evidence.other_damping = 0.5;
     r.evidence.peak_change_at_other_damping = -0.004;
@@ -169,7 +169,7 @@ TEST(Judge, WhereDampingMattersTheVerdictSaysSo) {
 }
 
 TEST(Judge, AStrengthOutOfBalanceStandsBesideTheLargestStressInBalance) {
-    TestResult r = linear(TestKind::uniaxial_compression, 100e6);
+    TestResult r = linear(methods::uniaxial_compression, 100e6);
     for (HistoryRow& h : r.history) h.residual_median = h.axial_stress_Pa > 80.5e6 ? 0.2 : 1e-3;
     EXPECT_EQ(judge(r).grade, 'C');
     EXPECT_NEAR(judge(r).balanced_stress_Pa, 80e6, 1e6);
@@ -179,25 +179,25 @@ TEST(Judge, AStrengthOutOfBalanceStandsBesideTheLargestStressInBalance) {
 TEST(Judge, WhatIsNotKnownIsNotShown) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (auto set : {set_median, set_imbalance, set_growth}) {
-        const QuasiStaticEvidence e = judged(TestKind::uniaxial_compression, [&](HistoryRow& h) {
+        const QuasiStaticEvidence e = judged(methods::uniaxial_compression, [&](HistoryRow& h) {
             if (h.step == 950) set(h, nan);
         });
         EXPECT_EQ(e.grade, 'C');
         EXPECT_TRUE(says(e, "is not known")) << e.verdict;
     }
-    TestResult r = linear(TestKind::uniaxial_compression, 100e6);
+    TestResult r = linear(methods::uniaxial_compression, 100e6);
     r.travel_time = 0.0;
     EXPECT_EQ(judge(r).grade, 'C');
 }
 
 TEST(Judge, PartialRecords) {
-    TestResult r = record(TestKind::uniaxial_compression);
+    TestResult r = record(methods::uniaxial_compression);
     EXPECT_EQ(judge(r).grade, 'C');
     EXPECT_TRUE(says(judge(r), "Not judged"));
     r.history = {row(Phase::elastic, 0, 0.0, 0.0), row(Phase::elastic, 0, 1e-3, 25e6)};
     EXPECT_EQ(judge(r).grade, 'C');
     EXPECT_TRUE(says(judge(r), "no loading step"));
-    r = linear(TestKind::uniaxial_compression, 100e6);
+    r = linear(methods::uniaxial_compression, 100e6);
     r.history.resize(80);
     EXPECT_TRUE(says(judge(r), "peak was not reached")) << judge(r).verdict;
     EXPECT_FALSE(says(judge(r), "after the peak"));

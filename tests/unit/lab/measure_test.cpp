@@ -12,7 +12,7 @@ using namespace feldspar;
 using namespace feldspar::synthetic;
 
 TEST(Measure, LinearCompressionGivesBackItsConstants) {
-    const TestProperties p = measure(linear(TestKind::uniaxial_compression, 120e6));
+    const TestProperties p = measure(linear(methods::uniaxial_compression, 120e6));
     EXPECT_DOUBLE_EQ(p.peak_stress_Pa, 120e6);
     EXPECT_TRUE(p.peak_reached);
     EXPECT_NEAR(p.E_secant_Pa / E, 1.0, 1e-12);
@@ -30,7 +30,7 @@ TEST(Measure, LinearCompressionGivesBackItsConstants) {
 }
 
 TEST(Measure, ARatioAboveOneHalfIsRemarkedOn) {
-    TestResult r = linear(TestKind::uniaxial_compression, 120e6);
+    TestResult r = linear(methods::uniaxial_compression, 120e6);
     EXPECT_TRUE(measure(r).remarks.empty());
     for (HistoryRow& row : r.history)
         if (row.axial_stress_Pa > 0.2 * 120e6) row.lateral_strain_gauge = -0.65 * row.axial_strain_gauge;   // cracks have opened
@@ -42,7 +42,7 @@ TEST(Measure, ARatioAboveOneHalfIsRemarkedOn) {
 }
 
 TEST(Measure, TensionRunsNegativeAndItsStrengthIsPositive) {
-    const TestProperties p = measure(linear(TestKind::direct_tension, 8.3e6, 100, -1.0));
+    const TestProperties p = measure(linear(methods::direct_tension, 8.3e6, 100, -1.0));
     EXPECT_NEAR(p.peak_stress_Pa, 8.3e6, 1.0);
     EXPECT_TRUE(p.peak_reached);
     EXPECT_NEAR(p.E_secant_Pa / E, 1.0, 1e-12);
@@ -53,7 +53,7 @@ TEST(Measure, TensionRunsNegativeAndItsStrengthIsPositive) {
 // sigma = E0 eps (1 - eps / (2 e0)) has its peak E0 e0 / 2 at e0, and sigma / peak = 2x - x^2 with x = eps / e0.
 TEST(Measure, ParabolaSeparatesSecantTangentAndAverage) {
     const double E0 = 40e9, e0 = 6e-3, peak = 0.5 * E0 * e0;
-    TestResult r = record(TestKind::uniaxial_compression);
+    TestResult r = record(methods::uniaxial_compression);
     const int rows = 20000;
     for (int i = 1; i <= rows * 3 / 2; ++i) {
         const double x = static_cast<double>(i) / rows;
@@ -75,7 +75,7 @@ TEST(Measure, ParabolaSeparatesSecantTangentAndAverage) {
 }
 
 TEST(Measure, ElasticStartOfTwoRowsIsEnough) {
-    TestResult r = record(TestKind::uniaxial_compression);
+    TestResult r = record(methods::uniaxial_compression);
     r.history.push_back(row(Phase::elastic, 0, 0.0, 0.0));
     r.history.push_back(row(Phase::elastic, 0, 80e6 / E, 80e6));      // 80 % of the peak in closed form
     r.history.push_back(row(Phase::loading, 10, 100e6 / E, 100e6));
@@ -92,7 +92,7 @@ TEST(Measure, ElasticStartOfTwoRowsIsEnough) {
 
 TEST(Measure, BiaxialReadsTheDeviatorSinceTheStartOfShearing) {
     const double sigma3 = 10e6, strength = 180e6;
-    TestResult r = record(TestKind::biaxial);
+    TestResult r = record(methods::biaxial);
     r.test.sigma3_Pa = sigma3;
     for (int i = 1; i <= 5; ++i) {   // consolidation: other stiffness, other lateral strain
         HistoryRow h = row(Phase::consolidation, i, 3e-4 * i / 5.0, sigma3 * i / 5.0);
@@ -120,7 +120,7 @@ TEST(Measure, BiaxialReadsTheDeviatorSinceTheStartOfShearing) {
 // Stiffness E up to q = 82 MPa, then E / 2: half of the deviator at the peak (85 MPa) lies above the kink, half of the total
 // stress (90 MPa, q = 80 MPa) below it.
 TEST(Measure, BiaxialHalfOfThePeakIsHalfOfTheDeviator) {
-    TestResult r = record(TestKind::biaxial);
+    TestResult r = record(methods::biaxial);
     r.test.sigma3_Pa = 10e6;
     r.history.push_back(row(Phase::consolidation, 0, 3e-4, 10e6));
     for (int i = 1; i <= 170; ++i) {
@@ -132,7 +132,7 @@ TEST(Measure, BiaxialHalfOfThePeakIsHalfOfTheDeviator) {
 }
 
 TEST(Measure, TheFirstDipOfADiscIsTheLargestStressBeforeAFallOfFivePercent) {
-    TestResult r = record(TestKind::brazilian);
+    TestResult r = record(methods::brazilian);
     long long step = 0;
     const auto add = [&](double stress) {
         ++step;
@@ -151,7 +151,7 @@ TEST(Measure, TheFirstDipOfADiscIsTheLargestStressBeforeAFallOfFivePercent) {
 }
 
 TEST(Measure, PeakIsReachedOnlyAfterAFallOfFivePercent) {
-    TestResult r = record(TestKind::uniaxial_compression);
+    TestResult r = record(methods::uniaxial_compression);
     r.history = {row(Phase::loading, 1, 1e-3, 50e6), row(Phase::loading, 2, 2e-3, 100e6), row(Phase::loading, 3, 2.1e-3, 96e6)};
     EXPECT_FALSE(measure(r).peak_reached);
     r.history.push_back(row(Phase::loading, 4, 2.2e-3, 95e6));
@@ -162,7 +162,7 @@ TEST(Measure, PeakIsReachedOnlyAfterAFallOfFivePercent) {
 }
 
 TEST(Measure, StoppedBeforeThePeakKeepsModuliButNoThresholds) {
-    TestResult r = linear(TestKind::uniaxial_compression, 60e6);
+    TestResult r = linear(methods::uniaxial_compression, 60e6);
     r.history.resize(100);
     r.cracks = {crack(500, 30e6)};
     const TestProperties p = measure(r);
@@ -175,9 +175,9 @@ TEST(Measure, StoppedBeforeThePeakKeepsModuliButNoThresholds) {
 
 TEST(Measure, DegenerateRecordsGiveNotANumberAndNeverCrash) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian}) {
+    for (const MethodId kind : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension, methods::biaxial, methods::brazilian}) {
         TestResult r = record(kind);
-        r.test.sigma3_Pa = kind == TestKind::biaxial ? 4e6 : 0.0;
+        r.test.sigma3_Pa = kind == methods::biaxial ? 4e6 : 0.0;
         const double sign = method_of(kind).loading.sign;
         EXPECT_TRUE(std::isnan(measure(r).peak_stress_Pa)) << name(kind) << ": empty";
         EXPECT_FALSE(measure(r).peak_reached);

@@ -15,7 +15,7 @@ constexpr double kPeak = 100e6;
 
 // Linear up to the peak, then down to a quarter of it along a straight branch: strain changes by `compliance` times the fall of the stress.
 TestResult straight(double compliance, double offset_Pa = 0.0) {
-    TestResult r = syn::record(offset_Pa > 0.0 ? TestKind::biaxial : TestKind::uniaxial_compression);
+    TestResult r = syn::record(offset_Pa > 0.0 ? methods::biaxial : methods::uniaxial_compression);
     r.test.control = LoadControl::dissipation;
     r.test.sigma3_Pa = offset_Pa;
     long long step = 0;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "feldspar/lab/rock_properties.hpp"
+#include "feldspar/methods/method.hpp"
 #include "synthetic_records.hpp"
 
 using namespace feldspar;
@@ -13,8 +14,8 @@ using namespace feldspar::synthetic;
 
 namespace {
 
-TestResult broken(TestKind kind) {
-    TestResult r = linear(kind, 100e6, 100, kind == TestKind::direct_tension ? -1.0 : 1.0);
+TestResult broken(MethodId kind) {
+    TestResult r = linear(kind, 100e6, 100, kind == methods::direct_tension ? -1.0 : 1.0);
     if (r.cracks.empty()) r.cracks = path({{0.0, -0.01}, {0.0, 0.01}}, 400);
     r.properties = measure(r);
     return r;
@@ -47,7 +48,7 @@ TEST(Quantities, CarryTheirUnitInTheirName) {
 }
 
 TEST(Quantities, AreGivenBackAsTheyAreKept) {
-    for (const TestKind kind : test_kinds) {
+    for (const MethodId kind : test_methods()) {
         TestResult copy;
         copy.test.kind = kind;
         const TestResult original = broken(kind);
@@ -64,7 +65,7 @@ TEST(Quantities, AreGivenBackAsTheyAreKept) {
 }
 
 TEST(Quantities, AreNumbersOnlyOfTestsThatDefineThem) {
-    for (const TestKind kind : test_kinds) {
+    for (const MethodId kind : test_methods()) {
         const TestResult result = broken(kind);
         for (const TestQuantity& q : test_quantities()) {
             if (q.tests.contains(kind)) continue;
@@ -73,9 +74,9 @@ TEST(Quantities, AreNumbersOnlyOfTestsThatDefineThem) {
             EXPECT_TRUE(std::isnan(q.place.of(result))) << q.name << " of " << name(kind) << ": measure() and the table disagree";
         }
     }
-    EXPECT_NEAR(test_quantity("E").value(broken(TestKind::direct_tension)), E, 1.0);
-    EXPECT_EQ(test_quantity("BTS_split").value(broken(TestKind::brazilian)), 1.0);
-    const TestResult compressed = broken(TestKind::uniaxial_compression);
+    EXPECT_NEAR(test_quantity("E").value(broken(methods::direct_tension)), E, 1.0);
+    EXPECT_EQ(test_quantity("BTS_split").value(broken(methods::brazilian)), 1.0);
+    const TestResult compressed = broken(methods::uniaxial_compression);
     EXPECT_EQ(test_quantity("cracks_tensile").value(compressed), static_cast<double>(compressed.cracks.size()));
 }
 
@@ -94,7 +95,7 @@ TEST(RockProperties, ComeFromWhatExists) {
                 break;
             case ratio: {
                 ASSERT_TRUE(rock_property(p.above) != nullptr && rock_property(p.below) != nullptr) << p.name;
-                std::set<TestKind> both = rock_property(p.above)->tests;
+                std::set<MethodId> both = rock_property(p.above)->tests;
                 both.insert(rock_property(p.below)->tests.begin(), rock_property(p.below)->tests.end());
                 EXPECT_EQ(p.tests, both) << p.name;
                 break;
@@ -119,9 +120,9 @@ TEST(RockProperties, AreFoundByTheirNames) {
 
 TEST(RockProperties, AreWhatASummaryHas) {
     std::vector<TestResult> results;
-    for (const TestKind kind : test_kinds) {
+    for (const MethodId kind : test_methods()) {
         results.push_back(broken(kind));
-        if (kind == TestKind::biaxial) results.back().test.sigma3_Pa = 4e6;
+        if (kind == methods::biaxial) results.back().test.sigma3_Pa = 4e6;
     }
     for (const auto& [name, statistics] : summarise(results).values) EXPECT_NE(kept_rock_property(name), nullptr) << name;
 }

@@ -29,15 +29,15 @@ double next_of_new(double speed, double typical, double total) {
 }  // namespace
 
 TEST(RateControl, AccuracyAndTargetAreInverse) {
-    for (const TestKind kind : {TestKind::uniaxial_compression, TestKind::brazilian}) {
+    for (const MethodId kind : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::brazilian}) {
         NumericsSpec numerics;
         numerics.accuracy = 0.013;
         EXPECT_NEAR(accuracy_of(residual_target(numerics, kind), kind), 0.013, 1e-12);
         numerics.residual_target = 2e-3;
         EXPECT_DOUBLE_EQ(residual_target(numerics, kind), 2e-3);
     }
-    EXPECT_DOUBLE_EQ(method_of(TestKind::biaxial).rate.residual_share, 2.0);
-    EXPECT_NEAR(residual_target(NumericsSpec{}, TestKind::direct_tension), 3.0 * residual_target(NumericsSpec{}, TestKind::biaxial), 1e-15);
+    EXPECT_DOUBLE_EQ(method_of(methods::biaxial).rate.residual_share, 2.0);
+    EXPECT_NEAR(residual_target(NumericsSpec{}, methods::direct_tension), 3.0 * residual_target(NumericsSpec{}, methods::biaxial), 1e-15);
 }
 
 TEST(RateControl, HoldsTheSpeedAtTheTarget) {

@@ -38,8 +38,8 @@ OutlineSpec bone(double waist_m) {
                     {"bottom", "a", "b", "c", "d", "e", "top", "f", "g", "h", "i", "j"});
 }
 
-TestResult on(const OutlineSpec& outline, TestKind kind, double peak_Pa) {
-    TestResult result = linear(kind, peak_Pa, 100, kind == TestKind::direct_tension ? -1.0 : 1.0);
+TestResult on(const OutlineSpec& outline, MethodId kind, double peak_Pa) {
+    TestResult result = linear(kind, peak_Pa, 100, kind == methods::direct_tension ? -1.0 : 1.0);
     auto specimen = std::make_shared<Specimen>();
     specimen->outline = make_outline(outline);
     result.specimen = specimen;
@@ -51,7 +51,7 @@ TestResult on(const OutlineSpec& outline, TestKind kind, double peak_Pa) {
 }  // namespace
 
 TEST(SpecimenShape, ARectangleKeepsItsNumbers) {
-    const TestResult with = on(bar(0.08, 0.16), TestKind::uniaxial_compression, 100e6), without = linear(TestKind::uniaxial_compression, 100e6);
+    const TestResult with = on(bar(0.08, 0.16), methods::uniaxial_compression, 100e6), without = linear(methods::uniaxial_compression, 100e6);
     EXPECT_EQ(with.properties.E_secant_Pa, without.properties.E_secant_Pa);
     EXPECT_EQ(with.properties.nu, without.properties.nu);
     EXPECT_DOUBLE_EQ(with.properties.section_width_m, 0.08);
@@ -61,7 +61,7 @@ TEST(SpecimenShape, ARectangleKeepsItsNumbers) {
 }
 
 TEST(SpecimenShape, AWaistIsTheSectionAndLeavesNoModulus) {
-    const TestProperties p = on(bone(0.018), TestKind::direct_tension, 8e6).properties;
+    const TestProperties p = on(bone(0.018), methods::direct_tension, 8e6).properties;
     EXPECT_NEAR(p.section_width_m, 0.008, 1e-15);
     EXPECT_NEAR(p.peak_stress_Pa, 8e6, 1.0);
     EXPECT_TRUE(p.peak_reached);
@@ -72,7 +72,7 @@ TEST(SpecimenShape, AWaistIsTheSectionAndLeavesNoModulus) {
 }
 
 TEST(SpecimenShape, AWaistAsLongAsTheGaugeKeepsWhatTheGaugeReads) {
-    const TestProperties p = on(bone(0.026), TestKind::uniaxial_compression, 100e6).properties;
+    const TestProperties p = on(bone(0.026), methods::uniaxial_compression, 100e6).properties;
     EXPECT_TRUE(std::isnan(p.E_secant_Pa));
     EXPECT_NEAR(p.E_gauge_Pa, E, 1e-6 * E);
     EXPECT_NEAR(p.nu, nu, 1e-9);
@@ -83,8 +83,8 @@ TEST(SpecimenShape, ATaperOfTwoPercentIsUniformAndOneOfThreeIsNot) {
     const auto taper = [](double share) {
         return labelled({{0, 0}, {0.02 * (1.0 + share), 0}, {0.02, 0.04}, {0, 0.04}}, {"bottom", "right", "top", "left"});
     };
-    EXPECT_TRUE(std::isfinite(on(taper(0.019), TestKind::uniaxial_compression, 100e6).properties.E_secant_Pa));
-    EXPECT_TRUE(std::isnan(on(taper(0.03), TestKind::uniaxial_compression, 100e6).properties.E_secant_Pa));
+    EXPECT_TRUE(std::isfinite(on(taper(0.019), methods::uniaxial_compression, 100e6).properties.E_secant_Pa));
+    EXPECT_TRUE(std::isnan(on(taper(0.03), methods::uniaxial_compression, 100e6).properties.E_secant_Pa));
 }
 
 TEST(SpecimenShape, EulersStressIsThatOfPlatensThatSlide) {
@@ -95,12 +95,12 @@ TEST(SpecimenShape, EulersStressIsThatOfPlatensThatSlide) {
 
 TEST(SpecimenShape, AColumnThatWouldBendGetsGradeC) {
     // E 25 GPa, strength 100 MPa: pi sqrt(25000 / 1200) = 14.34
-    EXPECT_EQ(on(bar(0.01, 0.142), TestKind::uniaxial_compression, 100e6).evidence.grade, 'A');
-    const QuasiStaticEvidence e = on(bar(0.01, 0.145), TestKind::uniaxial_compression, 100e6).evidence;
+    EXPECT_EQ(on(bar(0.01, 0.142), methods::uniaxial_compression, 100e6).evidence.grade, 'A');
+    const QuasiStaticEvidence e = on(bar(0.01, 0.145), methods::uniaxial_compression, 100e6).evidence;
     EXPECT_EQ(e.grade, 'C');
     EXPECT_NE(e.verdict.find("would bend aside at 97.8 MPa"), std::string::npos) << e.verdict;   // pi^2 25000 / (12 x 14.5^2)
     EXPECT_NE(e.verdict.find("below 14.3"), std::string::npos) << e.verdict;
-    EXPECT_EQ(on(bar(0.01, 0.4), TestKind::direct_tension, 100e6).evidence.grade, 'A') << "what is pulled does not bend";
+    EXPECT_EQ(on(bar(0.01, 0.4), methods::direct_tension, 100e6).evidence.grade, 'A') << "what is pulled does not bend";
 }
 
 TEST(SpecimenShape, ATestOfABoneTakesItsStressOverTheWaist) {
@@ -118,7 +118,7 @@ TEST(SpecimenShape, ATestOfABoneTakesItsStressOverTheWaist) {
     setup.contact.tau_Pa = 30e6;
     setup.contact.Gfn_J_m2 = 20.0;
     setup.contact.Gfs_J_m2 = 800.0;
-    setup.test.kind = TestKind::direct_tension;
+    setup.test.kind = methods::direct_tension;
     const RunControl control;
     EXPECT_NEAR(Experiment(setup, control).section_m2, 0.008 * 0.03, 1e-12);
 }

@@ -12,8 +12,8 @@ using namespace feldspar::synthetic;
 
 namespace {
 
-TestResult tested(TestKind kind, std::uint64_t seed, double strength_Pa, double sigma3_Pa = 0.0) {
-    TestResult r = linear(kind, strength_Pa, 100, kind == TestKind::direct_tension ? -1.0 : 1.0);
+TestResult tested(MethodId kind, std::uint64_t seed, double strength_Pa, double sigma3_Pa = 0.0) {
+    TestResult r = linear(kind, strength_Pa, 100, kind == methods::direct_tension ? -1.0 : 1.0);
     r.seed = seed;
     r.test.sigma3_Pa = sigma3_Pa;
     r.properties = measure(r);
@@ -64,9 +64,9 @@ TEST(StrengthEnvelope, NotANumberWhereThePointsDecideNothing) {
 TEST(Summarise, MedianAndRangeOverPackings) {
     std::vector<TestResult> results;
     const double ucs[] = {120e6, 110e6, 130e6, 100e6}, dts[] = {8e6, 10e6, 8e6, 8e6}, bts[] = {6e6, 11e6, 9e6};
-    for (int i = 0; i < 4; ++i) results.push_back(tested(TestKind::uniaxial_compression, 1 + i, ucs[i]));
-    for (int i = 0; i < 4; ++i) results.push_back(tested(TestKind::direct_tension, 1 + i, dts[i]));
-    for (int i = 0; i < 3; ++i) results.push_back(tested(TestKind::brazilian, 1 + i, bts[i]));
+    for (int i = 0; i < 4; ++i) results.push_back(tested(methods::uniaxial_compression, 1 + i, ucs[i]));
+    for (int i = 0; i < 4; ++i) results.push_back(tested(methods::direct_tension, 1 + i, dts[i]));
+    for (int i = 0; i < 3; ++i) results.push_back(tested(methods::brazilian, 1 + i, bts[i]));
     const PropertySummary s = summarise(results);
     EXPECT_NEAR(s.values.at("UCS_Pa").median, 115e6, 1.0) << "even count: the mean of the middle two";
     EXPECT_NEAR(s.values.at("UCS_Pa").minimum, 100e6, 1.0);
@@ -87,11 +87,11 @@ TEST(Summarise, EnvelopesAreFittedOnEachPacking) {
     std::vector<TestResult> results;
     for (std::uint64_t seed : {1, 2, 3}) {
         const double N = 8.0 + static_cast<double>(seed), base = 110e6 + 5e6 * static_cast<double>(seed);
-        results.push_back(tested(TestKind::uniaxial_compression, seed, base));
-        results.push_back(tested(TestKind::biaxial, seed, base + N * 4e6, 4e6));
-        results.push_back(tested(TestKind::biaxial, seed, base + N * 10e6, 10e6));
+        results.push_back(tested(methods::uniaxial_compression, seed, base));
+        results.push_back(tested(methods::biaxial, seed, base + N * 4e6, 4e6));
+        results.push_back(tested(methods::biaxial, seed, base + N * 10e6, 10e6));
     }
-    results.push_back(tested(TestKind::uniaxial_compression, 4, 90e6));   // no biaxial test: not in the fit
+    results.push_back(tested(methods::uniaxial_compression, 4, 90e6));   // no biaxial test: not in the fit
     const PropertySummary s = summarise(results);
     ASSERT_EQ(s.fits.size(), 3u);
     EXPECT_EQ(s.fits[1].seed, 2u);
@@ -108,7 +108,7 @@ TEST(Summarise, EnvelopesAreFittedOnEachPacking) {
 }
 
 TEST(Summarise, StrengthsOfUnfinishedTestsAreLeftOut) {
-    std::vector<TestResult> results{tested(TestKind::uniaxial_compression, 1, 120e6), tested(TestKind::uniaxial_compression, 2, 120e6)};
+    std::vector<TestResult> results{tested(methods::uniaxial_compression, 1, 120e6), tested(methods::uniaxial_compression, 2, 120e6)};
     results[0].history.resize(90);                    // stopped on purpose: the modulus stands, the strength does not
     results[0].properties = measure(results[0]);
     results[1].history.resize(3);                     // interrupted early

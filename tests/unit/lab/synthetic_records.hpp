@@ -13,7 +13,7 @@ namespace feldspar::synthetic {
 
 constexpr double E = 25e9, nu = 0.25;
 
-inline TestResult record(TestKind kind) {
+inline TestResult record(MethodId kind) {
     TestResult r;
     r.test.kind = kind;
     r.seed = 1;
@@ -78,7 +78,7 @@ inline std::vector<Crack> path(const std::vector<Vec2>& corners, long long step)
 }
 
 /// Linear elastic up to `peak_Pa` in `rows` loading rows, then three rows down to 0.7 of it. `sign` -1 pulls. A disc splits behind its peak.
-inline TestResult linear(TestKind kind, double peak_Pa, int rows = 100, double sign = 1.0) {
+inline TestResult linear(MethodId kind, double peak_Pa, int rows = 100, double sign = 1.0) {
     TestResult r = record(kind);
     for (int i = 1; i <= rows; ++i) {
         const double stress = sign * peak_Pa * i / rows;
@@ -87,7 +87,7 @@ inline TestResult linear(TestKind kind, double peak_Pa, int rows = 100, double s
     for (int i = 1; i <= 3; ++i) {
         r.history.push_back(row(Phase::loading, 10 * (rows + i), sign * peak_Pa / E * (1.0 + 0.01 * i), sign * peak_Pa * (1.0 - 0.1 * i)));
     }
-    if (kind == TestKind::brazilian) {
+    if (kind == methods::brazilian) {
         r.specimen = disc_specimen();
         r.cracks = path({{0.0, -0.025}, {0.0, 0.025}}, 0);
         for (Crack& c : r.cracks) c.step = 10 * rows + 1;
@@ -98,7 +98,7 @@ inline TestResult linear(TestKind kind, double peak_Pa, int rows = 100, double s
 
 /// A record of a disc with these stresses in rows at steps 10, 20, ...
 inline TestResult disc_record(const std::vector<double>& stresses_Pa) {
-    TestResult r = record(TestKind::brazilian);
+    TestResult r = record(methods::brazilian);
     r.specimen = disc_specimen();
     long long step = 0;
     for (const double stress : stresses_Pa) {

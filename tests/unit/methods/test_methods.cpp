@@ -1,25 +1,59 @@
 // The facts of the test methods agree with each other, and what a job has that says nothing follows from them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "feldspar/methods/method.hpp"
 
 using namespace feldspar;
 
-TEST(Methods, EveryKindHasItsOwn) {
-    std::set<std::string> purposes;
-    for (const TestKind kind : test_kinds) {
-        EXPECT_EQ(method_of(kind).kind, kind) << name(kind);
-        EXPECT_TRUE(purposes.insert(method_of(kind).purpose).second) << name(kind);
+TEST(Methods, EachHasAName) {
+    std::set<std::string> names, purposes;
+    for (const MethodId id : test_methods()) {
+        EXPECT_TRUE(names.insert(name(id)).second) << name(id);
+        EXPECT_TRUE(purposes.insert(method_of(id).purpose).second) << name(id);
+        EXPECT_EQ(find_method(name(id)), id);
     }
-    EXPECT_EQ(purposes.size(), test_kinds.size());
+    EXPECT_FALSE(find_method("four-point-bend"));
+    EXPECT_TRUE(std::ranges::is_sorted(test_methods()));
+}
+
+// Each strength and each point of the envelope comes of one method, and a property's name means one thing.
+TEST(Methods, MeasureEachThingOnce) {
+    std::set<std::string_view> strengths, properties;
+    int confined = 0;
+    for (const MethodId id : test_methods()) {
+        const TestMethod& m = method_of(id);
+        SCOPED_TRACE(m.name);
+        if (!m.strength.name.empty()) {
+            EXPECT_TRUE(strengths.insert(m.strength.name).second);
+            EXPECT_EQ(method_of_strength(m.strength.name), id);
+            EXPECT_STRNE(m.strength.label, "");
+        }
+        confined += m.loading.on_envelope && m.specimen.confined;
+        for (const MethodProperty& property : m.properties) {
+            EXPECT_TRUE(properties.insert(property.name).second) << property.name;
+            EXPECT_NE(property.value, nullptr) << property.name;
+            EXPECT_STRNE(property.label, "") << property.name;
+        }
+        EXPECT_EQ(m.properties.empty(), std::string_view(m.properties_table).empty());
+        for (const MethodKey& key : m.keys) {
+            EXPECT_STRNE(key.meaning, "") << key.name;
+            EXPECT_TRUE(key.needed || *key.usual != 0) << key.name;
+        }
+        EXPECT_STRNE(m.job.title, "");
+        EXPECT_STRNE(m.job.gives, "");
+    }
+    EXPECT_EQ(confined, 1);
+    EXPECT_EQ(strengths, (std::set<std::string_view>{"BTS", "DTS", "UCS"}));
 }
 
 TEST(Methods, FactsAgree) {
-    for (const TestKind kind : test_kinds) {
+    for (const MethodId kind : test_methods()) {
         const TestMethod& m = method_of(kind);
         SCOPED_TRACE(name(kind));
         EXPECT_EQ(std::abs(m.loading.sign), 1.0);
@@ -35,7 +69,7 @@ TEST(Methods, FactsAgree) {
 }
 
 TEST(Methods, UsualDiscsStandBetweenJawsOnTapeAndFlattenedOnesBetweenPlates) {
-    const TestSpec disc = usual_test(TestKind::brazilian), flattened = usual_test(TestKind::brazilian, true), column = usual_test(TestKind::uniaxial_compression);
+    const TestSpec disc = usual_test(methods::brazilian), flattened = usual_test(methods::brazilian, true), column = usual_test(methods::uniaxial_compression);
     EXPECT_EQ(disc.plates, PlateShape::curved);
     EXPECT_EQ(disc.plate_Kn_Pa_m, 1.6e12);
     EXPECT_EQ(flattened.plates, PlateShape::flat);
@@ -44,16 +78,16 @@ TEST(Methods, UsualDiscsStandBetweenJawsOnTapeAndFlattenedOnesBetweenPlates) {
 }
 
 TEST(Methods, OnlyAdaptiveNumericsFollowTheBranchBehindTheStrength) {
-    EXPECT_EQ(usual_control(TestKind::biaxial, true), LoadControl::dissipation);
-    EXPECT_EQ(usual_control(TestKind::biaxial, false), LoadControl::displacement);
-    EXPECT_EQ(usual_control(TestKind::direct_tension, true), LoadControl::displacement);
+    EXPECT_EQ(usual_control(methods::biaxial, true), LoadControl::dissipation);
+    EXPECT_EQ(usual_control(methods::biaxial, false), LoadControl::displacement);
+    EXPECT_EQ(usual_control(methods::direct_tension, true), LoadControl::displacement);
 }
 
 TEST(Methods, OnlyAPressureConfines) {
-    TestSpec test = usual_test(TestKind::biaxial);
+    TestSpec test = usual_test(methods::biaxial);
     EXPECT_FALSE(is_confined(test));
     test.sigma3_Pa = 1e6;
     EXPECT_TRUE(is_confined(test));
-    test.kind = TestKind::uniaxial_compression;
+    test.kind = methods::uniaxial_compression;
     EXPECT_FALSE(is_confined(test));
 }

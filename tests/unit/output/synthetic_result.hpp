@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "feldspar/lab/properties.hpp"
-#include "feldspar/lab/result.hpp"
+#include "feldspar/methods/result.hpp"
 #include "feldspar/output/results.hpp"
 
 namespace feldspar::testing {
@@ -60,10 +60,10 @@ inline std::shared_ptr<const Specimen> make_wall(int nx, int ny, std::uint64_t s
 
 /// Two cracks: tensile on the vertical edge between grains 0 and 1, shear on the horizontal edge between grain 0 and the one
 /// above it.
-inline TestResult make_result(TestKind kind = TestKind::uniaxial_compression, std::uint64_t seed = 3, int nx = 4, int ny = 3) {
+inline TestResult make_result(MethodId kind = methods::uniaxial_compression, std::uint64_t seed = 3, int nx = 4, int ny = 3) {
     TestResult result;
     result.test.kind = kind;
-    result.test.sigma3_Pa = kind == TestKind::biaxial ? 4e6 : 0.0;
+    result.test.sigma3_Pa = kind == methods::biaxial ? 4e6 : 0.0;
     result.seed = seed;
     result.specimen = make_wall(nx, ny, seed);
     result.threads = 2;
@@ -140,15 +140,15 @@ inline TestResult make_result(TestKind kind = TestKind::uniaxial_compression, st
                          .E_tangent_Pa = 24e9,
                          .E_average_Pa = 24.5e9,
                          .E_gauge_Pa = 24.1e9,
-                         .nu = kind == TestKind::brazilian ? undefined : 0.23,
-                         .nu_tangent = kind == TestKind::brazilian ? undefined : 0.25,
+                         .nu = kind == methods::brazilian ? undefined : 0.23,
+                         .nu_tangent = kind == methods::brazilian ? undefined : 0.25,
                          .E_initial_Pa = 25.5e9,
-                         .nu_initial = kind == TestKind::brazilian ? undefined : 0.22,
+                         .nu_initial = kind == methods::brazilian ? undefined : 0.22,
                          .sigma_ci_crack_count_Pa = 50e6,
                          .sigma_ci_crack_volume_Pa = undefined,
                          .sigma_ci_lateral_strain_Pa = 52e6,
                          .sigma_cd_Pa = undefined,
-                         .section_width_m = kind == TestKind::brazilian ? undefined : 0.08,
+                         .section_width_m = kind == methods::brazilian ? undefined : 0.08,
                          .remarks = {"A remark on the numbers."}};
     result.evidence.error_estimate = 0.004;
     result.evidence.residual_mean = 0.002;
@@ -181,7 +181,7 @@ inline std::vector<Variant> make_variants() {
 }
 
 inline TestResult make_result_of(const Variant& variant, std::uint64_t seed) {
-    TestResult result = make_result(TestKind::uniaxial_compression, seed);
+    TestResult result = make_result(methods::uniaxial_compression, seed);
     result.variant = variant.name;
     result.model = variant.model;
     result.contact = variant.contact;

@@ -44,8 +44,8 @@ protected:
     TemporaryFolder scratch;
     RunDirectory directory = RunDirectory::create(scratch.path() / "run", "job");
     Job job = make_job();
-    std::vector<TestResult> results = {make_result(), make_result(TestKind::uniaxial_compression, 4),
-                                       make_result(TestKind::brazilian)};
+    std::vector<TestResult> results = {make_result(), make_result(methods::uniaxial_compression, 4),
+                                       make_result(methods::brazilian)};
 
     std::string page(bool complete = true) {
         write_report(directory, job, results, make_properties(), make_provenance(), complete);
@@ -90,7 +90,7 @@ TEST_F(Report, MarksTheMomentsOfABrazilianTest) {
 TEST_F(Report, ListsTheTestsThatFailedAndWhy) {
     EXPECT_TRUE(json::parse(between(page(), "id=\"data\">", "</script>"))["failed"].empty());
     TestSpec biaxial;
-    biaxial.kind = TestKind::biaxial;
+    biaxial.kind = methods::biaxial;
     biaxial.sigma3_Pa = 4e6;
     const std::vector<FailedTest> failed{{"", biaxial, 7, "a force is not a number </script>"}};
     write_report(directory, job, results, make_properties(), make_provenance(), false, failed);
@@ -200,8 +200,8 @@ TEST(ReportFields, ReadBackWithinAStep) {
 }
 
 TEST(ReportFields, StayWithinTheBudget) {
-    const std::vector<TestResult> results = {make_result(TestKind::uniaxial_compression, 1, 12, 12),
-                                             make_result(TestKind::brazilian, 1, 12, 12)};
+    const std::vector<TestResult> results = {make_result(methods::uniaxial_compression, 1, 12, 12),
+                                             make_result(methods::brazilian, 1, 12, 12)};
     const auto all = report_fields(results, 1 << 20);
     ASSERT_EQ(all.size(), 2U);
     EXPECT_EQ(all[0].meta["snapshots"].size(), 3U);

@@ -39,7 +39,7 @@ std::vector<std::string> split(const std::string& line, char mark) {
 
 TEST(TestStem, NamesKindSeedAndPressure) {
     EXPECT_EQ(test_stem(make_result()), "uniaxial-compression-s3");
-    TestResult biaxial = make_result(TestKind::biaxial, 1);
+    TestResult biaxial = make_result(methods::biaxial, 1);
     EXPECT_EQ(test_stem(biaxial), "biaxial-s1-p4");
     biaxial.test.sigma3_Pa = 2.5e6;
     EXPECT_EQ(test_stem(biaxial), "biaxial-s1-p2.5");
@@ -63,7 +63,7 @@ TEST_F(Tables, AVariantStaysInItsLineOfTheHistory) {
 TEST_F(Tables, SummaryListsTestsThatFailed) {
     EXPECT_FALSE(summary({make_result()}).contains("failed")) << "of none";
     TestSpec biaxial;
-    biaxial.kind = TestKind::biaxial;
+    biaxial.kind = methods::biaxial;
     biaxial.sigma3_Pa = 2.5e6;
     const std::vector<FailedTest> failed{{"", biaxial, 7, "a force is not a number"}, {"rigid, brittle", TestSpec{}, 3, "it did not relax"}};
     write_summary(directory, make_job(), std::vector{make_result()}, make_properties(), make_provenance(), false, failed);
@@ -169,7 +169,7 @@ TEST_F(Tables, HistoryDependsOnTheResultsAlone) {
 }
 
 TEST_F(Tables, SummaryHasEveryPromisedName) {
-    const json top = summary({make_result(), make_result(TestKind::brazilian, 3)});
+    const json top = summary({make_result(), make_result(methods::brazilian, 3)});
     for (const char* name : {"version", "commit", "seeds", "specimen", "brazilian_specimen", "tests", "properties", "laboratory",
                              "envelope", "job", "provenance", "complete", "signs"}) {
         EXPECT_TRUE(top.contains(name)) << name;
@@ -223,7 +223,7 @@ TEST_F(Tables, SummaryHasEveryPromisedName) {
 }
 
 TEST_F(Tables, SummaryIsInUserUnits) {
-    const json top = summary({make_result(), make_result(TestKind::biaxial, 4)}, false);
+    const json top = summary({make_result(), make_result(methods::biaxial, 4)}, false);
     const json& test = top["tests"][0];
     EXPECT_EQ(test["kind"], "uniaxial-compression");
     EXPECT_EQ(test["contact"], "lobatto3");
@@ -249,7 +249,7 @@ TEST_F(Tables, SummaryIsInUserUnits) {
 }
 
 TEST_F(Tables, WhatIsNotDefinedIsNull) {
-    const json top = summary({make_result(TestKind::brazilian)});
+    const json top = summary({make_result(methods::brazilian)});
     EXPECT_TRUE(top["tests"][0]["nu"].is_null());
     EXPECT_TRUE(top["tests"][0]["sigma_cd_MPa"].is_null());
     EXPECT_TRUE(top["tests"][0]["peak_change_at_third"].is_null());

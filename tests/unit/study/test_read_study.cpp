@@ -52,8 +52,8 @@ TEST_F(ReadStudy, WithoutAxesIsTheJobItself) {
     ASSERT_EQ(study.points.size(), 1u);
     ASSERT_EQ(study.runs.size(), 4u);   // packing by packing
     EXPECT_EQ(study.runs[0].seed(), 1u);
-    EXPECT_EQ(study.runs[0].test().kind, TestKind::uniaxial_compression);
-    EXPECT_EQ(study.runs[1].test().kind, TestKind::direct_tension);
+    EXPECT_EQ(study.runs[0].test().kind, methods::uniaxial_compression);
+    EXPECT_EQ(study.runs[1].test().kind, methods::direct_tension);
     EXPECT_EQ(study.runs[2].seed(), 2u);
 }
 
@@ -155,7 +155,7 @@ set = { numerics.accuracy = "1 %" }
         if (run.point != 1) continue;
         ++costly;
         EXPECT_EQ(run.seed(), 2u);
-        EXPECT_EQ(run.test().kind, TestKind::direct_tension);
+        EXPECT_EQ(run.test().kind, methods::direct_tension);
     }
     EXPECT_EQ(costly, 1u);
 }

@@ -93,7 +93,7 @@ TEST_F(RunJob, ASinglePackingTellsHowFarItIs) {
 }
 
 TEST_F(RunJob, AFailureIsListedAndTheOthersGoOn) {
-    job_.tests[0].kind = TestKind::biaxial;   // crushed before it is sheared
+    job_.tests[0].kind = methods::biaxial;   // crushed before it is sheared
     job_.tests[0].sigma3_Pa = 5e9;
     const JobOutcome outcome = run(job_);
     EXPECT_EQ(outcome.results.size(), 2u);

@@ -92,7 +92,7 @@ TEST(SlurmGroups, ElementsAsSlurmWritesThem) {
 TEST_F(SlurmPlanTest, TimesOfLikeRunsReplaceTheDefaults) {
     const feldspar::Run &first = study_.runs[0], &disc = study_.runs[1], &second = study_.runs[2];
     ASSERT_EQ(first.test().kind, second.test().kind);
-    ASSERT_EQ(disc.test().kind, TestKind::brazilian);
+    ASSERT_EQ(disc.test().kind, methods::brazilian);
     const TimeEstimate unknown;
     EXPECT_GT(unknown.seconds(first), 0.0);
     const TimeEstimate known(study_.runs, std::vector{record_of_time(first, 50.0, 2.0)});

@@ -195,9 +195,9 @@ function paintPattern(canvas, meta, parts, k, count) {
 function writeComparedEnvelopes() {
   if (!data.variants.some((v) => v.envelope.fits.length)) return;
   page.append(h("h3", {}, "Strength envelopes"), h("p", {class: "soft"}, "Each test as a mark; the Mohr-Coulomb line of each variant with the medians of its packings."));
-  const reach = Math.max(...data.tests.filter((t) => t.kind === "biaxial").map((t) => t.sigma3)) * 1.1, series = [];
+  const reach = Math.max(...data.tests.filter((t) => methodOf(t.kind).on_envelope && methodOf(t.kind).confined).map((t) => t.sigma3)) * 1.1, series = [];
   data.variants.forEach((v, i) => {
-    const fits = v.envelope.fits, own = data.tests.filter((t) => t.variant === v.name && (t.kind === "biaxial" || t.kind === "uniaxial-compression") && t.peak !== null);
+    const fits = v.envelope.fits, own = data.tests.filter((t) => t.variant === v.name && methodOf(t.kind).on_envelope && t.peak !== null);
     const c = median(fits.map((f) => f.cohesion)), phi = median(fits.map((f) => f.friction_angle));
     if (c !== null && phi !== null) {
       const s = Math.sin((phi * Math.PI) / 180), n = (1 + s) / (1 - s), ucs = 2 * c * Math.sqrt(n);

@@ -56,9 +56,9 @@ function envelopeSeries(envelope) {
     if (!envelope.with_tension) series.push({label: "Hoek-Brown, beyond the tests", ...curvePoints(end, 0, f), color: "shear", width: 1.2, dash: true, quiet: true});
   }
   series.push(...laboratoryCurves(to));
-  tests("tests, each packing", ["uniaxial-compression", "biaxial"], "context", "dot");
-  tests("direct tension", ["direct-tension"], "va", "square", {size: 2.6});
-  tests("Brazilian, at the disc's centre", ["brazilian"], "va", "ring", {size: 3});
+  tests("tests, each packing", Object.keys(data.methods).filter((kind) => methodOf(kind).on_envelope), "context", "dot");
+  tests("direct tension", [methodOfStrength("DTS")], "va", "square", {size: 2.6});
+  tests("Brazilian, at the disc's centre", [methodOfStrength("BTS")], "va", "ring", {size: 3});
   const mean = envelope.strengths;
   series.push({label: "mean, 95 % interval", x: mean.map((s) => s.sigma3_MPa), y: mean.map((s) => s.mean), low: mean.map((s) => s.low), high: mean.map((s) => s.high), color: "ink", mark: "dot", size: 4});
   return series.concat(laboratoryPoints());
@@ -120,8 +120,8 @@ function writePackings(host, envelope) {
 }
 
 function writeTests(host, envelope) {
-  const order = ["uniaxial-compression", "biaxial", "direct-tension", "brazilian"];
-  const tests = [...envelope.tests].sort((a, b) => order.indexOf(a.test) - order.indexOf(b.test) || a.sigma3_MPa * (a.test === "biaxial") - b.sigma3_MPa * (b.test === "biaxial") || a.seed - b.seed);
+  const kinds = Object.keys(data.methods), order = [...kinds.filter((kind) => methodOf(kind).on_envelope), ...kinds.filter((kind) => !methodOf(kind).on_envelope)];
+  const tests = [...envelope.tests].sort((a, b) => order.indexOf(a.test) - order.indexOf(b.test) || a.sigma3_MPa * methodOf(a.test).confined - b.sigma3_MPa * methodOf(b.test).confined || a.seed - b.seed);
   const body = table("evidence", [th("Test"), th("Seed", true), th("Strength", true), th("Grade"), th("Verdict")], tests.map((t, i) => {
     const kind = kindText(t.test, t.sigma3_MPa), before = i ? kindText(tests[i - 1].test, tests[i - 1].sigma3_MPa) : "";
     return h("tr", {}, td(kind === before ? "" : kind, false, "kind"), td(String(t.seed), true), td((t.peak_reached ? "" : "> ") + show(t.strength_MPa, 4) + " MPa", true), h("td", {}, gradeMark(t.grade)), td(t.verdict, false, "small"));

@@ -66,15 +66,22 @@ function pageHead(maker, title, facts) {
 
 /** "12.3 \u2013 14.1", or a dash where one packing gives no interval. */
 function intervalText(row) { return row.low === null || row.low === undefined ? "\u2013" : show(row.low) + " \u2013 " + show(row.high); }
-function unitText(unit) { return unit ? h("span", {class: "unit"}, " " + unit.replace("deg", "\u00b0").replace("MPa_sqrt_m", "MPa\u00a0m\u00bd").replace("J_m2", "J/m\u00b2")) : ""; }
+/** A unit as it is printed. */
+function unitWords(unit) { return unit.replace("deg", "\u00b0").replace("MPa_sqrt_m", "MPa\u00a0m\u00bd").replace("J_m2", "J/m\u00b2"); }
+
+function unitText(unit) { return unit ? h("span", {class: "unit"}, " " + unitWords(unit)) : ""; }
 function gradeMark(grade) { return h("span", {class: "grade " + grade}, grade); }
 /** "12 A, 1 C" from {A: 12, B: 0, C: 1}. */
 function gradesText(grades) {
   const some = Object.entries(grades).filter(([, count]) => count > 0);
   return some.length ? h("span", {class: "marks"}, some.flatMap(([grade, count]) => [gradeMark(grade), " " + count + " "])) : "\u2013";
 }
+/** What is known of a test method, by its name in files. */
+function methodOf(kind) { return data.methods[kind] || {title: kind, sign: 1, strength: "", on_envelope: false, confined: false}; }
+/** The name of the method that measures a strength: "UCS". */
+function methodOfStrength(strength) { return Object.keys(data.methods).find((kind) => data.methods[kind].strength === strength); }
 function kindText(test, sigma3) {
-  return (data.titles[test] || test) + (test === "biaxial" && sigma3 !== null ? " at " + Number(sigma3.toPrecision(4)) + " MPa" : "");
+  return methodOf(test).title + (methodOf(test).confined && sigma3 !== null ? " at " + Number(sigma3.toPrecision(4)) + " MPa" : "");
 }
 
 /** Says that runs are missing, and lists those that failed with their reasons. */

@@ -1,7 +1,7 @@
 // The report's page: reads the data beside it and lays out tables, charts and the viewer.
 "use strict";
 
-const kindNames = data.titles;
+const kindNames = Object.fromEntries(Object.entries(data.methods).map(([kind, method]) => [kind, method.title]));
 data.tests.forEach((test, index) => { test.index = index; });
 
 function titleOf(test) {
@@ -90,7 +90,7 @@ function writeProperties() {
   head.push(th("Spread" + (compared ? " and laboratory" : "")));
   page.append(table("", head, data.properties.map((p) => {
     const cells = [td(p.label), td([p.symbol], true, "unit"),
-      td([show(p.median), p.unit ? h("span", {class: "unit"}, " " + p.unit.replace("deg", "\u00b0").replace("MPa_sqrt_m", "MPa\u00a0m\u00bd").replace("J_m2", "J/m\u00b2")) : ""], true, "strong"),
+      td([show(p.median), unitText(p.unit)], true, "strong"),
       td(p.packings < 2 ? "" : show(p.minimum) + " \u2013 " + show(p.maximum), true), td(String(p.packings), true)];
     if (compared) {
       const known = p.laboratory !== null && p.median !== null && p.laboratory !== 0;
@@ -151,7 +151,7 @@ function strainSeries(test) {
     {label: "volumetric", x: volumetric, y: history.stress, color: "#cc79a7", width: 2},
   ];
   const [low, high] = extent(series.map((s) => s.x));
-  const sign = test.kind === "direct-tension" ? -1 : 1;   // strengths are magnitudes, the curve of a tension test is negative
+  const sign = methodOf(test.kind).sign;   // strengths are magnitudes, the curve of a tension test is negative
   const level = (name, magnitude, color, left) => {
     if (magnitude === null) return;
     const value = sign * magnitude;
@@ -195,15 +195,6 @@ function gaugeSeries(tests, chosen, g) {
     line(t, {label: "packing " + t.seed, color: "ink", width: 2.2})];
 }
 
-/** What a bent beam shows, in words. */
-function addBending(t, add) {
-  const b = t.bending;
-  if (b.flexural_strength !== null) add("Flexural strength", show(b.flexural_strength, 4) + " MPa");
-  if (b.K_Ic !== null) add("Fracture toughness KIc", show(b.K_Ic) + " MPa\u00a0m\u00bd, from the largest load; notch " + show(b.notch) + " mm, softening length " + show(b.softening_length, 2) + " mm");
-  if (b.E_bending !== null) add("E, secant at 50 %", show(b.E_bending) + " GPa, from the " + (b.notch > 0 ? "opening of the notch" : "deflection"));
-  if (b.work_of_fracture !== null) add("Work of fracture", show(b.work_of_fracture) + " J/m\u00b2 of the ligament; all cracks are " + show(b.crack_path, 2) + " times as long as it");
-}
-
 /** The charts and numbers of one kind of test. */
 function writeTest(host, tests) {
   const peaks = tests.map((t) => t.peak).filter((p) => p !== null);
@@ -245,7 +236,7 @@ function testFacts(tests, updates) {
     add("Packing", "seed " + t.seed);
     if (t.peak_load !== null) add("Largest load", show(t.peak_load, 4) + " kN");
     add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^./, (c) => c.toLowerCase()) : ""));
-    if (t.bending) addBending(t, add);
+    for (const p of t.properties) add(p.label, show(p.value, 4) + (p.unit ? " " + unitWords(p.unit) : ""));
     for (const gauge of t.gauges) add("Gauge " + gauge.name, gauge.meaning);
     if (t.section_width !== null) add("Section", show(t.section_width) + " mm wide");
     for (const remark of t.remarks) add("Note", remark);
@@ -279,7 +270,7 @@ function testFacts(tests, updates) {
 
 function envelopeSeries() {
   const series = [], fits = data.envelope.fits, seeds = (kind) => data.tests.filter((t) => t.kind === kind && t.peak !== null && t.peak_reached);
-  const uniaxial = seeds("uniaxial-compression"), biaxial = seeds("biaxial"), tension = seeds("direct-tension"), brazilian = seeds("brazilian");
+  const uniaxial = seeds(methodOfStrength("UCS")), biaxial = data.tests.filter((t) => methodOf(t.kind).on_envelope && methodOf(t.kind).confined && t.peak !== null && t.peak_reached), tension = seeds(methodOfStrength("DTS")), brazilian = seeds(methodOfStrength("BTS"));
   const lab = data.laboratory, reach = Math.max(...biaxial.map((t) => t.sigma3), ...uniaxial.map(() => 2), 1) * 1.12;
   const line = (c, degrees) => {
     const s = Math.sin((degrees * Math.PI) / 180), n = (1 + s) / (1 - s), ucs = 2 * c * Math.sqrt(n);
@@ -295,7 +286,7 @@ function envelopeSeries() {
     series.push({label: "Hoek-Brown, medians mi = " + show(mi) + ", \u03c3ci = " + show(sci) + " MPa", color: "#009e73", width: 1.6, x, y: x.map((s) => s + sci * Math.sqrt(Math.max(0, (mi * s) / sci + 1)))});
   }
   const marks = (label, tests, x, y, color, mark) => { if (tests.length) series.push({label, x: tests.map(x), y: tests.map(y), color, mark, size: 4}); };
-  marks("biaxial", biaxial, (t) => t.sigma3, (t) => t.peak, "ink", "dot");
+  marks("biaxial tests", biaxial, (t) => t.sigma3, (t) => t.peak, "ink", "dot");
   marks("UCS", uniaxial, () => 0, (t) => t.peak, "tensile", "dot");
   marks("direct tension (\u03c3\u2081 = 0)", tension, (t) => -t.peak, () => 0, "#cc79a7", "square");
   marks("Brazilian (\u03c3\u2081 = 3 BTS at the centre)", brazilian, (t) => -t.peak, (t) => 3 * t.peak, "#cc79a7", "diamond");
@@ -305,7 +296,7 @@ function envelopeSeries() {
 }
 
 function writeEnvelope() {
-  if (!data.envelope.fits.length && !data.tests.some((t) => t.kind === "biaxial")) return;
+  if (!data.envelope.fits.length && !data.tests.some((t) => methodOf(t.kind).on_envelope && methodOf(t.kind).confined)) return;
   page.append(h("h2", {}, "Strength envelope"));
   if (data.envelope.method) page.append(h("p", {class: "soft"}, data.envelope.method));
   const grid = h("div", {class: "grid", style: "align-items:start"}), chart = card("Strength of each test");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "feldspar/base/vec2.hpp"
+#include "feldspar/methods/test_spec.hpp"
 #include "feldspar/model/spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -140,18 +141,6 @@ struct PostPeak {
     double damping_share = none;    ///< and by damping, into which goes all that breaks in jumps
 };
 
-/// What a bent beam shows (P36)-(P40). Not-a-number where the record or the beam defines none.
-struct BendingProperties {
-    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    double E_Pa = none;                   ///< from the deflection of a plain beam (P37), or the opening of a notch's mouth (P39): secant at half the largest load
-    double flexural_strength_Pa = none;   ///< of a plain beam (P36)
-    double K_Ic_Pa_sqrt_m = none;         ///< of a notched beam, from the largest load (P38)
-    double work_of_fracture_J_m2 = none;  ///< of a notched beam: work of the loading over the ligament (P40); of a record that ends below a tenth of the largest load
-    double softening_length_m = none;     ///< E Gf / sigma_t^2 of the contacts: K_Ic means something only where it is small beside notch and ligament
-    double crack_path_over_ligament = none;   ///< length of all cracks over the ligament's: 1 for one straight crack
-    double notch_m = none;                ///< a
-};
-
 /// Properties read from one test. Not-a-number where the test does not define one.
 struct TestProperties {
     double peak_stress_Pa;        ///< strength, a positive magnitude; Brazilian: the largest until the disc is split
@@ -173,7 +162,7 @@ struct TestProperties {
     std::vector<std::string> remarks;     ///< sentences that a reader of the numbers must know
     BrazilianFailure brazilian{};         ///< Brazilian test only
     PostPeak post_peak{};                 ///< not of a Brazilian test
-    BendingProperties bending{};          ///< of a bent beam only
+    std::vector<double> of_method{};      ///< those that the method adds (MethodProperty), in its order
 };
 
 struct TestResult {
