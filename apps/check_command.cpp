@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "commands.hpp"
@@ -27,7 +29,7 @@ std::string sizes_text(const SizeSummary& sizes) {
     return fmt::format("mean {:.3g}, {:.3g} to {:.3g}, D50 {:.3g}", 1e3 * sizes.mean_m, 1e3 * sizes.minimum_m, 1e3 * sizes.maximum_m, 1e3 * sizes.D50_m);
 }
 
-void print_specimen(const char* what, const Specimen& specimen) {
+void print_specimen(const std::string& what, const Specimen& specimen) {
     const SpecimenQuality& q = specimen.quality;
     say("{} (seed {})\n", what, specimen.seed);
     say("  grains                {}\n", q.grains);
@@ -142,10 +144,10 @@ private:
     }
 
     void show_specimen(const TestSpec& test, const Specimen& specimen) {
-        const bool disc = method_of(test).specimen.own_disc;
-        bool& shown = disc ? disc_shown_ : rectangle_shown_;
-        if (!shown) print_specimen(disc ? "Disc of the Brazilian test" : "Specimen", specimen);
-        shown = true;
+        const std::string head = method_of(test).specimen.own_disc ? fmt::format("Disc of the {}", method_of(test).words.title)
+                                 : test.specimen                    ? fmt::format("Specimen of {}", title(test))
+                                                                    : "Specimen";
+        if (shown_.insert(head).second) print_specimen(head, specimen);
     }
 
     const Job& job_;
@@ -155,7 +157,7 @@ private:
     Progress progress_;
     RunControl control_;
     const Variant* variant_ = nullptr;  // the last one shown
-    bool disc_shown_ = false, rectangle_shown_ = false;
+    std::set<std::string> shown_;       // headings of specimens
     double total_s_ = 0.0;
     std::string text_;
 };

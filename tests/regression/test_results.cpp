@@ -28,12 +28,12 @@ protected:
         run_.folder = std::make_unique<TemporaryFolder>();
         Job& job = run_.job;
         job = read_job(golden::folder() / "small.toml");
-        job.brazilian_specimen.packing_file = golden::folder() / "disc.packing";   // a job has one packing file, of its rectangle
+        for (TestSpec& test : job.tests)
+            if (test.specimen) test.specimen->packing_file = golden::folder() / "disc.packing";   // a job has one packing file, of its rectangle
         const auto rectangle = std::make_shared<const Specimen>(make_specimen(job.specimen, 1));
-        const auto disc = std::make_shared<const Specimen>(make_specimen(job.brazilian_specimen, 1));
         const Variant& rock = job.variants.front();
         for (const TestSpec& test : job.tests)
-            run_.results.push_back(run_test({test.kind == methods::brazilian ? disc : rectangle, rock.model, rock.grain, rock.contact, rock.numerics, test}, {}));
+            run_.results.push_back(run_test({test.specimen ? std::make_shared<const Specimen>(make_specimen(*test.specimen, 1)) : rectangle, rock.model, rock.grain, rock.contact, rock.numerics, test}, {}));
         const RunDirectory directory = RunDirectory::create(*run_.folder / "run", job.name);
         const Provenance provenance;   // empty
         for (const TestResult& result : run_.results) write_history_csv(directory, result, provenance);

@@ -30,7 +30,7 @@ TestSpec pattern_of(const Job& job, MethodId kind) {
     const auto found = std::find_if(job.tests.begin(), job.tests.end(), [kind](const TestSpec& test) { return test.kind == kind; });
     if (found != job.tests.end()) return *found;
     const MethodSpecimen& method = method_of(kind).specimen;
-    TestSpec test = usual_test(kind, job.brazilian_specimen.outline.flat_angle_rad > 0.0);
+    TestSpec test = usual_test(kind);
     if (method.confined) test.stop_fraction = enough_fall;
     test.control = usual_control(kind, std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.numerics.kind == NumericsKind::adaptive; }));
     const bool particles = std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.model.kind != GrainKind::flexible; });
@@ -99,8 +99,8 @@ EnvelopePlan plan_envelope(const Job& job, const EnvelopeOptions& options) {
     if (has(job, splitting)) {
         whole.tests.push_back(pattern_of(job, splitting));
     } else if (const auto disc = usual_disc(job.specimen)) {
-        whole.brazilian_specimen = *disc;
         whole.tests.push_back(pattern_of(job, splitting));
+        whole.tests.back().specimen = *disc;
     } else {
         plan.remarks.emplace_back("No Brazilian test: the specimen is a polygon, which does not say how large the disc is to be.");
     }

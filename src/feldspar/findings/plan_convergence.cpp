@@ -59,24 +59,24 @@ double width_m(const OutlineSpec& outline) {
     return box.upper.x - box.lower.x;
 }
 
-bool needs(const Job& job, bool disc) {
-    return std::any_of(job.tests.begin(), job.tests.end(), [disc](const TestSpec& test) { return method_of(test).specimen.own_disc == disc; });
+// Whose size stands for that of all: the first test's that takes the job's specimen, else the first test's.
+const SpecimenSpec& leading_specimen(const Job& job) {
+    const auto takes_it = [](const TestSpec& test) { return !test.specimen; };
+    return job.tests.empty() || std::ranges::any_of(job.tests, takes_it) ? job.specimen : specimen_of(job, job.tests.front());
 }
 
 /// Width of the narrowest specimen over its largest grain.
 double grains_across(const Job& job) {
     const auto across = [](const SpecimenSpec& s) { return width_m(s.outline) / coarsest_m(s.grain_sizes); };
     double least = std::numeric_limits<double>::infinity();
-    if (needs(job, false)) least = std::min(least, across(job.specimen));
-    if (needs(job, true)) least = std::min(least, across(job.brazilian_specimen));
+    for (const TestSpec& test : job.tests) least = std::min(least, across(specimen_of(job, test)));
     return least;
 }
 
 template <class Change>
 Job changed(const Job& job, const Change& change) {
     Job other = job;
-    change(other.specimen);
-    change(other.brazilian_specimen);
+    for_each_specimen(other, change);
     return other;
 }
 
@@ -89,7 +89,7 @@ Step grain_step(const Job& job, double factor) {
 }
 
 Step size_step(const Job& job, double factor) {
-    const OutlineSpec& outline = needs(job, false) ? job.specimen.outline : job.brazilian_specimen.outline;
+    const OutlineSpec& outline = leading_specimen(job).outline;
     const double width_mm = 1e3 * width_m(outline) * factor;
     const std::string label = outline.shape == Shape::rectangle ? fmt::format("{:.4g} x {:.4g} mm", width_mm, 1e3 * outline.height_m * factor) : fmt::format("{:.4g} mm", width_mm);
     return {label, width_mm, changed(job, [factor](SpecimenSpec& s) { s.outline = scaled(s.outline, factor); })};

@@ -31,17 +31,6 @@ std::string read_name(const JobTable& root, const std::filesystem::path& file) {
     return given;
 }
 
-// The disc of the Brazilian test: the same grains in its own outline.
-SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double flat_angle_rad) {
-    SpecimenSpec disc = specimen;
-    if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m) disc.packing_file.clear();
-    disc.outline = OutlineSpec{};
-    disc.outline.shape = Shape::disc;
-    disc.outline.diameter_m = diameter_m;
-    disc.outline.flat_angle_rad = flat_angle_rad;
-    return disc;
-}
-
 // A packing that is loaded has no other seeds.
 void check_one_packing(const JobTable& root, const Job& job) {
     if (!root.sound({"run", "test", "specimen.packing"})) return;
@@ -80,9 +69,7 @@ public:
             filled = std::any_of(job_.variants.begin(), job_.variants.end(),
                                  [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
         job_.specimen = read_specimen(root, job_.file.parent_path(), filled);
-        TestList tests = read_tests(root, job_.specimen, job_.variants, job_.seeds);
-        job_.tests = std::move(tests.tests);
-        if (tests.brazilian_diameter_m) job_.brazilian_specimen = disc_of(job_.specimen, *tests.brazilian_diameter_m, tests.flat_angle_rad);
+        job_.tests = read_tests(root, job_.specimen, job_.variants, job_.seeds);
         check_variants(root, job_);
         job_.laboratory = read_laboratory(root);
         job_.laboratory_confined = read_laboratory_confined(root);
@@ -98,8 +85,14 @@ private:
 
 }  // namespace
 
-const SpecimenSpec& specimen_of(const Job& job, const TestSpec& test) {
-    return method_of(test).specimen.own_disc ? job.brazilian_specimen : job.specimen;
+SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double flat_angle_rad) {
+    SpecimenSpec disc = specimen;
+    if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m) disc.packing_file.clear();
+    disc.outline = OutlineSpec{};
+    disc.outline.shape = Shape::disc;
+    disc.outline.diameter_m = diameter_m;
+    disc.outline.flat_angle_rad = flat_angle_rad;
+    return disc;
 }
 
 Job read_tree(toml::table tree, const std::string& text, const std::string& name) { return JobReader(std::move(tree), text, name).read(); }

@@ -41,8 +41,7 @@ struct Job {
     std::filesystem::path file;         ///< as given
     std::string name;                   ///< from the key `name`, else the file's stem
     std::string text;                   ///< the file as it was read, for provenance
-    SpecimenSpec specimen;              ///< for compression and tension
-    SpecimenSpec brazilian_specimen;    ///< the disc of the Brazilian test: same grains, its own outline
+    SpecimenSpec specimen;              ///< of all tests that have none of their own
     std::vector<Variant> variants{{}};  ///< at least one; a single one without a name if the job has no [[variant]]
     std::vector<TestSpec> tests;
     std::vector<std::uint64_t> seeds;
@@ -67,8 +66,19 @@ Job parse_job(const std::string& text, const std::string& name);
 /// Sentences on what is allowed but may not be what was meant; none if there is nothing to say.
 std::vector<std::string> warnings(const Job& job);
 
-/// The specimen of a test of the job: the job's own, or the disc that the test cuts itself.
-const SpecimenSpec& specimen_of(const Job& job, const TestSpec& test);
+/// The specimen of a test of the job: its own, else the job's.
+inline const SpecimenSpec& specimen_of(const Job& job, const TestSpec& test) { return test.specimen ? *test.specimen : job.specimen; }
+
+/// The grains of a specimen in a disc of their own: what a Brazilian test cuts. @param flat_angle_rad  of each of two flats; 0: a whole disc
+SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double flat_angle_rad = 0.0);
+
+/// Calls `change(SpecimenSpec&)` for every specimen of the job.
+template <class Change>
+void for_each_specimen(Job& job, const Change& change) {
+    change(job.specimen);
+    for (TestSpec& test : job.tests)
+        if (test.specimen) change(*test.specimen);
+}
 
 /// The job with every default written out, as TOML: provenance that can be run again.
 std::string resolved_toml(const Job& job);

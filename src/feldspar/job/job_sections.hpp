@@ -47,14 +47,15 @@ void check_variants(const JobTable& root, const Job& job);
 inline constexpr int variant_level = 0;
 inline constexpr int job_level = 2;
 
+/// `specimen` of a test: the job's grains in an outline of its own.
+SpecimenSpec read_own_specimen(const JobTable& test, const SpecimenSpec& of_job, bool grains_known);
+
+/// Keys on which an outline rests.
+inline constexpr std::array<std::string_view, 9> outline_keys{"shape", "width", "height", "diameter", "hole_diameter", "vertices", "edge_labels", "holes", "notches"};
+
 /// [[test]], lists of sigma3 expanded.
-struct TestList {
-    std::vector<TestSpec> tests;
-    std::optional<double> brazilian_diameter_m;  ///< present if there is a Brazilian test
-    double flat_angle_rad = 0.0;                 ///< of the flats of its disc; 0 = a whole disc
-};
-TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
-                    const std::vector<std::uint64_t>& run_seeds);
+std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
+                                 const std::vector<std::uint64_t>& run_seeds);
 
 /// What a method has of its own among the keys of a test: span and rollers of a beam, fixtures and gauges of a custom test, a gauge that ends it.
 void read_own_keys(const JobTable& table, TestSpec& test);

@@ -98,6 +98,7 @@ KeyCondition methods_that_are(const Such& such) {
     return where("kind", test_methods(), [&](MethodId kind) { return such(method_of(kind)); });
 }
 KeyCondition numerics_that_are(bool (*such)(NumericsKind)) { return where("kind", numerics_kinds, such); }
+bool uses_specimen(const TestMethod& method) { return !method.specimen.own_disc; }
 bool own_disc(const TestMethod& method) { return method.specimen.own_disc; }
 bool confined(const TestMethod& method) { return method.specimen.confined; }
 bool takes_friction(const TestMethod& method) { return !method.specimen.glued && !method.specimen.fixtures_of_job; }
@@ -136,8 +137,8 @@ std::vector<JobKey> file_keys() {
     };
 }
 
-std::vector<JobKey> specimen_keys() {
-    const SpecimenSpec spec;
+// What outlines are made of.
+std::vector<JobKey> outline_rows() {
     const KeyCondition rectangle = with("shape", {Shape::rectangle}), disc = with("shape", {Shape::disc, Shape::half_disc, Shape::ring}), polygon = with("shape", {Shape::polygon});
     return {
         {"shape", choice_of(shapes), needed, "the outline: a rectangle (`width`, `height`: from (0, 0)), a disc (`diameter`: around (0, 0)), a polygon (`vertices`, `edge_labels`), a half disc (`diameter`; it stands on y = 0 with the middle of its flat at (0, 0); labels `\"flat\"`, `\"arc\"`) or a ring (`diameter`, `hole_diameter`; labels `\"circle\"`, `\"hole\"`)"},
@@ -157,11 +158,20 @@ std::vector<JobKey> specimen_keys() {
          "other, and not through the specimen"},
         {"labels", tables("specimen.labels"), none,
          "further labels by place, for edges of grains on the boundary whose middle lies there; the last that catches an edge counts, one that catches none is an error"},
+    };
+}
+
+std::vector<JobKey> specimen_keys() {
+    const SpecimenSpec spec;
+    std::vector<JobKey> keys = outline_rows();
+    std::vector<JobKey> further{
         {"thickness", quantity(length), usual(spec.thickness_m), "out of plane; scales forces, not stresses"},
         {"packing", text("a packing saved by an earlier run, its path relative to the job file"), words("a new one for each seed"),
          "a packing that is loaded instead of made"},
         {"grains", table("specimen.grains"), needed, "sizes of the grains and what is in them"},
     };
+    std::ranges::move(further, std::back_inserter(keys));
+    return keys;
 }
 
 std::vector<JobKey> hole_keys() {
@@ -332,6 +342,7 @@ std::vector<JobKey> test_keys() {
         {"kind", choice_of(test_methods()), needed, "the method"},
         {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", methods_that_are(confined)},
         {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
+        {"specimen", table("test.specimen"), words("the job's"), "a specimen of the test's own, of the same grains and thickness: an outline with holes, notches and labels", methods_that_are(uses_specimen)},
         {"disc", choice_of(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
          methods_that_are(own_disc)},
         {"flat_angle", quantity(angle, flat_angles), usual(usual_flat_angle_rad),
@@ -480,6 +491,7 @@ std::vector<KeyTable> all_tables() {
         {"numerics", "[numerics]", numerics_keys()},
         {"variant", "[[variant]]", variant_keys()},
         {"test", "[[test]]", test_keys()},
+        {"test.specimen", "[test.specimen]", outline_rows()},
         {"test.until", "[test.until]", until_keys()},
         {"test.fixture", "[[test.fixture]]", fixture_keys()},
         {"test.gauge", "[[test.gauge]]", gauge_keys()},

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/words.hpp"
@@ -203,6 +205,24 @@ void read_merge_length(const JobTable& grains, SpecimenSpec& spec) {
 }
 
 }  // namespace
+
+SpecimenSpec read_own_specimen(const JobTable& test, const SpecimenSpec& of_job, bool grains_known) {
+    const JobTable table = test.table("specimen");
+    table.require({"shape"});
+    SpecimenSpec spec = of_job;
+    spec.packing_file.clear();
+    spec.outline = read_outline(table);
+    read_cutouts(table, spec.outline);
+    if (!grains_known) return spec;
+    table.check({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}, [&] {
+        const double largest = largest_diameter_m(spec.grain_sizes), extent = smallest_extent_m(spec.outline);
+        if (largest > 0.5 * extent)
+            table.fail("shape", fmt::format("grains of up to {} mm do not fit: the specimen is {} mm across", format_exact(1e3 * largest), format_exact(1e3 * extent)),
+                       "a specimen at least twice as wide as its largest grain");
+    });
+    check_cutouts(table, spec);
+    return spec;
+}
 
 SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled) {
     const JobTable table = root.table("specimen");

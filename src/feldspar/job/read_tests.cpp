@@ -188,19 +188,29 @@ void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates"));
 }
 
-struct ReadTest {
-    std::vector<TestSpec> tests;  // one for each sigma3
-    std::optional<double> diameter_m;
-    double flat_angle_rad = 0.0;
-};
+// The specimen that a test brings itself.
+std::optional<SpecimenSpec> own_specimen(const JobTable& table, const TestMethod& method, const SpecimenSpec& of_job, Known& known) {
+    if (!table.has("specimen")) return std::nullopt;
+    if (method.specimen.own_disc) {
+        table.refuse({"specimen"}, fmt::format("kind = \"{}\"", method.name), "it cuts its own disc: diameter, disc = \"flattened\"");
+        return std::nullopt;
+    }
+    SpecimenSpec own = read_own_specimen(table, of_job, known.grain_sizes);
+    const JobTable place = table.table("specimen");
+    known.outline = std::ranges::all_of(outline_keys, [&](std::string_view key) { return place.sound({key}); });
+    return own;
+}
 
-ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std::vector<Variant>& variants, const Known& known) {
+// One test for each sigma3.
+std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job, const std::vector<Variant>& variants, Known known) {
     const TestMethod& method = table.choice("kind", test_methods()).definition();
     const bool kind_known = table.sound({"kind"}), own_disc = method.specimen.own_disc;
     if (kind_known) table.suit("kind", method.name);
     if (kind_known && known.kinds && !method.specimen.plates && !has_particles(method, variants)) refuse_plates(table, method);
     const bool flattened = kind_known && own_disc && is_flattened(table);
     TestSpec test = usual_test(method, flattened);
+    if (kind_known) test.specimen = own_specimen(table, method, of_job, known);
+    const SpecimenSpec& specimen = test.specimen ? *test.specimen : of_job;
     if (known.outline && method.build.check == nullptr) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
 
     if (table.has("stop_fraction")) test.stop_fraction = table.fraction("stop_fraction");
@@ -220,24 +230,35 @@ ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std
     }
     read_plates(table, has_particles(test.kind, variants), test);
 
-    ReadTest result;
     if (own_disc) {
-        result.diameter_m = brazilian_diameter(table, specimen, known);
-        result.flat_angle_rad = read_flats(table, flattened, specimen, *result.diameter_m, known, test);
+        const double diameter_m = brazilian_diameter(table, of_job, known), flat_angle_rad = read_flats(table, flattened, of_job, diameter_m, known, test);
+        test.specimen = disc_of(of_job, diameter_m, flat_angle_rad);
     }
-    if (!method.specimen.confined) {
-        result.tests.push_back(test);
-        return result;
-    }
+    if (!method.specimen.confined) return {test};
+    std::vector<TestSpec> tests;
     for (double sigma3 : confining_stresses(table)) {
         test.sigma3_Pa = sigma3;
         table.check({"maximum_stress", "sigma3"}, [&] {
             if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= sigma3)
                 table.fail("maximum_stress", "is there before the specimen is loaded", "a sigma1 above sigma3");
         });
-        result.tests.push_back(test);
+        tests.push_back(test);
     }
-    return result;
+    return tests;
+}
+
+// The strengths of a method's tests are those of one rock, so all have the same specimen.
+void check_one_specimen(const JobTable& table, const SpecimenSpec& of_job, const std::vector<TestSpec>& before, const TestSpec& test) {
+    const auto outline = [&](const TestSpec& t) -> const OutlineSpec& { return t.specimen ? t.specimen->outline : of_job.outline; };
+    const auto earlier = std::ranges::find_if(before, [&](const TestSpec& t) { return test_name(t) == test_name(test); });
+    if (earlier == before.end() || outline(*earlier) == outline(test)) return;
+    table.check({"kind", "specimen", "diameter", "disc", "flat_angle"}, [&] {
+        const std::string others = fmt::format("an earlier {} test", method_of(test).specimen.own_disc ? "Brazilian" : "'" + test_name(test) + "'");
+        if (!method_of(test).specimen.own_disc)
+            table.fail(table.has("specimen") ? "specimen" : "kind", "has another specimen than " + others, "one specimen for all tests of a kind; several sizes are an axis of a study");
+        if (outline(*earlier).diameter_m != outline(test).diameter_m) table.fail("diameter", "differs from that of " + others, "one diameter in a job");
+        table.fail(table.has("flat_angle") ? "flat_angle" : table.has("disc") ? "disc" : "kind", "the flats of the disc differ from those of " + others, "one disc in a job");
+    });
 }
 
 }  // namespace
@@ -256,30 +277,18 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
     return seeds;
 }
 
-TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
-                    const std::vector<std::uint64_t>& run_seeds) {
-    TestList result;
+std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
+                                 const std::vector<std::uint64_t>& run_seeds) {
+    std::vector<TestSpec> result;
     if (!root.has("test")) return result;   // a mistake that is noted
     const Known known{
-        root.sound({"specimen.shape", "specimen.width", "specimen.height", "specimen.diameter", "specimen.hole_diameter", "specimen.vertices", "specimen.edge_labels",
-                    "specimen.holes", "specimen.notches"}),
+        std::ranges::all_of(outline_keys, [&](std::string_view key) { return root.sound({"specimen." + std::string(key)}); }),
         root.sound({"specimen.grains.diameter"}), kinds_known(root, variants)};
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const JobTable& table : root.tables("test", "a test")) {
-        ReadTest read = read_one(table, specimen, variants, known);
-        if (read.diameter_m && std::isfinite(*read.diameter_m)) {
-            table.check({"diameter", "disc", "flat_angle"}, [&] {
-                if (!result.brazilian_diameter_m) return;
-                if (*result.brazilian_diameter_m != *read.diameter_m)
-                    table.fail("diameter", "differs from that of an earlier Brazilian test", "one diameter in a job");
-                if (result.flat_angle_rad != read.flat_angle_rad)
-                    table.fail(table.has("flat_angle") ? "flat_angle" : table.has("disc") ? "disc" : "kind", "the flats of the disc differ from those of an earlier Brazilian test",
-                               "one disc in a job");
-            });
-            result.brazilian_diameter_m = read.diameter_m;
-            result.flat_angle_rad = read.flat_angle_rad;
-        }
-        for (TestSpec& test : read.tests) {
+        std::vector<TestSpec> read = read_one(table, specimen, variants, known);
+        check_one_specimen(table, specimen, result, read.front());
+        for (TestSpec& test : read) {
             std::vector<std::uint64_t> seeds(test.seeds.begin(), test.seeds.end());
             if (seeds.empty()) seeds = run_seeds;
             for (std::uint64_t seed : seeds) {
@@ -296,7 +305,7 @@ TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const st
                                    "each test once for each seed");
                     });
             }
-            result.tests.push_back(std::move(test));
+            result.push_back(std::move(test));
         }
     }
     return result;

@@ -301,11 +301,11 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.word("control", test.control == LoadControl::gauge ? test.control_gauge : name(test.control));
     out.number("maximum_strain", test.maximum_strain);
     if (test.maximum_stress_Pa) out.quantity("maximum_stress", *test.maximum_stress_Pa);
-    if (method_of(test).specimen.own_disc) out.quantity("diameter", job.brazilian_specimen.outline.diameter_m);
+    if (method_of(test).specimen.own_disc) out.quantity("diameter", test.specimen->outline.diameter_m);
     // whole discs are left unwritten: identities of their runs stay as they were
-    if (method_of(test).specimen.own_disc && job.brazilian_specimen.outline.flat_angle_rad > 0.0) {
+    if (method_of(test).specimen.own_disc && test.specimen->outline.flat_angle_rad > 0.0) {
         out.word("disc", name(DiscForm::flattened));
-        out.quantity("flat_angle", job.brazilian_specimen.outline.flat_angle_rad);
+        out.quantity("flat_angle", test.specimen->outline.flat_angle_rad);
     }
     write_plates(out, test, job);
     if (test.custom.length_m) out.quantity("length", *test.custom.length_m);
@@ -313,6 +313,10 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.raw("snapshots", std::to_string(test.snapshots));
     if (!test.seeds.empty()) out.raw("seeds", list(test.seeds));
     if (test.stop_gauge) write_until(out, test);
+    if (test.specimen && !method_of(test).specimen.own_disc) {
+        out.head("test.specimen");
+        write_outline(out, test.specimen->outline);
+    }
     for (const FixtureSpec& fixture : test.custom.fixtures) write_fixture(out, fixture);
     for (const GaugeSpec& gauge : test.custom.gauges) write_gauge(out, gauge);
 }

@@ -83,11 +83,13 @@ void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
 // Narrow flats spare the disc's ends less: it may break there before its centre does.
 void look_at_flats(const Job& job, std::vector<std::string>& sentences) {
     constexpr double kDegrees = std::numbers::pi / 180.0, kEnough = 20.0 * kDegrees;
-    const bool brazilian = std::any_of(job.tests.begin(), job.tests.end(), [](const TestSpec& test) { return method_of(test).specimen.own_disc; });
-    const double angle = job.brazilian_specimen.outline.flat_angle_rad;
-    if (!brazilian || !(angle > 0.0) || angle >= kEnough * (1.0 - 1e-9)) return;
-    sentences.push_back(fmt::format("the flats of the Brazilian disc have {:.3g} degrees: from 20 degrees on cracks start in the centre (Wang and others 2004); with less they "
+    for (const TestSpec& test : job.tests) {
+        const double angle = specimen_of(job, test).outline.flat_angle_rad;
+        if (!(angle > 0.0) || angle >= kEnough * (1.0 - 1e-9)) continue;
+        sentences.push_back(fmt::format("the flats of the Brazilian disc have {:.3g} degrees: from 20 degrees on cracks start in the centre (Wang and others 2004); with less they "
                                     "may start beside the flats, and the strength is then no tensile strength", angle / kDegrees));
+        return;
+    }
 }
 
 }  // namespace

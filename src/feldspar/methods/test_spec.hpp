@@ -14,6 +14,7 @@
 #include "feldspar/model/fixture_spec.hpp"
 #include "feldspar/model/gauge_spec.hpp"
 #include "feldspar/model/spec.hpp"
+#include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
 
@@ -82,6 +83,7 @@ struct TestSpec {
     std::map<std::string, std::vector<double>, std::less<>> own;   ///< values of keys that the method adds (MethodKey), SI; only those that the job gives
     std::string control_gauge;           ///< LoadControl::gauge: the gauge that controls
     std::optional<GaugeStop> stop_gauge; ///< ends the test
+    std::optional<SpecimenSpec> specimen;   ///< its own, of the same grains: a disc that the method cuts, or what the job gives; else the job's
     CustomTest custom;                   ///< of methods whose fixtures the job gives
 
     /// The value of a key of the method's own, if the job gives it.

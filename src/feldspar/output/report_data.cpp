@@ -238,12 +238,15 @@ Json envelope_json(const PropertySummary& properties) {
 }
 
 Json specimens_json(std::span<const TestResult> results) {
+    // whose specimens they are: the job's first, then discs that tests cut, then what tests bring
+    const auto owner = [](const TestResult& r) { return method_of(r.test).specimen.own_disc ? title_of(r.test) : r.test.specimen ? title_of(r.test) : ""; };
+    std::vector<std::pair<std::string, const TestResult*>> found;
+    for (const TestResult& r : results)
+        if (r.specimen && std::ranges::none_of(found, [&](const auto& one) { return one.first == owner(r); })) found.emplace_back(owner(r), &r);
+    std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first.empty() ? 0 : 1; });
     Json list = Json::array();
-    for (const bool brazilian : {false, true}) {
-        const auto found = std::ranges::find_if(
-            results, [&](const TestResult& r) { return r.specimen && method_of(r.test).specimen.own_disc == brazilian; });
-        if (found == results.end()) continue;
-        const Specimen& specimen = *found->specimen;
+    for (const auto& [of, result] : found) {
+        const Specimen& specimen = *result->specimen;
         const OutlineSpec& outline = specimen.spec.outline;
         std::string shape = fmt::format("polygon with {} corners", outline.vertices_m.size());
         if (outline.shape == Shape::rectangle)
@@ -254,7 +257,7 @@ Json specimens_json(std::span<const TestResult> results) {
         if (!outline.holes.empty()) shape += ", " + counted(outline.holes.size(), "hole");
         if (!outline.notches.empty()) shape += fmt::format(", {} {}", outline.notches.size(), outline.notches.size() == 1 ? "notch" : "notches");
         if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", in_degrees(outline.flat_angle_rad));
-        list.push_back({{"for", brazilian ? "Brazilian test" : "all tests but the Brazilian"},
+        list.push_back({{"for", !of.empty() ? of : found.size() > 1 ? "all other tests" : "all tests"},
                         {"shape", shape},
                         {"thickness", rounded(specimen.spec.thickness_m * 1e3)},
                         {"grains", specimen.quality.grains},

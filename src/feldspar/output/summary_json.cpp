@@ -240,8 +240,14 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
     summary["complete"] = complete;
     summary["signs"] = sign_convention;
     summary["seeds"] = job.seeds;
-    add_specimens(summary, "specimen", results, [](const TestResult& r) { return !method_of(r.test).specimen.own_disc; });
+    add_specimens(summary, "specimen", results, [](const TestResult& r) { return !method_of(r.test).specimen.own_disc && !r.test.specimen; });
     add_specimens(summary, "brazilian_specimen", results, [](const TestResult& r) { return method_of(r.test).specimen.own_disc; });
+    for (const TestResult& result : results)   // what tests have brought themselves, by their names
+        if (result.test.specimen && !method_of(result.test).specimen.own_disc) {
+            const std::string name = test_name(result.test);
+            add_specimens(summary["test_specimens"], name, results, [&](const TestResult& r) { return test_name(r.test) == name; });
+        }
+    if (!summary.contains("specimen") && summary.contains("test_specimens")) summary["specimen"] = summary["test_specimens"].front();
     // a run of Brazilian tests only has one kind of specimen
     if (!summary.contains("specimen") && summary.contains("brazilian_specimen"))
         summary["specimen"] = summary["brazilian_specimen"];

@@ -22,6 +22,8 @@ struct HoleSpec {
     double diameter_m = 0.0;       ///< round
     std::vector<Vec2> vertices_m;  ///< polygon
     std::string label;             ///< of its boundary; empty = "hole-1", "hole-2", ... in the order of the holes
+
+    bool operator==(const HoleSpec&) const = default;
 };
 
 /// A sawn slit with square ends. Where it begins or ends on a boundary or outside of the rock it is open; an end in the rock is a tip.
@@ -29,6 +31,8 @@ struct NotchSpec {
     Vec2 from_m, to_m;      ///< the ends of its axis
     double width_m = 0.0;   ///< 0 = a cut that takes no rock away: its two faces touch, and nothing joins them
     std::string label;      ///< of its faces; empty = "notch-1", "notch-2", ... in the order of the notches
+
+    bool operator==(const NotchSpec&) const = default;
 };
 
 enum class PlaceKind { disc, box, line };
@@ -39,6 +43,8 @@ struct PlaceLabelSpec {
     PlaceKind kind = PlaceKind::disc;
     Vec2 a_m, b_m;          ///< disc: its centre and nothing; box: two opposite corners; line: its ends
     double within_m = 0.0;  ///< disc: its radius; line: how far from it at most
+
+    bool operator==(const PlaceLabelSpec&) const = default;
 };
 
 /// The outline as the user describes it. A rectangle spans [0, width] x [0, height]; a disc and a ring are centred at (0, 0); a half disc
@@ -58,6 +64,8 @@ struct OutlineSpec {
 
     /// Holes or notches are cut out of it.
     bool is_cut() const { return shape == Shape::ring || !holes.empty() || !notches.empty(); }
+
+    bool operator==(const OutlineSpec&) const = default;
 };
 
 enum class GrainSizeKind { uniform, log_normal, sieve };

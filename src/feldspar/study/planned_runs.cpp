@@ -50,7 +50,9 @@ std::vector<PlannedRun> planned_runs(const Job& job) {
 const SpecimenSpec& specimen_of(const PlannedRun& run) { return specimen_of(*run.job, *run.test); }
 
 std::string packing_stem(const PlannedRun& run) {
-    return fmt::format("packing-{}s{}", method_of(*run.test).specimen.own_disc ? "disc-" : "", run.seed);
+    const TestSpec& test = *run.test;
+    const std::string of = method_of(test).specimen.own_disc ? "disc-" : test.specimen ? test_name(test) + "-" : "";
+    return fmt::format("packing-{}s{}", of, run.seed);
 }
 
 std::string title(const TestSpec& test) {

@@ -24,7 +24,7 @@ std::string identity(Job job) {
     job.laboratory.clear();
     job.laboratory_confined.clear();
     job.tests.front().snapshots = 0;
-    if (method_of(job.tests.front()).specimen.own_disc) job.specimen = job.brazilian_specimen;   // the rectangle is not used
+    job.specimen = specimen_of(job, job.tests.front());   // the job's own is not used
     std::string text = kind_of_run;
     if (!job.specimen.packing_file.empty()) text += read_toml_file(job.specimen.packing_file, "packing");
     job.specimen.packing_file.clear();
@@ -45,8 +45,11 @@ Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::
     run.job.tests = {test};
     run.job.tests.front().seeds.clear();
     run.job.seeds = {seed};
-    if (!method_of(test).specimen.own_disc) run.job.brazilian_specimen = {};
-    if (variant.model.kind != GrainKind::inner_particles) run.job.specimen.particles_per_grain = run.job.brazilian_specimen.particles_per_grain = 0.0;
+    if (test.specimen && !method_of(test).specimen.own_disc) {   // the same run as one of a job whose specimen it is
+        run.job.specimen = *test.specimen;
+        run.job.tests.front().specimen.reset();
+    }
+    if (variant.model.kind != GrainKind::inner_particles) for_each_specimen(run.job, [](SpecimenSpec& specimen) { specimen.particles_per_grain = 0.0; });
     run.id = hash_of_text(identity(run.job));
     return run;
 }

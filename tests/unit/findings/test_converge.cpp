@@ -175,7 +175,7 @@ TEST_F(PlannedConvergence, AnEnvelopeTakesWhatTheJobLacks) {
     EXPECT_NEAR(planned.tests[1].sigma3_Pa, 3e6, 1.0);   // of UCS = 120 MPa
     EXPECT_NEAR(planned.tests[4].sigma3_Pa, 20e6, 1.0);
     EXPECT_EQ(planned.seeds, (std::vector<std::uint64_t>{1, 2, 3}));
-    EXPECT_EQ(planned.brazilian_specimen.outline.diameter_m, planned.specimen.outline.width_m);
+    EXPECT_EQ(planned.tests[6].specimen->outline.diameter_m, planned.specimen.outline.width_m);
     EXPECT_EQ(planned.tests[6].plates, PlateShape::curved);   // as a job has it that says nothing
     EXPECT_EQ(planned.tests[6].plate_Kn_Pa_m, usual_test(methods::brazilian).plate_Kn_Pa_m);
     EXPECT_EQ(planned.tests[1].control, LoadControl::dissipation);

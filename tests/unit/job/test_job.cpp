@@ -70,8 +70,9 @@ TEST(Job, DefaultsAreThoseOfTheSpecs) {
     EXPECT_EQ(job.variants.front().numerics.accuracy, NumericsSpec{}.accuracy);
     EXPECT_EQ(job.tests[0].stop_fraction, TestSpec{}.stop_fraction);
     EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{1}));
-    EXPECT_EQ(job.brazilian_specimen.outline.shape, Shape::disc);
-    EXPECT_EQ(job.brazilian_specimen.outline.diameter_m, 0.08);
+    ASSERT_TRUE(job.tests[0].specimen);
+    EXPECT_EQ(job.tests[0].specimen->outline.shape, Shape::disc);
+    EXPECT_EQ(job.tests[0].specimen->outline.diameter_m, 0.08);
 }
 
 TEST(Job, CompressionIsFollowedBehindThePeakUnlessTold) {
@@ -83,13 +84,29 @@ TEST(Job, CompressionIsFollowedBehindThePeakUnlessTold) {
     EXPECT_EQ(control(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"")), LoadControl::displacement) << "a fixed speed follows nothing";
 }
 
+TEST(Job, OwnSpecimensAreCheckedAsThoseOfJobs) {
+    const auto problem = [](const std::string& test) {
+        try {
+            parse_job(edited("kind = \"uniaxial-compression\"", test), "job");
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(problem("kind = \"three-point-bend\"\nspecimen = { shape = \"disc\", diameter = \"80 mm\" }").find("a disc is no beam"), std::string::npos);
+    EXPECT_NE(problem("kind = \"three-point-bend\"\nspecimen = { shape = \"rectangle\", width = \"220 mm\" }").find("height"), std::string::npos);
+    EXPECT_NE(problem("kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"5 mm\", height = \"10 mm\" }").find("do not fit"), std::string::npos);
+    EXPECT_NE(problem("kind = \"brazilian\"\nspecimen = { shape = \"disc\", diameter = \"50 mm\" }").find("cuts its own disc"), std::string::npos);
+    EXPECT_NE(problem("kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\", grain = 3 }").find("grain"), std::string::npos);
+}
+
 TEST(Job, BrazilianDiscHasTheSpecimensWidthUnlessTold) {
     const Job usual = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\""), "job");
-    EXPECT_EQ(usual.brazilian_specimen.outline.diameter_m, 0.08);
-    EXPECT_EQ(usual.brazilian_specimen.grain_sizes.maximum_m, 0.004);
+    EXPECT_EQ(usual.tests[0].specimen->outline.diameter_m, 0.08);
+    EXPECT_EQ(usual.tests[0].specimen->grain_sizes.maximum_m, 0.004);
     const Job told =
         parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"50 mm\"\nplate_mu = 0.2"), "job");
-    EXPECT_EQ(told.brazilian_specimen.outline.diameter_m, 0.05);
+    EXPECT_EQ(told.tests[0].specimen->outline.diameter_m, 0.05);
     EXPECT_EQ(told.tests[0].plate_mu, 0.2);
 }
 
@@ -292,7 +309,6 @@ void expect_same(const Variant& a, const Variant& b) {
 void expect_same(const Job& a, const Job& b) {
     EXPECT_EQ(a.name, b.name);
     expect_same(a.specimen, b.specimen);
-    expect_same(a.brazilian_specimen, b.brazilian_specimen);
     ASSERT_EQ(a.variants.size(), b.variants.size());
     for (std::size_t i = 0; i < a.variants.size(); ++i) expect_same(a.variants[i], b.variants[i]);
     ASSERT_EQ(a.tests.size(), b.tests.size());
@@ -310,6 +326,9 @@ void expect_same(const Job& a, const Job& b) {
         EXPECT_EQ(a.tests[i].membrane_plates, b.tests[i].membrane_plates);
         EXPECT_EQ(a.tests[i].snapshots, b.tests[i].snapshots);
         EXPECT_EQ(a.tests[i].seeds, b.tests[i].seeds);
+        EXPECT_EQ(a.tests[i].own, b.tests[i].own);
+        ASSERT_EQ(a.tests[i].specimen.has_value(), b.tests[i].specimen.has_value());
+        if (a.tests[i].specimen) expect_same(*a.tests[i].specimen, *b.tests[i].specimen);
     }
     EXPECT_EQ(a.seeds, b.seeds);
     EXPECT_EQ(a.threads, b.threads);
@@ -473,11 +492,11 @@ TEST(Job, RelativePackingsCountFromTheJobsFolder) {
 
 TEST(FlattenedDiscs, AreCutFromTheBrazilianSpecimenAlone) {
     const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\""), "job");
-    EXPECT_NEAR(job.brazilian_specimen.outline.flat_angle_rad * 180.0 / 3.14159265358979323846, 20.0, 1e-12) << "unless given";
+    EXPECT_NEAR(job.tests[0].specimen->outline.flat_angle_rad * 180.0 / 3.14159265358979323846, 20.0, 1e-12) << "unless given";
     EXPECT_EQ(job.specimen.outline.flat_angle_rad, 0.0);
     EXPECT_TRUE(warnings(job).empty());
     const Job whole = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"whole\""), "job");
-    EXPECT_EQ(whole.brazilian_specimen.outline.flat_angle_rad, 0.0);
+    EXPECT_EQ(whole.tests[0].specimen->outline.flat_angle_rad, 0.0);
     EXPECT_EQ(resolved_toml(whole).find("disc ="), std::string::npos) << "identities of runs stay as they were";
 }
 
@@ -488,6 +507,23 @@ TEST(FlattenedDiscs, WithNarrowFlatsAreWarnedOf) {
 }
 
 }  // namespace
+
+// One rock, several specimens: a beam beside the upright specimen, of the same grains.
+TEST(Job, ATestMayBringItsOwnSpecimen) {
+    const std::string beam = "kind = \"three-point-bend\"\nspecimen = { shape = \"rectangle\", width = \"220 mm\", height = \"50 mm\", notches = [{ from = [\"110 mm\", \"0 mm\"], to = "
+                             "[\"110 mm\", \"15 mm\"], width = \"1 mm\" }] }\n\n[[test]]\nkind = \"uniaxial-compression\"";
+    const Job job = parse_job(edited("kind = \"uniaxial-compression\"", beam), "job");
+    ASSERT_EQ(job.tests.size(), 2u);
+    ASSERT_TRUE(job.tests[0].specimen);
+    EXPECT_FALSE(job.tests[1].specimen);
+    EXPECT_EQ(&specimen_of(job, job.tests[1]), &job.specimen);
+    const SpecimenSpec& own = specimen_of(job, job.tests[0]);
+    EXPECT_EQ(own.outline.width_m, 0.22);
+    EXPECT_EQ(own.outline.notches.size(), 1u);
+    EXPECT_EQ(own.grain_sizes.maximum_m, job.specimen.grain_sizes.maximum_m);
+    EXPECT_EQ(own.thickness_m, job.specimen.thickness_m);
+    expect_same(parse_job(resolved_toml(job), "job"), job);
+}
 // ISRM's jaws and tape unless said; what is said counts, and a resolved job says it all.
 TEST(BrazilianPlates, AreCurvedJawsOnTapeUnlessTheJobSaysOtherwise) {
     const auto plates_of = [](const std::string& keys) {

@@ -66,6 +66,7 @@ const std::vector<std::string>& bases() {
             replaced(sample_job, "seeds = [1, 2, 3, 4, 5]\n", ""),
             own,
             plates,
+            replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\" }"),
         };
     }();
     return all;
