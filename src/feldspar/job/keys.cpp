@@ -67,6 +67,11 @@ KeyValue control_words() {   // or the name of a gauge
     for (const LoadControl control : load_controls) value.element.words.emplace_back(name(control));
     return value;
 }
+KeyValue stage_ends_and_gauges() {
+    KeyValue value = text("the name of a gauge");
+    for (const StageEnd end : stage_ends) value.element.words.emplace_back(name(end));
+    return value;
+}
 KeyValue direction() { return list_of(number(any_value)); }
 KeyValue pairs_of(KeyValue first, KeyValue second) { return {std::move(first.element), ValueShape::pairs, std::move(second.element)}; }
 
@@ -100,6 +105,8 @@ bool confined(const TestMethod& method) { return method.specimen.confined; }
 bool takes_friction(const TestMethod& method) { return !method.specimen.glued && method.reading != Reading::curve; }
 bool beam(const TestMethod& method) { return method.reading == Reading::beam; }
 bool users_own(const TestMethod& method) { return method.reading == Reading::curve; }
+bool multi_stage(const TestMethod& method) { return method.reading == Reading::stages; }
+bool cyclic(const TestMethod& method) { return method.build.stages != nullptr && !multi_stage(method); }
 bool has_gauges(const TestMethod& method) { return method.build.gauges != nullptr; }
 bool adaptive(NumericsKind kind) { return kind == NumericsKind::adaptive; }
 bool not_adaptive(NumericsKind kind) { return kind != NumericsKind::adaptive; }
@@ -315,7 +322,7 @@ std::vector<JobKey> test_keys() {
     const TestSpec spec;
     return {
         {"kind", choice(test_kinds), needed, "the method"},
-        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", methods_that_are(confined)},
+        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each, or for the rising pressures of one multi-stage test", methods_that_are(confined)},
         {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
         {"disc", choice(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
          methods_that_are(own_disc)},
@@ -324,6 +331,15 @@ std::vector<JobKey> test_keys() {
         {"name", text("1 to 40 letters, digits, '_' and '-'"), must, "names the results of a test of your own", methods_that_are(users_own)},
         {"span", quantity(length), words("4 times the beam's height, at most 0.9 of its length"), "distance of the two supports", methods_that_are(beam)},
         {"roller_radius", quantity(length), words("a tenth of the beam's height"), "radius of the three rollers", methods_that_are(beam)},
+        {"lateral_strain_step", share_of_one(inside_one), usual(spec.cycles.lateral_strain_step), "the specimen is unloaded each time that it has become so much wider",
+         methods_that_are(cyclic)},
+        {"stress_step", quantity(stress), none, "the specimen is unloaded each time that the stress has grown by so much, in place of `lateral_strain_step`",
+         methods_that_are(cyclic)},
+        {"cycles", integer(0, 10000), usual(spec.cycles.count), "cycles of loading and unloading, after which it is loaded until the test ends; 0: until the test ends",
+         methods_that_are(cyclic)},
+        {"unload_to", share_of_one(inside_one), usual(spec.cycles.unload_to), "share of the largest load at which unloading ends", methods_that_are(cyclic)},
+        {"stages", tables("test.stages"), none,
+         "what the loading does, one stage after the other; without them it loads until the test ends ([theory](theory/loading.md#7-stages))", methods_that_are(users_own)},
         {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction),
          "the test ends when the stress has fallen to this fraction of the peak; in bending 0.1 unless it is given"},
         {"control", control_words(), words("`\"dissipation\"` with adaptive numerics, in direct tension and the Brazilian test `\"displacement\"`"),
@@ -370,6 +386,30 @@ std::vector<JobKey> until_keys() {
     return {
         {"gauge", text("the name of a gauge"), needed, "a gauge of the method or of the test"},
         {"at", quantity(length, any_value), needed, "the test ends when the gauge has reached this: a length, of a force gauge a force, of a strain gauge a fraction"},
+    };
+}
+
+std::vector<JobKey> stage_keys() {
+    const KeyCondition moving = with("kind", {StageForm::load, StageForm::unload}), hold = with("kind", {StageForm::hold}), confine = with("kind", {StageForm::confine}),
+                       cycle = with("kind", {StageForm::cycle});
+    const KeyValue value = quantity(length, any_value);
+    return {
+        {"kind", choice(stage_forms), needed,
+         "`\"load\"`: the loading motion grows; `\"unload\"`: it goes back; `\"hold\"`: it is at rest; `\"confine\"`: the pressure on the sides changes; `\"cycle\"`: "
+         "stages that are repeated"},
+        {"until", stage_ends_and_gauges(), words("of the last loading the end of the test; of unloading a stress of 0"),
+         "what ends it: `\"stress\"` or `\"load\"`, positive in the sense of the loading; `\"axial-strain\"`: loading motion over length; `\"lateral-strain\"`: less than 0 when the "
+         "specimen widens; `\"share-of-peak\"`: the load has fallen to a share of the largest so far; `\"reversal\"`: the volumetric strain has turned; the name of a gauge",
+         moving},
+        {"at", value, words("`at`, `by` or `beyond` must be given, but for a reversal"),
+         "... at this value: a stress, a force, a length, or a share such as `\"0.1 %\"`, as its quantity is", moving},
+        {"by", value, words("none"), "... when it has changed by so much since the stage began", moving},
+        {"beyond", value, words("none"), "... when it is so far beyond where the last loading ended; in the first loading as `by`", moving},
+        {"travel_times", number(positive), words("until the specimen is at rest"), "how long, in times in which a wave crosses the specimen", hold},
+        {"sigma3", quantity(stress, not_negative), must, "the pressure to which it goes, over 30 travel times if it changes altogether", confine},
+        {"keep", choice(confine_keeps), words("`\"motion\"`"), "`\"motion\"`: the loading motion is at rest; `\"load\"`: it follows, so that the axial stress stays", confine},
+        {"times", integer(1, 10000), words("until the test ends"), "how often", cycle},
+        {"stages", tables("test.stages"), must, "the stages; not a cycle again", cycle},
     };
 }
 
@@ -463,6 +503,7 @@ std::vector<KeyTable> all_tables() {
         {"variant", "[[variant]]", variant_keys()},
         {"test", "[[test]]", test_keys()},
         {"test.until", "[test.until]", until_keys()},
+        {"test.stages", "[[test.stages]]", stage_keys()},
         {"test.fixture", "[[test.fixture]]", fixture_keys()},
         {"test.gauge", "[[test.gauge]]", gauge_keys()},
         {"run", "[run]", run_keys()},

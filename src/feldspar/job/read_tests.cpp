@@ -188,6 +188,35 @@ void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates"));
 }
 
+// What the loading does one after the other. Only adaptive numerics turn it.
+void read_loading(const JobTable& table, const std::vector<Variant>& variants, TestSpec& test) {
+    if (table.has("lateral_strain_step")) test.cycles.lateral_strain_step = table.fraction("lateral_strain_step");
+    if (table.has("stress_step")) {
+        test.cycles.stress_step_Pa = table.quantity("stress_step");
+        table.refuse({"lateral_strain_step"}, "stress_step", "one of them");
+    }
+    if (table.has("cycles")) test.cycles.count = static_cast<int>(table.integer("cycles"));
+    if (table.has("unload_to")) test.cycles.unload_to = table.fraction("unload_to");
+    const auto all = [&](auto fits) {
+        return std::ranges::all_of(variants, [&](const Variant& variant) { return !variant.runs(test.kind) || fits(variant.numerics); });
+    };
+    if (table.has("stages")) test.stages = read_stages(table, test, all([](const NumericsSpec& n) { return n.maximum_steps.has_value(); }));
+    table.check({"kind", "stages"}, [&] {
+        if (!stages_of(test).empty() && !all([](const NumericsSpec& n) { return n.kind == NumericsKind::adaptive; }))
+            table.fail(table.has("stages") ? "stages" : "kind", "the loading turns, which only adaptive numerics do", "[numerics] kind = \"adaptive\"");
+    });
+}
+
+// The pressures of a multi-stage test: those after the first.
+void read_pressures(const JobTable& table, const std::vector<double>& sigma3_Pa, TestSpec& test) {
+    table.check({"sigma3"}, [&] {
+        if (sigma3_Pa.size() < 2) table.fail("sigma3", "a multi-stage test goes through several pressures", "two or more, such as [\"2 MPa\", \"5 MPa\", \"10 MPa\"]");
+        if (!std::ranges::is_sorted(sigma3_Pa, std::ranges::less_equal{})) table.fail("sigma3", "the pressures of a multi-stage test must rise", "each larger than the one before");
+        test.sigma3_Pa = sigma3_Pa.front();
+        test.later_sigma3_Pa.assign(sigma3_Pa.begin() + 1, sigma3_Pa.end());
+    });
+}
+
 struct ReadTest {
     std::vector<TestSpec> tests;  // one for each sigma3
     std::optional<double> diameter_m;
@@ -209,6 +238,7 @@ ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std
     if (known.outline && kind_known && method.build.check != nullptr) check_by_method(table, test, specimen);
     test.maximum_strain = table.fraction("maximum_strain");
     if (table.has("maximum_stress")) test.maximum_stress_Pa = table.quantity("maximum_stress");
+    if (kind_known) read_loading(table, variants, test);
     test.snapshots = static_cast<int>(table.integer("snapshots"));
     if (table.has("seeds"))
         for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
@@ -226,6 +256,11 @@ ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std
         result.flat_angle_rad = read_flats(table, flattened, specimen, *result.diameter_m, known, test);
     }
     if (!method.specimen.confined) {
+        result.tests.push_back(test);
+        return result;
+    }
+    if (method.reading == Reading::stages) {
+        read_pressures(table, confining_stresses(table), test);
         result.tests.push_back(test);
         return result;
     }

@@ -60,6 +60,11 @@ QuantityPlace bending() {
 }
 
 template <auto member>
+QuantityPlace stages_of_one() {
+    return at<&R::properties, &P::multi_stage, member>();
+}
+
+template <auto member>
 QuantityPlace evidence() {
     return at<&R::evidence, member>();
 }
@@ -112,7 +117,9 @@ std::vector<TestQuantity> table() {
     const std::set<TestKind> loaded = those([](const TestMethod& m) { return m.reading == Reading::column; });   // between platens
     const std::set<TestKind> beams = those([](const TestMethod& m) { return m.reading == Reading::beam; });
     const std::set<TestKind> forces = those([](const TestMethod& m) { return m.reading == Reading::beam || m.reading == Reading::curve; });
-    const std::set<TestKind> compressed = those([](const TestMethod& m) { return m.loading.widens; });
+    const std::set<TestKind> compressed = those([](const TestMethod& m) { return m.reading == Reading::column && m.loading.widens; });
+    const std::set<TestKind> cyclic = those([](const TestMethod& m) { return m.reading == Reading::column && m.build.stages != nullptr; });
+    const std::set<TestKind> multi_stage = those([](const TestMethod& m) { return m.reading == Reading::stages; });
     std::vector<TestQuantity> all;
     const auto add = [&](QuantityGroup group, const std::set<TestKind>& tests, std::vector<TestQuantity> rows) {
         for (TestQuantity& row : rows) {
@@ -191,6 +198,15 @@ std::vector<TestQuantity> table() {
         {"softening_length", length, "(P40)", bending<&BendingProperties::softening_length_m>()},
         {"crack_path", pure, "(P40)", bending<&BendingProperties::crack_path_over_ligament>()},
         {"notch", length, "", bending<&BendingProperties::notch_m>()},
+    });
+    add(G::cycles, cyclic, {
+        {"cycles", pure, "", {QuantityForm::whole, [](const R& r) { return static_cast<double>(r.properties.cycles.size()); }}, absent, same, absent},
+        {"damage_omega", pure, "(P43)", property<&P::damage_omega>()},
+    });
+    add(G::multi_stage, multi_stage, {
+        {"peak_over_reversal", pure, "(P44)", stages_of_one<&MultiStageProperties::peak_over_reversal>()},
+        {"multi_stage_cohesion", stress, "(P45)", stages_of_one<&MultiStageProperties::cohesion_Pa>(), same, "cohesion", "cohesion"},
+        {"multi_stage_friction_angle", angle, "(P45)", stages_of_one<&MultiStageProperties::friction_angle_deg>(), same, "friction_angle", "friction_angle"},
     });
     add(G::cracks, any, {
         {"cracks_tensile", pure, "", count<CrackMode::tensile>(), same, same, "tensile"},

@@ -30,6 +30,7 @@ struct MethodBuild {
     std::vector<GaugeSpec> (*gauges)(const MethodInput&) = nullptr;   ///< none: no gauges but those of the strain in the specimen's middle
     std::vector<const char*> gauge_names{};   ///< that it may have
     void (*check)(const Outline&, double thickness_m, const TestSpec&) = nullptr;   ///< throws InputError if the specimen is none for the test; none: it stands between platens
+    std::vector<StageGroup> (*stages)(const TestSpec&) = nullptr;     ///< of the loading; none: those that the job gives, if it gives any
 };
 
 /// What results and pages call things.
@@ -51,6 +52,7 @@ enum class Reading {
     column,   ///< moduli, Poisson's ratio, thresholds and the branch behind the peak of a specimen that is strained evenly
     disc,     ///< how a disc was split
     beam,     ///< flexural strength, modulus and toughness
+    stages,   ///< the strength at each of the pressures that one specimen went through
     curve     ///< the largest load alone
 };
 
@@ -105,7 +107,7 @@ struct TestMethod {
 
 /// One definition a file, named as jobs name the method.
 namespace methods {
-extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom;
+extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom, cyclic_compression, multi_stage_biaxial;
 }
 
 /// The facts of a method.
@@ -114,6 +116,9 @@ inline const TestMethod& method_of(const TestSpec& test) { return method_of(test
 
 /// What files call the test: the method, or the name that the user gave his own.
 inline std::string test_name(const TestSpec& test) { return test.custom.name.empty() ? name(test.kind) : test.custom.name; }
+
+/// The stages that a test goes through; empty: it loads until its stop rule ends it.
+std::vector<StageGroup> stages_of(const TestSpec& test);
 
 /// Whether a pressure acts on the sides of the specimen.
 inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }

@@ -11,9 +11,14 @@ constexpr double tape_Kn_Pa_m = 1.6e12;
 
 const TestMethod& method_of(TestKind kind) {
     for (const TestMethod* method : {&methods::uniaxial_compression, &methods::direct_tension, &methods::biaxial, &methods::brazilian,
-                                     &methods::three_point_bend, &methods::custom})
+                                     &methods::three_point_bend, &methods::custom, &methods::cyclic_compression, &methods::multi_stage_biaxial})
         if (method->kind == kind) return *method;
     return methods::uniaxial_compression;   // never: every kind has its method
+}
+
+std::vector<StageGroup> stages_of(const TestSpec& test) {
+    const auto& of_method = method_of(test).build.stages;
+    return of_method != nullptr ? of_method(test) : test.stages;
 }
 
 TestSpec usual_test(TestKind kind, bool flattened) {

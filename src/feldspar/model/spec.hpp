@@ -8,6 +8,7 @@
 
 #include "feldspar/model/fixture_spec.hpp"
 #include "feldspar/model/gauge_spec.hpp"
+#include "feldspar/model/stage_spec.hpp"
 
 namespace feldspar {
 
@@ -63,7 +64,7 @@ struct NumericsSpec {
 
 enum class PlateShape { flat, curved };   ///< of the plates of a Brazilian test; curved: the jaws of ISRM
 
-enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom };
+enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom, cyclic_compression, multi_stage_biaxial };
 
 /// What the loading keeps constant behind the strength: its own speed, the growth of the lateral strain, of the dissipated energy, or of a gauge.
 enum class LoadControl { displacement, lateral_strain, dissipation, gauge };
@@ -75,6 +76,14 @@ struct CustomTest {
     std::vector<GaugeSpec> gauges;
     std::optional<double> length_m;        ///< strain = loading motion / length; default: the extent of the specimen along the loading
     std::optional<double> width_m;         ///< stress = load / (width x thickness); default: its extent across
+};
+
+/// When a cyclic test unloads: at each step of one quantity.
+struct CyclesSpec {
+    double lateral_strain_step = 2e-4;        ///< how much wider the specimen is at a cycle's top than at the one before, > 0; unless there is a stress step
+    std::optional<double> stress_step_Pa;     ///< growth of the stress from one cycle's top to the next, > 0
+    int count = 0;                            ///< cycles, after which it is loaded until the test ends; 0: until the test ends
+    double unload_to = 0.02;                  ///< share of the largest load so far at which unloading ends: the specimen stays in touch
 };
 
 /// Ends a test when a gauge has reached a value, upwards or downwards.
@@ -103,6 +112,9 @@ struct TestSpec {
     std::string control_gauge;           ///< LoadControl::gauge: the gauge that controls
     std::optional<GaugeStop> stop_gauge; ///< ends the test
     CustomTest custom;                   ///< custom only
+    std::vector<StageGroup> stages;      ///< custom only: what the loading does, in order; empty: it loads until the test ends. All methods': stages_of()
+    std::vector<double> later_sigma3_Pa; ///< multi-stage: the pressures after sigma3_Pa, each larger than the one before
+    CyclesSpec cycles;                   ///< cyclic compression only
 };
 
 // All values of each, in the order in which users are told; name() is how files call them.
@@ -115,7 +127,7 @@ inline constexpr std::array numerics_kinds{NumericsKind::adaptive, NumericsKind:
 inline constexpr std::array plate_shapes{PlateShape::flat, PlateShape::curved};
 inline constexpr std::array load_controls{LoadControl::displacement, LoadControl::lateral_strain, LoadControl::dissipation};   // and gauges, by their names
 inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian,
-                                       TestKind::three_point_bend, TestKind::custom};
+                                       TestKind::three_point_bend, TestKind::cyclic_compression, TestKind::multi_stage_biaxial, TestKind::custom};
 
 inline const char* name(TestKind kind) {
     switch (kind) {
@@ -125,6 +137,8 @@ inline const char* name(TestKind kind) {
         case TestKind::brazilian: return "brazilian";
         case TestKind::three_point_bend: return "three-point-bend";
         case TestKind::custom: return "custom";
+        case TestKind::cyclic_compression: return "cyclic-compression";
+        case TestKind::multi_stage_biaxial: return "multi-stage-biaxial";
     }
     return "?";
 }
