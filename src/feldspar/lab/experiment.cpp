@@ -98,6 +98,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     if (s.test.control == LoadControl::gauge) require_gauge(gauges, s.test.control_gauge, "test.control");
     if (s.test.stop_gauge) require_gauge(gauges, s.test.stop_gauge->gauge, "test.until");
     require_stages(*this);
+    stage = stages.empty() ? 0 : 1;
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
     impose_motion();
 }

@@ -154,7 +154,6 @@ public:
 
     void run() {
         const int block = adaptive_ ? 10 : 50;   // steps between records
-        if (stages_.staged()) e_.stage = 1;
         if (adaptive_ && stages_.loads()) e_.change_speed(control_.start(e_.platen_travel_m));
         const HistoryRow& first = recorder_.record(Phase::loading);
         if (stages_.staged()) begin_stage(first, first_row());
