@@ -19,6 +19,7 @@ std::uint64_t hash(const TestResult& r) {
     };
     for (const HistoryRow& row : r.history) {
         add(row.step);
+        add(row.stage);
         add(row.axial_strain);
         add(row.axial_stress_Pa);
         add(row.stress_top_Pa);
@@ -52,6 +53,7 @@ struct Case {
 class SameBits : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Tests, SameBits,
                          testing::Values(Case{TestKind::uniaxial_compression, {}}, Case{TestKind::biaxial, {}}, Case{TestKind::brazilian, {}},
+                                         Case{TestKind::cyclic_compression, {}},
                                          Case{TestKind::biaxial, fixtures::model(GrainKind::rigid)},
                                          Case{TestKind::brazilian, fixtures::model(GrainKind::rigid, ContactKind::point)},
                                          Case{TestKind::uniaxial_compression, fixtures::model(GrainKind::inner_particles)},

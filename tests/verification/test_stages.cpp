@@ -67,9 +67,13 @@ TEST_P(Stages, LoadsAndUnloadsToWithinHalfAPercentOfWhatIsAsked) {
     expect_books_in_order(r);
 }
 
+// A rock four times as tough as the granite: it softens over several cycles, where the granite's small packings break in one run.
 TestSetup cyclic() {
     TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.024, 0.048)), TestKind::cyclic_compression);
     s.numerics.accuracy = 0.02;
+    s.contact.Gfn_J_m2 *= 4.0;
+    s.contact.Gfs_J_m2 *= 4.0;
+    s.test.control = LoadControl::dissipation;
     s.test.cycles.lateral_strain_step = 4e-4;
     s.test.stop_fraction = 0.6;
     return s;
@@ -79,17 +83,23 @@ TEST(CyclicCompression, LosesStiffnessAndKeepsItsBooks) {
     const TestSetup s = cyclic();
     const TestResult r = run_test(s, {});
     const std::vector<CycleProperties>& cycles = r.properties.cycles;
-    ASSERT_GE(cycles.size(), 4U) << r.stop_reason;
+    ASSERT_GE(cycles.size(), 5U) << r.stop_reason;
     EXPECT_EQ(r.stop_reason, "the stress has fallen to 60 % of the peak");
     EXPECT_TRUE(r.properties.peak_reached);
     expect_books_in_order(r);
-    // The first unloading is of a body with hardly a crack; the last before failure of one with many.
-    std::size_t last = cycles.size();
-    while (last-- > 0 && !std::isfinite(cycles[last].unloading_modulus_Pa)) continue;
-    EXPECT_LT(cycles[last].unloading_modulus_Pa, 0.97 * cycles.front().unloading_modulus_Pa);
-    EXPECT_NEAR(cycles.front().unloading_modulus_Pa / r.properties.E_initial_Pa, 1.0, 0.03) << "before damage; platens and gauge differ a little";
-    EXPECT_LT(cycles[last].permanent_lateral_strain, cycles.front().permanent_lateral_strain) << "it stays wider";
-    EXPECT_GT(r.properties.damage_omega, 0.0);
+    // The first cycle is of a body without a crack, the last one of a body that is broken.
+    const CycleProperties &first = cycles.front(), &last = cycles.back(), &unloaded = cycles[cycles.size() - 2];
+    EXPECT_EQ(first.cracks, 0);
+    EXPECT_NEAR(first.unloading_modulus_Pa / r.properties.E_initial_Pa, 1.0, 0.03) << "platens and gauge differ a little";
+    EXPECT_NEAR(cycles[1].reloading_modulus_Pa / first.unloading_modulus_Pa, 1.0, 5e-3);
+    EXPECT_LT(unloaded.unloading_modulus_Pa, 0.98 * first.unloading_modulus_Pa);
+    EXPECT_LT(last.reloading_modulus_Pa, 0.9 * first.unloading_modulus_Pa);
+    for (std::size_t c = 1; c + 1 < cycles.size(); ++c) {
+        EXPECT_LT(cycles[c].permanent_lateral_strain, cycles[c - 1].permanent_lateral_strain) << "it stays wider";
+        EXPECT_GT(cycles[c].damage, cycles[c - 1].damage);
+    }
+    EXPECT_DOUBLE_EQ(r.properties.damage_omega, unloaded.damage);
+    EXPECT_NEAR(unloaded.damage / -unloaded.permanent_volumetric_strain, 1.0, 1e-9) << "the dilation of all cycles is that of the specimen";
     double dissipated = 0.0;
     int cracks = 0;
     for (const CycleProperties& cycle : cycles) {
@@ -99,27 +109,30 @@ TEST(CyclicCompression, LosesStiffnessAndKeepsItsBooks) {
     const EnergyLedger& end = r.energy_at_end;
     EXPECT_NEAR(dissipated / (end.fracture + end.friction + end.damping), 1.0, 1e-9);
     EXPECT_EQ(cracks, std::ssize(r.cracks));
-    // Each top but those behind the strength is wider than the one before by the step.
-    for (std::size_t c = 1; c < r.stages.size(); ++c) {
-        if (r.stages[c].kind != StageKind::unload || c < 3) continue;
+    // Each top is wider than the one before by the step.
+    for (std::size_t c = 3; c < r.stages.size(); c += 2) {
+        ASSERT_EQ(r.stages[c].kind, StageKind::unload);
         const double before = r.history[r.stages[c - 2].first_row].lateral_strain_gauge, now = r.history[r.stages[c].first_row].lateral_strain_gauge;
         EXPECT_GE(before - now, s.test.cycles.lateral_strain_step * (1.0 - 1e-9));
     }
 }
 
-TEST(CyclicCompression, IsAsStrongAsUnderMonotonicLoading) {
-    // Reloading closes what unloading opened; what breaks in cycles at this rock's strength is little. A few percent of one small packing.
-    const TestResult r = run_test(cyclic(), {});
-    TestSetup plain = cyclic();
-    plain.test.kind = TestKind::uniaxial_compression;
-    const TestResult monotonic = run_test(plain, {});
+TEST(CyclicCompression, IsAsStrongAsUnderMonotonicLoadingWhereUnloadingLeavesNothingBehind) {
+    // Contacts that are unloaded to their origin carry no forces in the unloaded specimen, and find back to where they were. (Unloaded with their first
+    // stiffness they do, and cycles cost strength.) Events in another order, and tops that are passed a second time: a few percent of a small packing.
+    TestSetup s = cyclic();
+    s.contact.tension_unloading = TensionUnloading::secant;
+    const TestResult r = run_test(s, {});
+    s.test.kind = TestKind::uniaxial_compression;
+    const TestResult monotonic = run_test(s, {});
     EXPECT_NEAR(r.properties.peak_stress_Pa / monotonic.properties.peak_stress_Pa, 1.0, 0.05);
-    EXPECT_NEAR(r.properties.E_secant_Pa / monotonic.properties.E_secant_Pa, 1.0, 0.02) << "loops are left out of the curve";
+    EXPECT_NEAR(r.properties.E_secant_Pa / monotonic.properties.E_secant_Pa, 1.0, 0.01) << "loops are left out of the curve";
 }
 
-TEST(MultiStage, OneSpecimenUnderRisingPressuresHasAnEnvelope) {
-    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.024, 0.048)), TestKind::multi_stage_biaxial);
+TEST(MultiStage, OneSpecimenHasAboutTheStrengthsOfOneForEachPressure) {
+    TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.04, 0.08)), TestKind::multi_stage_biaxial);
     s.numerics.accuracy = 0.02;
+    s.test.control = LoadControl::dissipation;
     s.test.sigma3_Pa = 1e6;
     s.test.later_sigma3_Pa = {3e6, 6e6};
     s.test.stop_fraction = 0.93;
@@ -127,12 +140,16 @@ TEST(MultiStage, OneSpecimenUnderRisingPressuresHasAnEnvelope) {
     ASSERT_EQ(r.stages.size(), 5U) << r.stop_reason;
     const MultiStageProperties& p = r.properties.multi_stage;
     ASSERT_EQ(p.sigma3_Pa, (std::vector<double>{1e6, 3e6, 6e6}));
-    for (std::size_t i = 1; i < 3; ++i) EXPECT_GT(p.reversal_Pa[i], p.reversal_Pa[i - 1]);
     EXPECT_GT(p.peak_over_reversal, 1.0);
-    EXPECT_GT(p.friction_angle_deg, 0.0);
-    EXPECT_GT(p.cohesion_Pa, 0.0);
     EXPECT_EQ(p.strength_Pa.back(), r.properties.peak_stress_Pa);
+    EXPECT_TRUE(p.friction_angle_deg > 0.0 && p.cohesion_Pa > 0.0);
     expect_books_in_order(r);
+    s.test.kind = TestKind::biaxial;
+    s.test.later_sigma3_Pa.clear();
+    for (std::size_t i = 0; i < 3; ++i) {   // measured on this packing: within 1.5 %; on another one 4 %
+        s.test.sigma3_Pa = p.sigma3_Pa[i];
+        EXPECT_NEAR(p.strength_Pa[i] / run_test(s, {}).properties.peak_stress_Pa, 1.0, 0.05) << "at " << p.sigma3_Pa[i];
+    }
 }
 
 TEST(Confining, TheAxialStressStaysWhereTheMotionFollows) {

@@ -13,7 +13,7 @@
 namespace feldspar {
 namespace {
 
-constexpr std::array<std::string_view, 7> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "three-point-bend", "custom", "laboratory"};
+constexpr std::array<std::string_view, 9> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "three-point-bend", "cyclic-compression", "multi-stage-biaxial", "custom", "laboratory"};
 
 // A line "#= key" shows a key that may be left out, with the default and the sentence of its row (keys.hpp).
 constexpr const char* common_head = R"(#
@@ -122,6 +122,29 @@ sigma3 = ["4 MPa", "10 MPa"]        # one test for each; with a uniaxial test th
 )") + compression_control + common_test;
 }
 
+std::string cyclic_test() {
+    return std::string(R"(
+[[test]]
+kind = "cyclic-compression"         # unloaded and loaded again, on past the strength: moduli, permanent strains and damage of each cycle
+lateral_strain_step = "0.02 %"      # unloads each time that the specimen has grown wider by so much; or stress_step = "20 MPa"
+#= cycles
+#= unload_to
+)") + compression_control + common_test;
+}
+
+std::string multi_stage_test() {
+    return std::string(R"(
+[[test]]
+kind = "multi-stage-biaxial"        # one specimen under rising pressures: loaded under each until it dilates, under the last to failure
+sigma3 = ["2 MPa", "5 MPa", "10 MPa"]   # strengths under all but the last are estimated; cohesion and friction angle from them
+
+# What no laboratory can do: the same packings under one pressure each, for comparison.
+# [[test]]
+# kind = "biaxial"
+# sigma3 = ["2 MPa", "5 MPa", "10 MPa"]
+)") + common_test;
+}
+
 std::string brazilian_test() {
     return std::string(R"(
 [[test]]
@@ -154,6 +177,7 @@ name = "four-point-bend"            # names its results
 # width = "220 mm"                  # stress = load / (width x thickness): its extent across the loading unless given
 # control = "dissipation"           # behind the peak; also "displacement", or a gauge
 # until = { gauge = "deflection", at = "0.5 mm" }
+# stages = [{ kind = "load", until = "load", at = "10 kN" }, { kind = "unload" }, { kind = "load" }]   # in place of loading until the test ends
 )") + common_test + R"(
 [[test.fixture]]                    # what loads the specimen: "roller", flat "plate", hollow "jaw", or "boundary", which its own nodes follow
 name = "left load"
@@ -235,6 +259,8 @@ std::string unfinished_template(std::string_view kind) {
     if (kind == "brazilian") return "# A Brazilian test.\n" + std::string(common_head) + brazilian_test() + common_end;
     if (kind == "biaxial")  // the envelope needs the uniaxial point
         return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" + std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
+    if (kind == "cyclic-compression") return "# A cyclic compression test, controlled by damage.\n" + std::string(common_head) + cyclic_test() + common_end;
+    if (kind == "multi-stage-biaxial") return "# A strength envelope from one specimen.\n" + std::string(common_head) + multi_stage_test() + common_end;
     if (kind == "three-point-bend") return "# Three-point bending of a beam on the packing of each seed.\n" + beam_head() + bending_test() + common_end;
     if (kind == "custom") return "# A test of your own: here a beam on four rollers.\n" + beam_head() + custom_test() + common_end;
     if (kind == "laboratory")

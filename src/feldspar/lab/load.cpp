@@ -104,7 +104,7 @@ struct Loading {
     ShapeWatch watch;
     LoadingModeUpdate mode_update;
     RateControl control;
-    Servo servo;
+    Servo servo, arrest;
     StopRule stop;
     StageCursor stages;
     int stage;
@@ -150,13 +150,13 @@ public:
           mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time),
           servo_(branch_is_followed(result) ? e.setup.test.control : LoadControl::displacement, kServoShare * wanted_, e.travel_time,
                  static_cast<std::size_t>(std::max(0, e.gauges.find(e.setup.test.control_gauge)))),
-          stop_(e, result), stages_(e), progress_(e) {}
+          arrest_(LoadControl::dissipation, kServoShare * wanted_, e.travel_time), stop_(e, result), stages_(e), progress_(e) {}
 
     void run() {
         const int block = adaptive_ ? 10 : 50;   // steps between records
         if (adaptive_ && stages_.loads()) e_.change_speed(control_.start(e_.platen_travel_m));
         const HistoryRow& first = recorder_.record(Phase::loading);
-        if (stages_.staged()) begin_stage(first, first_row());
+        if (stages_.staged()) begin_stage(first_row());
         if (const auto reason = stop_.ended(first, stages_.loads())) {   // the computed start may end at the maximum stress
             result_.stop_reason = *reason;
             return;
@@ -219,7 +219,7 @@ private:
         if (!(load_Pa > 0.0) || load_Pa < kBetweenStates * (states_.empty() ? 0.0 : states_.back().load_Pa)) return;
         if (states_.size() == kStates) states_.erase(states_.begin());
         states_.push_back({e_.assembly, e_.platen_travel_m, e_.rate_control_J, e_.settings.speed, e_.step, e_.stepped, e_.platen_work, finder_, watch_,
-                           mode_update_, control_, servo_, stop_, stages_, e_.stage, result_.stages, largest_travel_m_, recorder_.mark(), result_.new_contacts, result_.shape_fallbacks,
+                           mode_update_, control_, servo_, arrest_, stop_, stages_, e_.stage, result_.stages, largest_travel_m_, recorder_.mark(), result_.new_contacts, result_.shape_fallbacks,
                            result_.angular_momentum_loss, load_Pa});
     }
 
@@ -287,10 +287,10 @@ private:
         return row;
     }
 
-    // @param row  in whose state the stage begins; @param number  the same in the history, or where its loading began in closed form
-    void begin_stage(const HistoryRow& row, std::size_t number) {
-        result_.stages.push_back({stages_.kind(), stages_.group_number(), stages_.pass(), number, number, {}});
-        stages_.begin(row);
+    // @param row  in whose state the stage begins; of the first one that from which the start was computed
+    void begin_stage(std::size_t row) {
+        result_.stages.push_back({stages_.kind(), stages_.group_number(), stages_.pass(), row, row, {}});
+        stages_.begin(result_.history[row]);
         stop_.stage_began();
         states_.clear();
     }
@@ -303,7 +303,11 @@ private:
                                     largest_travel_m_, slowest_growth());
         if (control_.balanced()) balanced_step_ = e_.step;
         const bool past_peak = stages_.loads() && stop_.past_peak(load);
+        arrest_.observe(row, block);
         if (const auto why = stages_.ended(row, stop_.peak(), past_peak, control_.residual() / first_.residual)) {
+            // A stage that ends while its specimen fails, as by its widening, has passed a strength too.
+            const bool fails = stages_.loads() && (!control_.balanced() || load < (1.0 - kSame * wanted_) * stop_.stage_peak());
+            if (fails && passed_too_fast()) return true;
             result_.stages.back().ended = *why;
             result_.stages.back().last_row = result_.history.size() - 1;
             if (!stages_.next()) {
@@ -312,7 +316,7 @@ private:
                 return false;
             }
             ++e_.stage;
-            begin_stage(row, result_.history.size() - 1);
+            begin_stage(result_.history.size() - 1);
             mode_update_.forget();
             pace = control_.start(largest_travel_m_);
             known = false;
@@ -323,8 +327,10 @@ private:
             speed = control_.balanced() ? std::max(speed, allowed) : allowed;
         }
         if (stages_.kind() == StageKind::confine) speed = confine(row, block);
+        // What fails while it is unloaded, or pressed, is taken back by the loading motion: at rest it would run away.
+        if (stages_.kind() == StageKind::unload || stages_.kind() == StageKind::confine) speed = std::min(speed, -arrest_.arrest(largest_travel_m_));
         const double most = stages_.approach_m(stop_.peak()) / (block * e_.settings.dt);
-        if (std::abs(speed) > most && speed * stages_.sense() > 0.0) speed = stages_.sense() * most;
+        if (std::abs(speed) > most && stages_.sense() != 0.0 && speed * stages_.sense() > 0.0) speed = stages_.sense() * most;
         if (speed != e_.settings.speed) e_.change_speed(speed);
         return true;
     }
@@ -360,6 +366,7 @@ private:
         mode_update_ = state.mode_update;
         control_ = state.control;
         servo_ = state.servo;
+        arrest_ = state.arrest;
         stop_ = state.stop;
         stages_ = state.stages;
         e_.stage = state.stage;
@@ -384,6 +391,7 @@ private:
     RateControl control_;
     const double wanted_ = accuracy_of(residual_target(e_.setup.numerics, e_.setup.test.kind), e_.setup.test.kind);
     Servo servo_;
+    Servo arrest_;   // of a test with stages, while it does not load
     StopRule stop_;
     StageCursor stages_;
     double largest_travel_m_ = 0.0;   // of a test with stages, so far

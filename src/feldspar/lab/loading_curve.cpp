@@ -11,6 +11,7 @@ namespace feldspar {
 namespace {
 
 constexpr double drop_fraction = 0.95;       // (P2): a fall to this fraction of the largest stress so far ends a peak
+constexpr double fall_in_stage = 0.98;       // of the largest stress of a stage: below it the stage itself has passed a peak
 constexpr double first_peak_floor = 0.10;    // drops below this fraction of the largest stress are settling of the plates
 
 bool is_loading(const HistoryRow& row) { return row.phase != Phase::consolidation; }
@@ -90,7 +91,7 @@ std::optional<Peak> peak_in_stages(const TestResult& result) {
         const double stress = sign * row.axial_stress_Pa;
         of_stage = std::max(of_stage, stress);
         if (stress > peak.stress_Pa) peak = {i, stress, false};
-        else if (stress <= drop_fraction * of_stage && of_stage >= first_peak_floor * overall) peak.reached = true;
+        else if (stress <= drop_fraction * peak.stress_Pa && stress <= fall_in_stage * of_stage && of_stage >= first_peak_floor * overall) peak.reached = true;
     }
     return peak;
 }

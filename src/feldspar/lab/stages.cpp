@@ -14,7 +14,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of what remains to the end of a stage, the share that may pass between two rows; and, of the end's size, by how much it may be passed at last.
 constexpr double kApproach = 0.5, kPassed = 1e-3;
-constexpr double kTurned = 0.01;        // of its growth in the stage, by which the volumetric strain has fallen when it has turned
+constexpr double kTurned = 0.01;        // of the largest volumetric strain, by which it has fallen when it has turned: a crack or two make it dip by less
 constexpr double kQuiet = 0.1;          // of the target of R*, at which a specimen at rest is quiet ...
 constexpr double kLeastWait = 1.0;      // ... after so many travel times at least; the load takes one to settle
 constexpr double kLongestWait = 1000.0; // travel times; a specimen that has not come to rest by then does not
@@ -68,7 +68,8 @@ void StageCursor::begin(const HistoryRow& row) {
     begun_value_ = value_ = stage_quantity(*e_, now(), row);
     travel_m_ = e_->platen_travel_m;
     slope_ = 0.0;
-    begun_volume_ = largest_volume_ = volume(row);
+    largest_volume_ = volume(row);
+    if (group_ == 0 && pass_ == 0 && stage_ == 0) first_volume_ = largest_volume_;
     begun_sigma3_Pa_ = e_->assembly.pressure_Pa;
     begun_load_Pa_ = e_->direction * row.axial_stress_Pa;
 }
@@ -106,7 +107,7 @@ std::optional<std::string> StageCursor::ended(const HistoryRow& row, double larg
             return fallen && value_ <= target(largest_load_Pa) ? std::optional(fmt::format("the load has fallen to {:.3g} % of the largest", 100.0 * stage.value)) : std::nullopt;
         }
         case StageEnd::reversal: {
-            const double grown = largest_volume_ - begun_volume_;
+            const double grown = largest_volume_ - first_volume_;
             return grown > 0.0 && volume(row) < largest_volume_ - kTurned * grown ? std::optional<std::string>("the volumetric strain has turned") : std::nullopt;
         }
         case StageEnd::gauge:

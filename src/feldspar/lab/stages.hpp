@@ -64,7 +64,7 @@ private:
     double slope_ = 0.0;                    // change of the value per loading motion between the last two rows, magnitude
     HistoryRow top_;                        // at the end of the last loading, if there was one
     bool loaded_before_ = false, loads_now_ = false;
-    double begun_volume_ = 0.0, largest_volume_ = 0.0;   // volumetric strain
+    double first_volume_ = 0.0, largest_volume_ = 0.0;   // volumetric strain: where the test began, and the largest of the stage
 };
 
 }  // namespace feldspar

@@ -22,6 +22,9 @@ public:
     /// Whether the largest stress was the strength: the load has fallen below it, and a disc is split, for it dips and rises again before.
     bool past_peak(double load_Pa) const;
 
+    /// Largest load of the stage under way, Pa.
+    double stage_peak() const { return stage_peak_Pa_; }
+
     /// Whether the strength so far was in the stage under way.
     bool peak_in_stage() const { return peak_step_ >= stage_step_; }
 

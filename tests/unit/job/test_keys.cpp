@@ -66,6 +66,9 @@ const std::vector<std::string>& bases() {
             replaced(sample_job, "seeds = [1, 2, 3, 4, 5]\n", ""),
             own,
             plates,
+            replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test_in_stages),
+            replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"cyclic-compression\""),
+            replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
         };
     }();
     return all;
