@@ -392,7 +392,7 @@ std::vector<JobKey> until_keys() {
 std::vector<JobKey> stage_keys() {
     const KeyCondition moving = with("kind", {StageForm::load, StageForm::unload}), hold = with("kind", {StageForm::hold}), confine = with("kind", {StageForm::confine}),
                        cycle = with("kind", {StageForm::cycle});
-    const KeyValue value = quantity(length, any_value);
+    const KeyValue value = quantity(fraction, any_value);   // the quantity decides
     return {
         {"kind", choice(stage_forms), needed,
          "`\"load\"`: the loading motion grows; `\"unload\"`: it goes back; `\"hold\"`: it is at rest; `\"confine\"`: the pressure on the sides changes; `\"cycle\"`: "

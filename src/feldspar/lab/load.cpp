@@ -310,6 +310,11 @@ private:
             if (fails && passed_too_fast()) return true;
             result_.stages.back().ended = *why;
             result_.stages.back().last_row = result_.history.size() - 1;
+            if (stages_.failed(stop_.stage_peak(), e_.setup.test.stop_fraction * stop_.peak())) {
+                e_.change_speed(0.0);
+                result_.stop_reason = stop_.fallen();
+                return false;
+            }
             if (!stages_.next()) {
                 e_.change_speed(0.0);
                 result_.stop_reason = "the last stage is done: " + *why;

@@ -35,6 +35,14 @@ RockProperty strength(std::string_view name, TestKind kind, const char* label) {
     return p;
 }
 
+/// Of cycles on past the strength, compared with the laboratory's number of monotonic loading.
+RockProperty strength_in_cycles() {
+    RockProperty p = read("strength", cyclic_compression, "Uniaxial compressive strength under cycles", "UCS cyclic", "UCS");
+    p.name = "UCS_cyclic";
+    p.of_broken_only = true;
+    return p;
+}
+
 /// 1 or 0 of each packing: its mean over them is a share.
 RockProperty share(std::string_view name, std::string_view quantity, TestKind kind, const char* label, const char* symbol) {
     RockProperty p = read(quantity, kind, label, symbol);
@@ -74,6 +82,9 @@ std::vector<RockProperty> table() {
         fitted("cohesion", stress, "Cohesion, Mohr-Coulomb", "c", "(P12)", &EnvelopeFit::cohesion_Pa, "cohesion"),
         fitted("friction_angle", angle, "Friction angle, Mohr-Coulomb", "\u03c6", "(P12)", &EnvelopeFit::friction_angle_deg, "friction_angle"),
         fitted("hoek_brown_mi", pure, "Hoek-Brown constant, intact rock", "mi", "(P13)", &EnvelopeFit::hoek_brown_mi, "hoek_brown_mi"),
+        strength_in_cycles(),
+        read("multi_stage_cohesion", multi_stage_biaxial, "Cohesion, one specimen under rising pressures", "c multi-stage", "cohesion"),
+        read("multi_stage_friction_angle", multi_stage_biaxial, "Friction angle, one specimen under rising pressures", "\u03c6 multi-stage", "friction_angle"),
         ratio("UCS_over_BTS", "UCS", "BTS", {uniaxial_compression, brazilian}),
         ratio("UCS_over_DTS", "UCS", "DTS", {uniaxial_compression, direct_tension}),
         ratio("BTS_over_DTS", "BTS", "DTS", {brazilian, direct_tension}),

@@ -132,6 +132,10 @@ std::optional<std::string> StageCursor::stuck(const HistoryRow& row) const {
     return std::nullopt;
 }
 
+bool StageCursor::failed(double stage_peak_Pa, double failed_Pa) const {
+    return loads() && now().counts == StageValue::beyond && !is_of_load(now().end) && stage_peak_Pa <= failed_Pa;
+}
+
 bool StageCursor::next() {
     if (++stage_ < group().stages.size()) return true;
     stage_ = 0;

@@ -38,6 +38,10 @@ public:
     /// Why the stage cannot go on and its end has not come; empty while it can.
     std::optional<std::string> stuck(const HistoryRow& row) const;
 
+    /// Whether a stage that has ended went farther than all before, under less load than a specimen that has not failed bears. @param stage_peak_Pa  largest
+    /// stress of the stage  @param failed_Pa  the one at which the test ends
+    bool failed(double stage_peak_Pa, double failed_Pa) const;
+
     /// To the next stage. @return false if there is none
     bool next();
 

@@ -42,7 +42,7 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bo
                            split() ? "strength of the disc" : "largest stress, and the disc is not split");
     const bool falls = loads && (e_->stages.empty() || past_peak(load));
     if (falls && after >= kStepsAfterPeak && load <= test.stop_fraction * peak_Pa_ && !unloading && (!splitting_ || split()))
-        return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * test.stop_fraction);
+        return fallen();
     if (std::abs(row.axial_strain) >= test.maximum_strain)
         return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
     if (gauge_ >= 0) {
@@ -54,6 +54,8 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bo
     if (steps_are_spent()) return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);
     return std::nullopt;
 }
+
+std::string StopRule::fallen() const { return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * e_->setup.test.stop_fraction); }
 
 void StopRule::look_for_split() {
     if (!splitting_) return;

@@ -42,6 +42,9 @@ public:
     /// @return why the test ends now, in words; nothing if it goes on
     std::optional<std::string> ended(const HistoryRow& row, bool loads, bool unloading = false);
 
+    /// That the stress has fallen to the share of the peak at which the test ends, in words.
+    std::string fallen() const;
+
 private:
     bool split() const { return splitting_ && splitting_->split(); }
     void look_for_split();

@@ -170,7 +170,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["stem"] = test_stem(result);
     test["kind"] = name(result.test.kind);
     test["title"] = title_of(result.test);
-    test["confined"] = method_of(result.test).specimen.confined;
+    test["confined"] = method_of(result.test).specimen.confined && method_of(result.test).reading != Reading::stages;
     test["axes"] = axes_json(result);
     test["seed"] = result.seed;
     test["sigma3"] = rounded(result.test.sigma3_Pa * MPa);

@@ -312,7 +312,7 @@ std::vector<BadJob> bad_jobs() {
         {"a cycle in a cycle", with_stages("{ kind = \"cycle\", times = 2, stages = [{ kind = \"cycle\", stages = [{ kind = \"hold\" }] }] }"), 35, {"test[1].stages[1].stages[1].kind", "a cycle in a cycle"}},
         {"unloading what is not loaded", with_stages("{ kind = \"unload\" }"), 35, {"test[1].stages[1].kind", "not loaded yet"}},
         {"a pressure that nothing carries", with_stages("{ kind = \"confine\", sigma3 = \"1 MPa\" }"), 35, {"test[1].stages[1].kind", "nothing presses on the sides"}},
-        {"a key of another stage", with_stages("{ kind = \"hold\", until = \"stress\", at = \"1 MPa\" }"), 35, {"test[1].stages[1].until", "does not apply to kind = \"hold\""}, 2},
+        {"a key of another stage", with_stages("{ kind = \"load\", until = \"stress\", by = \"1 MPa\" }, { kind = \"hold\", until = \"stress\", at = \"1 MPa\" }"), 35, {"test[1].stages[2].until", "does not apply to kind = \"hold\""}, 2},
         {"stages of a method that has its own", with_test("kind = \"cyclic-compression\"\nstages = [{ kind = \"load\" }]"), 33, {"test[1].stages", "only with kind = \"custom\""}},
         {"cycles by two steps", with_test("kind = \"cyclic-compression\"\nstress_step = \"10 MPa\"\nlateral_strain_step = 1e-4"), 34, {"test[1].lateral_strain_step", "stress_step"}},
         {"cycles at a fixed speed", edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"", with_test("kind = \"cyclic-compression\"")), 31, {"test[1].kind", "only adaptive numerics"}},
