@@ -60,6 +60,9 @@ std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& speci
 /// What a method has of its own among the keys of a test: span and rollers of a beam, fixtures and gauges of a custom test, a gauge that ends it.
 void read_own_keys(const JobTable& table, TestSpec& test);
 
+/// `stages` of a test, with whether they can end one after the other.
+std::vector<StageGroup> read_stages(const JobTable& table, const TestSpec& test, bool limited_steps);
+
 /// Names of the gauges of a test: those of the method, or of the user.
 std::vector<std::string_view> gauge_names(const TestSpec& test);
 bool has_gauge(const TestSpec& test, std::string_view gauge);

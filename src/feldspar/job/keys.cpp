@@ -69,6 +69,11 @@ KeyValue control_words() {   // or the name of a gauge
     for (const LoadControl control : load_controls) value.element.words.emplace_back(name(control));
     return value;
 }
+KeyValue stage_ends_and_gauges() {
+    KeyValue value = text("the name of a gauge");
+    for (const StageEnd end : stage_ends) value.element.words.emplace_back(name(end));
+    return value;
+}
 KeyValue direction() { return list_of(number(any_value)); }
 KeyValue pairs_of(KeyValue first, KeyValue second) { return {std::move(first.element), ValueShape::pairs, std::move(second.element)}; }
 
@@ -323,6 +328,16 @@ std::vector<JobKey> variant_keys() {
     };
 }
 
+KeyValue value_of(const MethodKey& key) {
+    switch (key.form) {
+        case MethodKeyForm::quantity: return quantity(key.dimension, key.range);
+        case MethodKeyForm::number: return number(key.range);
+        case MethodKeyForm::share: return share_of_one(key.range);
+        case MethodKeyForm::whole: break;
+    }
+    return integer(key.range.low, key.range.high);
+}
+
 // The keys that methods add. One that several have stands once.
 std::vector<JobKey> keys_of_methods() {
     std::vector<JobKey> rows;
@@ -330,8 +345,8 @@ std::vector<JobKey> keys_of_methods() {
         for (const MethodKey& key : method_of(id).keys) {
             if (std::ranges::find(rows, key.name, &JobKey::name) != rows.end()) continue;
             const auto has_it = [&](const TestMethod& method) { return std::ranges::find(method.keys, key.name, &MethodKey::name) != method.keys.end(); };
-            const KeyValue one = key.dimension == fraction ? number(key.range) : quantity(key.dimension, key.range);
-            rows.push_back({key.name, key.list ? one_or_list_of(one) : one, key.needed ? must : words(key.usual), key.meaning, methods_that_are(has_it)});
+            const KeyDefault without = key.needed ? must : key.value ? usual(*key.value) : words(key.usual);
+            rows.push_back({key.name, key.list ? one_or_list_of(value_of(key)) : value_of(key), without, key.meaning, methods_that_are(has_it)});
         }
     return rows;
 }
@@ -340,7 +355,7 @@ std::vector<JobKey> test_keys() {
     const TestSpec spec;
     std::vector<JobKey> keys{
         {"kind", choice_of(test_methods()), needed, "the method"},
-        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each", methods_that_are(confined)},
+        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each, or for the rising pressures of one multi-stage test", methods_that_are(confined)},
         {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
         {"specimen", table("test.specimen"), words("the job's"), "a specimen of the test's own, of the same grains and thickness: an outline with holes, notches and labels", methods_that_are(uses_specimen)},
         {"disc", choice_of(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
@@ -351,6 +366,8 @@ std::vector<JobKey> test_keys() {
     };
     std::ranges::move(keys_of_methods(), std::back_inserter(keys));
     std::vector<JobKey> further{
+        {"stages", tables("test.stages"), none,
+         "what the loading does, one stage after the other; without them it loads until the test ends ([theory](theory/loading.md#7-stages))", methods_that_are(users_own)},
         {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction),
          "the test ends when the stress has fallen to this fraction of the peak; in bending 0.1 unless it is given"},
         {"control", control_words(), words("`\"dissipation\"` with adaptive numerics, in direct tension and the Brazilian test `\"displacement\"`"),
@@ -399,6 +416,30 @@ std::vector<JobKey> until_keys() {
     return {
         {"gauge", text("the name of a gauge"), needed, "a gauge of the method or of the test"},
         {"at", quantity(length, any_value), needed, "the test ends when the gauge has reached this: a length, of a force gauge a force, of a strain gauge a fraction"},
+    };
+}
+
+std::vector<JobKey> stage_keys() {
+    const KeyCondition moving = with("kind", {StageForm::load, StageForm::unload}), hold = with("kind", {StageForm::hold}), confine = with("kind", {StageForm::confine}),
+                       cycle = with("kind", {StageForm::cycle});
+    const KeyValue value = quantity(fraction, any_value);   // the quantity decides
+    return {
+        {"kind", choice(stage_forms), needed,
+         "`\"load\"`: the loading motion grows; `\"unload\"`: it goes back; `\"hold\"`: it is at rest; `\"confine\"`: the pressure on the sides changes; `\"cycle\"`: "
+         "stages that are repeated"},
+        {"until", stage_ends_and_gauges(), words("of the last loading the end of the test; of unloading a stress of 0"),
+         "what ends it: `\"stress\"` or `\"load\"`, positive in the sense of the loading; `\"axial-strain\"`: loading motion over length; `\"lateral-strain\"`: less than 0 when the "
+         "specimen widens; `\"share-of-peak\"`: the load has fallen to a share of the largest so far; `\"reversal\"`: the volumetric strain has turned; the name of a gauge",
+         moving},
+        {"at", value, words("`at`, `by` or `beyond` must be given, but for a reversal"),
+         "... at this value: a stress, a force, a length, or a share such as `\"0.1 %\"`, as its quantity is", moving},
+        {"by", value, words("none"), "... when it has changed by so much since the stage began", moving},
+        {"beyond", value, words("none"), "... when it is so far beyond where the last loading ended; in the first loading as `by`", moving},
+        {"travel_times", number(positive), words("until the specimen is at rest"), "how long, in times in which a wave crosses the specimen", hold},
+        {"sigma3", quantity(stress, not_negative), must, "the pressure to which it goes, over 30 travel times if it changes altogether", confine},
+        {"keep", choice(confine_keeps), words("`\"motion\"`"), "`\"motion\"`: the loading motion is at rest; `\"load\"`: it follows, so that the axial stress stays", confine},
+        {"times", integer(1, 10000), words("until the test ends"), "how often", cycle},
+        {"stages", tables("test.stages"), must, "the stages; not a cycle again", cycle},
     };
 }
 
@@ -493,6 +534,7 @@ std::vector<KeyTable> all_tables() {
         {"test", "[[test]]", test_keys()},
         {"test.specimen", "[test.specimen]", outline_rows()},
         {"test.until", "[test.until]", until_keys()},
+        {"test.stages", "[[test.stages]]", stage_keys()},
         {"test.fixture", "[[test.fixture]]", fixture_keys()},
         {"test.gauge", "[[test.gauge]]", gauge_keys()},
         {"run", "[run]", run_keys()},

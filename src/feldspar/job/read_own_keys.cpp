@@ -129,13 +129,24 @@ void check_name(const JobTable& table, const std::string& given, std::set<std::s
     });
 }
 
+double read_value(const JobTable& table, const MethodKey& key) {
+    switch (key.form) {
+        case MethodKeyForm::quantity: return table.quantity(key.name);
+        case MethodKeyForm::number: return table.number(key.name);
+        case MethodKeyForm::share: return table.fraction(key.name);
+        case MethodKeyForm::whole: break;
+    }
+    return static_cast<double>(table.integer(key.name));
+}
+
 void read_method_key(const JobTable& table, const MethodKey& key, TestSpec& test) {
     if (!table.has(key.name)) return;
     std::vector<double>& values = test.own[std::string(key.name)];
     const toml::array* list = key.list ? table.find(key.name)->as_array() : nullptr;
-    if (list == nullptr) values.push_back(key.dimension == Dimension::fraction ? table.number(key.name) : table.quantity(key.name));
+    if (list == nullptr) values.push_back(read_value(table, key));
     else
         for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, key.name)); });
+    if (!key.in_place_of.empty()) table.refuse({key.in_place_of}, std::string(key.name), "one of them");
     table.check({key.name}, [&] {
         if (values.empty()) table.fail(key.name, "the list is empty", "one value or more");
     });

@@ -201,6 +201,28 @@ std::optional<SpecimenSpec> own_specimen(const JobTable& table, const TestMethod
     return own;
 }
 
+// What the loading does one after the other. Only adaptive numerics turn it.
+void read_loading(const JobTable& table, const std::vector<Variant>& variants, TestSpec& test) {
+    const auto all = [&](auto fits) {
+        return std::ranges::all_of(variants, [&](const Variant& variant) { return !variant.runs(test.kind) || fits(variant.numerics); });
+    };
+    if (table.has("stages")) test.stages = read_stages(table, test, all([](const NumericsSpec& n) { return n.maximum_steps.has_value(); }));
+    table.check({"kind", "stages"}, [&] {
+        if (!stages_of(test).empty() && !all([](const NumericsSpec& n) { return n.kind == NumericsKind::adaptive; }))
+            table.fail(table.has("stages") ? "stages" : "kind", "the loading turns, which only adaptive numerics do", "[numerics] kind = \"adaptive\"");
+    });
+}
+
+// The pressures of a multi-stage test: those after the first.
+void read_pressures(const JobTable& table, const std::vector<double>& sigma3_Pa, TestSpec& test) {
+    table.check({"sigma3"}, [&] {
+        if (sigma3_Pa.size() < 2) table.fail("sigma3", "a multi-stage test goes through several pressures", "two or more, such as [\"2 MPa\", \"5 MPa\", \"10 MPa\"]");
+        if (!std::ranges::is_sorted(sigma3_Pa, std::ranges::less_equal{})) table.fail("sigma3", "the pressures of a multi-stage test must rise", "each larger than the one before");
+        test.sigma3_Pa = sigma3_Pa.front();
+        test.later_sigma3_Pa.assign(sigma3_Pa.begin() + 1, sigma3_Pa.end());
+    });
+}
+
 // One test for each sigma3.
 std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job, const std::vector<Variant>& variants, Known known) {
     const TestMethod& method = table.choice("kind", test_methods()).definition();
@@ -219,6 +241,7 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
     if (known.outline && kind_known && method.build.check != nullptr) check_by_method(table, test, specimen);
     test.maximum_strain = table.fraction("maximum_strain");
     if (table.has("maximum_stress")) test.maximum_stress_Pa = table.quantity("maximum_stress");
+    if (kind_known) read_loading(table, variants, test);
     test.snapshots = static_cast<int>(table.integer("snapshots"));
     if (table.has("seeds"))
         for (std::uint64_t seed : read_seed_list(table, "seeds")) test.seeds.push_back(seed);
@@ -233,6 +256,10 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
     if (own_disc) {
         const double diameter_m = brazilian_diameter(table, of_job, known), flat_angle_rad = read_flats(table, flattened, of_job, diameter_m, known, test);
         test.specimen = disc_of(of_job, diameter_m, flat_angle_rad);
+    }
+    if (method.reading == Reading::stages) {
+        read_pressures(table, confining_stresses(table), test);
+        return {test};
     }
     if (!method.specimen.confined) return {test};
     std::vector<TestSpec> tests;

@@ -285,18 +285,53 @@ void write_gauge(Lines& out, const GaugeSpec& gauge) {
 void write_method_key(Lines& out, const TestSpec& test, const MethodKey& key) {
     const auto found = test.own.find(key.name);
     if (found == test.own.end()) return;
-    if (!key.list) return key.dimension == Dimension::fraction ? out.number(std::string(key.name), found->second.front()) : out.quantity(std::string(key.name), found->second.front());
+    if (key.form == MethodKeyForm::whole) return out.raw(std::string(key.name), std::to_string(static_cast<long long>(found->second.front())));
+    if (key.form != MethodKeyForm::quantity) return out.number(std::string(key.name), found->second.front());
+    if (!key.list) return out.quantity(std::string(key.name), found->second.front());
     std::string values;
     for (const double value : found->second) values += (values.empty() ? "" : ", ") + as_written(job_key("test", key.name).value, value);
     out.raw(std::string(key.name), "[" + values + "]");
+}
+
+std::string stage_in_braces(const TestSpec& test, const StageSpec& stage) {
+    std::string text = fmt::format("kind = {}", quote(name(stage.kind)));
+    if (stage.kind == StageKind::hold) return stage.travel_times ? text + fmt::format(", travel_times = {}", format_exact(*stage.travel_times)) : text;
+    if (stage.kind == StageKind::confine) return text + fmt::format(", sigma3 = {}, keep = {}", si(stage.sigma3_Pa, Dimension::stress), quote(name(stage.keep)));
+    if (stage.end == StageEnd::test) return text;
+    text += fmt::format(", until = {}", quote(stage.end == StageEnd::gauge ? stage.gauge : name(stage.end)));
+    if (stage.end == StageEnd::reversal) return text;
+    const char* key = stage.counts == StageValue::reached ? "at" : stage.counts == StageValue::changed ? "by" : "beyond";
+    const Dimension dimension = stage.end == StageEnd::stress  ? Dimension::stress
+                                : stage.end == StageEnd::load  ? Dimension::force
+                                : stage.end == StageEnd::gauge ? dimension_of_gauge(test, stage.gauge)
+                                                               : Dimension::fraction;
+    return text + fmt::format(", {} = {}", key, si(stage.value, dimension));
+}
+
+std::string stages(const TestSpec& test) {
+    std::vector<std::string> groups;
+    for (const StageGroup& group : test.stages) {
+        std::vector<std::string> members;
+        for (const StageSpec& stage : group.stages) members.push_back("{ " + stage_in_braces(test, stage) + " }");
+        if (group.times == 1 && members.size() == 1) groups.push_back(members.front());
+        else groups.push_back(fmt::format("{{ kind = \"cycle\", {}stages = {} }}", group.times == 0 ? "" : fmt::format("times = {}, ", group.times), list(members)));
+    }
+    return list(groups);
 }
 
 void write_test(Lines& out, const TestSpec& test, const Job& job) {
     out.head("test");
     out.word("kind", name(test.kind));
     if (!test.custom.name.empty()) out.word("name", test.custom.name);
-    if (method_of(test).specimen.confined) out.quantity("sigma3", test.sigma3_Pa);
+    if (method_of(test).reading == Reading::stages) {
+        std::vector<std::string> pressures{si(test.sigma3_Pa, Dimension::stress)};
+        for (const double sigma3_Pa : test.later_sigma3_Pa) pressures.push_back(si(sigma3_Pa, Dimension::stress));
+        out.raw("sigma3", list(pressures));
+    } else if (method_of(test).specimen.confined) {
+        out.quantity("sigma3", test.sigma3_Pa);
+    }
     for (const MethodKey& key : method_of(test).keys) write_method_key(out, test, key);
+    if (!test.stages.empty()) out.raw("stages", stages(test));
     out.number("stop_fraction", test.stop_fraction);
     out.word("control", test.control == LoadControl::gauge ? test.control_gauge : name(test.control));
     out.number("maximum_strain", test.maximum_strain);

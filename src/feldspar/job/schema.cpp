@@ -40,7 +40,10 @@ Json reference(std::string_view table) { return {{"$ref", "#/definitions/" + nam
 
 Json value_of(const KeyElement& element) {
     switch (element.form) {
-        case ValueForm::quantity: return {{"type", "string"}, {"pattern", number_with_unit}};
+        case ValueForm::quantity:
+            if (element.dimension == Dimension::fraction)   // of keys whose dimension another one decides
+                return {{"anyOf", {{{"type", "string"}, {"pattern", number_with_unit}}, {{"type", "string"}, {"pattern", number_with_percent}}}}};
+            return {{"type", "string"}, {"pattern", number_with_unit}};
         case ValueForm::number: return bounded({{"type", "number"}}, element.range);
         case ValueForm::fraction: return {{"anyOf", {bounded({{"type", "number"}}, element.range), {{"type", "string"}, {"pattern", number_with_percent}}}}};
         case ValueForm::integer: return whole(element.range);

@@ -52,6 +52,20 @@ inline const char* name(FixtureForm form) {
     return "?";
 }
 
+/// What a stage of a test is, or a list of stages that is repeated.
+enum class StageForm { load, unload, hold, confine, cycle };
+inline constexpr std::array stage_forms{StageForm::load, StageForm::unload, StageForm::hold, StageForm::confine, StageForm::cycle};
+inline const char* name(StageForm form) {
+    switch (form) {
+        case StageForm::load: return name(StageKind::load);
+        case StageForm::unload: return name(StageKind::unload);
+        case StageForm::hold: return name(StageKind::hold);
+        case StageForm::confine: return name(StageKind::confine);
+        case StageForm::cycle: return "cycle";
+    }
+    return "?";
+}
+
 /// What a gauge of a custom test reads.
 enum class GaugeForm { extension, strain, displacement, force };
 inline constexpr std::array gauge_forms{GaugeForm::extension, GaugeForm::strain, GaugeForm::displacement, GaugeForm::force};

@@ -54,6 +54,19 @@ void require_gauge(const Gauges& gauges, const std::string& name, const char* ke
                      name == "CMOD" ? "CMOD is measured on a beam with a notch in the middle of its lower side" : "");
 }
 
+// What a stage asks of the test and the specimen.
+void require_stages(const Experiment& e) {
+    if (e.stages.empty()) return;
+    if (e.setup.numerics.kind != NumericsKind::adaptive)
+        throw InputError({.key = "test.stages"}, "stages turn the loading motion, which only adaptive numerics do", "[numerics] kind = \"adaptive\", or a test without stages");
+    for (const StageGroup& group : e.stages)
+        for (const StageSpec& stage : group.stages) {
+            if (stage.end == StageEnd::gauge) require_gauge(e.gauges, stage.gauge, "test.stages");
+            if (stage.kind == StageKind::confine && e.assembly.pressure_edges.empty())
+                throw InputError({.key = "test.stages"}, "a stage changes the pressure on the sides, and nothing presses on them", "stages without \"confine\", or a test with a confining pressure");
+        }
+}
+
 }  // namespace
 
 double mean_body_diameter(const Assembly& assembly) {
@@ -75,7 +88,8 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
       team(c.threads),
       gauge(assembly, *s.specimen),
       direction(method.loading.sign),
-      elastic_guess(guess(s, assembly)) {
+      elastic_guess(guess(s, assembly)),
+      stages(stages_of(s.test)) {
     const MethodInput input = input_of(s);
     attach(assembly, *s.specimen, method.build.fixtures(input));
     length_m = method.build.length_m(input);
@@ -83,6 +97,8 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     if (method.build.gauges != nullptr) gauges = Gauges(assembly, *s.specimen, method.build.gauges(input));
     if (s.test.control == LoadControl::gauge) require_gauge(gauges, s.test.control_gauge, "test.control");
     if (s.test.stop_gauge) require_gauge(gauges, s.test.stop_gauge->gauge, "test.until");
+    require_stages(*this);
+    stage = stages.empty() ? 0 : 1;
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
     impose_motion();
 }

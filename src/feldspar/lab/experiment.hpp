@@ -44,6 +44,8 @@ struct Experiment {
     double omega2_bound = 4.0;    ///< its limit
     double travel_time = 0.0;     ///< of a wave over the length, units of dt
     double platen_travel_m = 0.0; ///< loading motion since the start
+    const std::vector<StageGroup> stages; ///< of the method or the job; empty: it loads until the test ends
+    int stage = 0;                ///< number of the one under way, from 1; 0 without stages
     double axial_stiffness = 0.0; ///< N per m of platen travel, of the intact body (an estimate until the elastic start)
     long long step = 0;
     bool stepped = false;         ///< the velocities are those of a step that was made, not set since

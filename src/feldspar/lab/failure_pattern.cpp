@@ -62,8 +62,14 @@ double post_peak_strain(const TestResult& result) {
     const double sign = method_of(result.test).loading.sign;
     const auto strain = [&](std::size_t row) { return sign * result.history[row].axial_strain; };
     if (!(strain(peak->row) > 0.0)) return nan;
+    const auto high = [&](std::size_t row) { return sign * result.history[row].axial_stress_Pa > 0.8 * peak->stress_Pa; };
     std::size_t row = peak->row;
-    while (row + 1 < result.history.size() && sign * result.history[row].axial_stress_Pa > 0.8 * peak->stress_Pa) ++row;
+    if (result.stages.empty()) {
+        while (row + 1 < result.history.size() && high(row)) ++row;
+    } else {   // cycles go below it and come back: when it is left for good
+        row = result.history.size() - 1;
+        while (row > peak->row && !high(row - 1)) --row;
+    }
     return strain(row) / strain(peak->row) - 1.0;
 }
 

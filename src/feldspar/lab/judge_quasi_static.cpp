@@ -127,7 +127,7 @@ double residual_near_peak(const TestResult& result, const Peak& peak, double sig
     std::vector<double> residuals;
     for (std::size_t i = 0; i <= peak.row; ++i) {
         const HistoryRow& row = result.history[i];
-        if (row.phase == Phase::loading && sign * row.axial_stress_Pa >= 0.99 * peak.stress_Pa) residuals.push_back(row.residual);
+        if (row.phase == Phase::loading && of_loading_stage(result, row) && sign * row.axial_stress_Pa >= 0.99 * peak.stress_Pa) residuals.push_back(row.residual);
     }
     if (residuals.empty() || std::any_of(residuals.begin(), residuals.end(), [](double r) { return std::isnan(r); })) return nan;
     return upper_median(residuals);
@@ -159,7 +159,7 @@ QuasiStaticEvidence judge(const TestResult& result) {
     for (std::size_t i = 0; i <= peak->row; ++i) {
         const HistoryRow& row = result.history[i];
         const double stress = sign * row.axial_stress_Pa;
-        if (row.phase != Phase::loading) continue;
+        if (row.phase != Phase::loading || !of_loading_stage(result, row)) continue;
         above_half = above_half || stress >= 0.5 * peak->stress_Pa;
         if (!above_half || !(stress > 0.0)) continue;
         ++rows;

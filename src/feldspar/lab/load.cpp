@@ -16,6 +16,7 @@
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
 #include "feldspar/lab/servo.hpp"
+#include "feldspar/lab/stages.hpp"
 #include "feldspar/lab/stop_rule.hpp"
 
 namespace feldspar {
@@ -68,6 +69,15 @@ void maintain_contacts(Experiment& e, ContactFinder& finder, ShapeWatch& watch, 
 
 }  // namespace
 
+// How many times as long as a plain test one with stages typically takes: a stage about a third of it.
+double stages_over_test(const Experiment& e) {
+    constexpr double kOfATest = 0.3;
+    constexpr int kUntilTheEnd = 8;   // repetitions of what is repeated until the test ends
+    double stages = 0.0;
+    for (const StageGroup& group : e.stages) stages += static_cast<double>(group.stages.size()) * (group.times == 0 ? kUntilTheEnd : group.times);
+    return stages > 1.0 ? 1.0 + kOfATest * (stages - 1.0) : 1.0;
+}
+
 double typical_steps(const Experiment& e) {
     const NumericsSpec& n = e.setup.numerics;
     const MethodId kind = e.setup.test.kind;
@@ -78,7 +88,7 @@ double typical_steps(const Experiment& e) {
     // answer is; a beam with a span of 4 h takes 1.5 times as long as a wave through its whole length.
     constexpr double kModeOverWave = 1.5;
     const double time = e.travel_time * (e.method.start.time_of_mode && e.preparation_steps == 0 ? kModeOverWave : 1.0);
-    return e.method.rate.travel_times * time * std::sqrt(residual_target(NumericsSpec{}, kind) / residual_target(n, kind));
+    return stages_over_test(e) * e.method.rate.travel_times * time * std::sqrt(residual_target(NumericsSpec{}, kind) / residual_target(n, kind));
 }
 
 namespace {
@@ -94,8 +104,12 @@ struct Loading {
     ShapeWatch watch;
     LoadingModeUpdate mode_update;
     RateControl control;
-    Servo servo;
+    Servo servo, arrest;
     StopRule stop;
+    StageCursor stages;
+    int stage;
+    std::vector<StageRecord> stage_records;
+    double largest_travel_m;
     Recorder::Mark record;
     int new_contacts;
     long long shape_fallbacks;
@@ -124,6 +138,9 @@ constexpr double kUsualPassages = 3.5;   // steps of a whole test over those of 
 constexpr double kRunOut = 5.0, kFailsByItself = 0.01;   // R* of the typical body: a branch that softens quietly stays under control
 constexpr double kGrowthFailing = 0.2;
 constexpr double kServoShare = 0.5;    // of the wanted accuracy: with half of it the branch changes by 5 % in strain at most (docs/decisions, servo control)
+// A test with stages: the growth of the travel in a travel time with which a reversal of the volumetric strain is looked for; the share of the largest
+// load from which on states are kept in a later stage; and how long a change of pressure takes that changes it altogether, in travel times.
+constexpr double kGrowthSeen = 0.1, kKeptFrom = 0.5, kConfining = 30.0, kLeastConfining = 3.0;
 constexpr double kPatience = 100.0;   // travel times after which it goes on faster, in proportion: what creeps for ever is not waited for
 
 class Loader {
@@ -133,12 +150,14 @@ public:
           mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time),
           servo_(branch_is_followed(result) ? e.setup.test.control : LoadControl::displacement, kServoShare * wanted_, e.travel_time,
                  static_cast<std::size_t>(std::max(0, e.gauges.find(e.setup.test.control_gauge)))),
-          stop_(e, result), progress_(e) {}
+          arrest_(LoadControl::dissipation, kServoShare * wanted_, e.travel_time), stop_(e, result), stages_(e), progress_(e) {}
 
     void run() {
         const int block = adaptive_ ? 10 : 50;   // steps between records
-        if (adaptive_) e_.change_speed(control_.start(e_.platen_travel_m));
-        if (const auto reason = stop_.ended(recorder_.record(Phase::loading))) {   // the computed start may end at the maximum stress
+        if (adaptive_ && stages_.loads()) e_.change_speed(control_.start(e_.platen_travel_m));
+        const HistoryRow& first = recorder_.record(Phase::loading);
+        if (stages_.staged()) begin_stage(first_row());
+        if (const auto reason = stop_.ended(first, stages_.loads())) {   // the computed start may end at the maximum stress
             result_.stop_reason = *reason;
             return;
         }
@@ -155,7 +174,8 @@ public:
             if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa))
                 throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g})", e_.step, row.axial_strain));
             servo_.observe(row, block);
-            const std::optional<std::string> reason = stop_.ended(row, servo_.unloading());
+            std::optional<std::string> reason = stop_.ended(row, stages_.loads(), servo_.unloading());
+            if (!reason && stages_.staged()) reason = stages_.stuck(row);
             progress_.loading(row, stop_.peak(), result_.steps, kUsualPassages * static_cast<double>(first_steps_));
             if (e_.stopped()) {
                 result_.interrupted = true;
@@ -163,17 +183,21 @@ public:
                 break;
             }
             const double load = e_.direction * row.axial_stress_Pa;
-            const bool past_peak = stop_.past_peak(load);
-            if (adaptive_ && !stop_.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && e_.method.reading != Reading::disc)) && passed_too_fast()) continue;
+            const bool past_peak = stages_.loads() && stop_.past_peak(load);
+            if (adaptive_ && stages_.loads() && !stop_.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && e_.method.reading != Reading::disc)) && passed_too_fast()) continue;
             if (reason) {
                 result_.stop_reason = *reason;
                 break;
             }
             if (!adaptive_) continue;
-            keep_state(load);
-            mode_update_.observe(e_.assembly, e_.step, e_.platen_travel_m);
+            if (stages_.loads()) keep_state(load);
+            mode_update_.observe(e_.assembly, e_.step, e_.platen_travel_m, stages_.staged());
             const bool known = past_peak && settled();
             control_.set_limits(known ? first_ : limits(load));
+            if (stages_.staged()) {
+                if (!go_on_in_stages(row, block, known)) break;
+                continue;
+            }
             double speed = control_.next(std::max(0.0, e_.settings.speed), recorder_.unbalanced(), std::abs(row.axial_stress_Pa) * e_.section_m2,
                                          e_.platen_travel_m, slowest_growth());
             if (known && servo_.on()) {   // in balance the body takes what the rate control gives; out of balance it fails, and the servo leads
@@ -183,6 +207,7 @@ public:
             if (control_.balanced()) balanced_step_ = e_.step;
             if (speed != e_.settings.speed) e_.change_speed(speed);
         }
+        if (!result_.stages.empty()) result_.stages.back().last_row = result_.history.size() - 1;
         result_.steps_to_peak = result_.steps - (e_.step - stop_.peak_step());
         result_.ms_per_step = result_.steps > 0 ? 1e3 * seconds_since(start) / static_cast<double>(result_.steps) : 0.0;
     }
@@ -190,16 +215,20 @@ public:
 private:
     // Keeps the states at which the load has grown by a tenth: the last ones, so that one lies before the peak, whenever that comes.
     void keep_state(double load_Pa) {
+        if (stages_.staged() && load_Pa < kKeptFrom * stop_.peak()) return;
         if (!(load_Pa > 0.0) || load_Pa < kBetweenStates * (states_.empty() ? 0.0 : states_.back().load_Pa)) return;
         if (states_.size() == kStates) states_.erase(states_.begin());
         states_.push_back({e_.assembly, e_.platen_travel_m, e_.rate_control_J, e_.settings.speed, e_.step, e_.stepped, e_.platen_work, finder_, watch_,
-                           mode_update_, control_, servo_, stop_, recorder_.mark(), result_.new_contacts, result_.shape_fallbacks,
+                           mode_update_, control_, servo_, arrest_, stop_, stages_, e_.stage, result_.stages, largest_travel_m_, recorder_.mark(), result_.new_contacts, result_.shape_fallbacks,
                            result_.angular_momentum_loss, load_Pa});
     }
 
     // Of the passage under way. On the plateau of a confined specimen, below a strength that is known, it may be out of balance by as much as the
     // load is below it, and the load may grow by that in a travel time: more would be needed to show a strength that is none.
     PassageLimits limits(double load_Pa) const {
+        if (stages_.staged() && !stages_.loads()) return first_;   // no strength is passed
+        if (stages_.staged() && stages_.now().end == StageEnd::reversal) return {strict_.residual, std::min(strict_.growth, kGrowthSeen)};
+        if (stages_.staged() && settled_Pa_ > 0.0 && settled()) return first_;   // below a strength that is known
         if (first_steps_ == 0) return strict_;
         const double wider = std::max(1.0, static_cast<double>(result_.steps - passage_start_) / (kLongPassage * static_cast<double>(first_steps_)));
         const double below = e_.confined() && settled() ? std::max(0.0, 1.0 - load_Pa / stop_.peak()) : 0.0;
@@ -221,6 +250,7 @@ private:
 
     // Goes back before the peak, with stricter limits, if the estimated error of the strength is larger than what is wanted.
     bool passed_too_fast() {
+        if (stages_.staged() && !stop_.peak_in_stage()) settled_Pa_ = stop_.peak();   // where the stage turned, not where the rock failed
         if (settled() || states_.empty()) return false;
         settled_Pa_ = stop_.peak();
         if (result_.passages == 1) first_steps_ = result_.steps;
@@ -250,6 +280,82 @@ private:
         go_back_to(states_.back());
     }
 
+    // Where the loading begins: the last row of a consolidation, or the first row.
+    std::size_t first_row() const {
+        std::size_t row = 0;
+        while (row + 1 < result_.history.size() && result_.history[row + 1].phase == Phase::consolidation) ++row;
+        return row;
+    }
+
+    // @param row  in whose state the stage begins; of the first one that from which the start was computed
+    void begin_stage(std::size_t row) {
+        result_.stages.push_back({stages_.kind(), stages_.group_number(), stages_.pass(), row, row, {}});
+        stages_.begin(result_.history[row]);
+        stop_.stage_began();
+        states_.clear();
+    }
+
+    // What the loading motion does until the next row of a test with stages. @return false when the last stage has ended
+    bool go_on_in_stages(const HistoryRow& row, int block, bool known) {
+        const double load = e_.direction * row.axial_stress_Pa;
+        largest_travel_m_ = std::max(largest_travel_m_, e_.platen_travel_m);
+        double pace = control_.next(std::max(0.0, stages_.sense() * e_.settings.speed), recorder_.unbalanced(), std::abs(row.axial_stress_Pa) * e_.section_m2,
+                                    largest_travel_m_, slowest_growth());
+        if (control_.balanced()) balanced_step_ = e_.step;
+        const bool past_peak = stages_.loads() && stop_.past_peak(load);
+        arrest_.observe(row, block);
+        if (const auto why = stages_.ended(row, stop_.peak(), past_peak, control_.residual() / first_.residual)) {
+            // A stage that ends while its specimen fails, as by its widening, has passed a strength too.
+            const bool fails = stages_.loads() && (!control_.balanced() || load < (1.0 - kSame * wanted_) * stop_.stage_peak());
+            if (fails && passed_too_fast()) return true;
+            result_.stages.back().ended = *why;
+            result_.stages.back().last_row = result_.history.size() - 1;
+            if (stages_.failed(stop_.stage_peak(), e_.setup.test.stop_fraction * stop_.peak())) {
+                e_.change_speed(0.0);
+                result_.stop_reason = stop_.fallen();
+                return false;
+            }
+            if (!stages_.next()) {
+                e_.change_speed(0.0);
+                result_.stop_reason = "the last stage is done: " + *why;
+                return false;
+            }
+            ++e_.stage;
+            begin_stage(result_.history.size() - 1);
+            mode_update_.forget();
+            pace = control_.start(largest_travel_m_);
+            known = false;
+        }
+        double speed = stages_.sense() * pace;
+        if (known && servo_.on()) {
+            const double allowed = servo_.speed(e_.platen_travel_m);
+            speed = control_.balanced() ? std::max(speed, allowed) : allowed;
+        }
+        if (stages_.kind() == StageKind::confine) speed = confine(row, block);
+        // What fails while it is unloaded, or pressed, is taken back by the loading motion: at rest it would run away.
+        if (stages_.kind() == StageKind::unload || stages_.kind() == StageKind::confine) speed = std::min(speed, -arrest_.arrest(largest_travel_m_));
+        const double most = stages_.approach_m(stop_.peak()) / (block * e_.settings.dt);
+        if (std::abs(speed) > most && stages_.sense() != 0.0 && speed * stages_.sense() > 0.0) speed = stages_.sense() * most;
+        if (speed != e_.settings.speed) e_.change_speed(speed);
+        return true;
+    }
+
+    // A part of the change of pressure, unless the body is out of balance. @return the speed with which the loading motion follows
+    double confine(const HistoryRow& row, int block) {
+        const StageSpec& stage = stages_.now();
+        double& pressure = e_.assembly.pressure_Pa;
+        const double change = stage.sigma3_Pa - stages_.begun_sigma3_Pa(), whole = std::max(stage.sigma3_Pa, stages_.begun_sigma3_Pa());
+        if (change != 0.0) {
+            const double times = std::max(kLeastConfining, kConfining * std::abs(change) / whole);
+            const double share = control_.balanced() ? 1.0 : unrest() > kRunOut ? kGrowthFailing : 0.0;
+            const double next = pressure + share * change * block * e_.settings.dt / (times * e_.travel_time);
+            pressure = change > 0.0 ? std::min(next, stage.sigma3_Pa) : std::max(next, stage.sigma3_Pa);
+        }
+        if (stage.keep == ConfineKeep::motion) return 0.0;
+        const double missing_N = (stages_.begun_load_Pa() - e_.direction * row.axial_stress_Pa) * e_.section_m2, most = 1e-3 * largest_travel_m_;
+        return std::clamp(missing_N / e_.axial_stiffness / (2.0 * e_.travel_time), -most, most);
+    }
+
     bool settled() const { return stop_.peak() <= (1.0 + kSame * wanted_) * settled_Pa_; }
 
     void go_back_to(const Loading& state) {
@@ -265,7 +371,12 @@ private:
         mode_update_ = state.mode_update;
         control_ = state.control;
         servo_ = state.servo;
+        arrest_ = state.arrest;
         stop_ = state.stop;
+        stages_ = state.stages;
+        e_.stage = state.stage;
+        result_.stages = state.stage_records;
+        largest_travel_m_ = state.largest_travel_m;
         recorder_.go_back_to(state.record);
         result_.new_contacts = state.new_contacts;
         result_.shape_fallbacks = state.shape_fallbacks;
@@ -285,7 +396,10 @@ private:
     RateControl control_;
     const double wanted_ = accuracy_of(residual_target(e_.setup.numerics, e_.setup.test.kind), e_.setup.test.kind);
     Servo servo_;
+    Servo arrest_;   // of a test with stages, while it does not load
     StopRule stop_;
+    StageCursor stages_;
+    double largest_travel_m_ = 0.0;   // of a test with stages, so far
     ProgressReporter progress_;
     std::vector<Loading> states_;   // the oldest first
     double settled_Pa_ = 0.0;       // the peak whose passage was judged last

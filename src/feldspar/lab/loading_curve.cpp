@@ -11,6 +11,7 @@ namespace feldspar {
 namespace {
 
 constexpr double drop_fraction = 0.95;       // (P2): a fall to this fraction of the largest stress so far ends a peak
+constexpr double fall_in_stage = 0.98;       // of the largest stress of a stage: below it the stage itself has passed a peak
 constexpr double first_peak_floor = 0.10;    // drops below this fraction of the largest stress are settling of the plates
 
 bool is_loading(const HistoryRow& row) { return row.phase != Phase::consolidation; }
@@ -34,6 +35,11 @@ std::size_t first_at_or_above(const LoadingCurve& curve, double stress_Pa) {
 
 }  // namespace
 
+bool of_loading_stage(const TestResult& result, const HistoryRow& row) {
+    const auto stage = static_cast<std::size_t>(row.stage);
+    return stage == 0 || stage > result.stages.size() || result.stages[stage - 1].kind == StageKind::load;
+}
+
 const Crack* first_crack(const TestResult& result) {
     const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), [](const Crack& a, const Crack& b) { return a.step < b.step; });
     return first == result.cracks.end() ? nullptr : &*first;
@@ -43,7 +49,7 @@ double largest_stress(const TestResult& result) {
     const double sign = method_of(result.test).loading.sign;
     double largest = 0.0;
     for (const HistoryRow& row : result.history) {
-        if (is_loading(row) && is_finite(row)) largest = std::max(largest, sign * row.axial_stress_Pa);
+        if (is_loading(row) && is_finite(row) && of_loading_stage(result, row)) largest = std::max(largest, sign * row.axial_stress_Pa);
     }
     return largest;
 }
@@ -70,6 +76,26 @@ std::optional<Peak> peak_before_a_fall(const TestResult& result, bool first_only
     return peak;
 }
 
+/// The same of a test with stages: it is reached if the stress has fallen while a stage behind it, or its own, loaded.
+std::optional<Peak> peak_in_stages(const TestResult& result) {
+    const double sign = method_of(result.test).loading.sign, overall = largest_stress(result);
+    if (!(overall > 0.0)) return std::nullopt;
+    Peak peak;
+    double of_stage = 0.0;
+    int stage = 0;
+    for (std::size_t i = 0; i < result.history.size(); ++i) {
+        const HistoryRow& row = result.history[i];
+        if (!is_loading(row) || !is_finite(row) || !of_loading_stage(result, row)) continue;
+        if (row.stage != stage) of_stage = 0.0;
+        stage = row.stage;
+        const double stress = sign * row.axial_stress_Pa;
+        of_stage = std::max(of_stage, stress);
+        if (stress > peak.stress_Pa) peak = {i, stress, false};
+        else if (stress <= drop_fraction * peak.stress_Pa && stress <= fall_in_stage * of_stage && of_stage >= first_peak_floor * overall) peak.reached = true;
+    }
+    return peak;
+}
+
 /// The largest stress of the rows up to the one in which the disc is split.
 std::optional<Peak> peak_until_split(const TestResult& result) {
     const auto splitting = splitting_crack(result);
@@ -89,6 +115,7 @@ std::optional<Peak> peak_until_split(const TestResult& result) {
 }  // namespace
 
 std::optional<Peak> find_peak(const TestResult& result) {
+    if (!result.stages.empty()) return peak_in_stages(result);
     return method_of(result.test).reading == Reading::disc ? peak_until_split(result) : peak_before_a_fall(result, false);
 }
 
@@ -119,8 +146,16 @@ LoadingCurve loading_curve(const TestResult& result, const Peak& peak) {
                           sign * (row.lateral_strain_gauge - origin.lateral_strain_gauge), i};
     };
     curve.points.push_back(point(origin, 0));
+    double before_Pa = 0.0, largest_Pa = 0.0;   // in the stages before this one, and so far
+    int stage = 0;
     for (std::size_t i = 0; i <= peak.row && i < history.size(); ++i) {
-        if (is_loading(history[i]) && is_finite(history[i])) curve.points.push_back(point(history[i], i));
+        if (!is_loading(history[i]) || !is_finite(history[i]) || !of_loading_stage(result, history[i])) continue;
+        if (history[i].stage != stage) before_Pa = largest_Pa;
+        stage = history[i].stage;
+        const double stress_Pa = sign * history[i].axial_stress_Pa;
+        largest_Pa = std::max(largest_Pa, stress_Pa);
+        if (before_Pa > 0.0 && stress_Pa < before_Pa) continue;   // a loop; without stages there is no stage before
+        curve.points.push_back(point(history[i], i));
     }
     if (curve.points.size() < 2 || !(curve.peak_Pa() > curve.points.front().stress_Pa)) return {};
     return curve;

@@ -22,6 +22,9 @@ std::optional<Peak> find_peak(const TestResult& result);
 /// The largest stress before the first fall to 0.95 of it (P27): of a Brazilian test often a grain that settles under a plate.
 std::optional<Peak> first_dip(const TestResult& result);
 
+/// Whether the row is of a stage that loads; every row of a test without stages is. What falls in other stages has not failed.
+bool of_loading_stage(const TestResult& result, const HistoryRow& row);
+
 /// The crack with the earliest step, the first of these in the record; null without cracks.
 const Crack* first_crack(const TestResult& result);
 
@@ -38,7 +41,7 @@ struct CurvePoint {
     std::size_t row = 0;          ///< into TestResult::history
 };
 
-/// The pre-peak curve.
+/// The pre-peak curve; of a test with stages that part of each loading which goes beyond all before it, so that loops are left out.
 struct LoadingCurve {
     std::vector<CurvePoint> points;   ///< from the origin to the peak, both included; empty when there is nothing to read
     double stress_offset_Pa = 0.0;    ///< what to add for the total axial stress (biaxial: sigma_3)

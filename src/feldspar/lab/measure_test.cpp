@@ -6,9 +6,11 @@
 #include <fmt/format.h>
 
 #include "feldspar/lab/brazilian_failure.hpp"
+#include "feldspar/lab/cycles.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
 #include "feldspar/lab/disc_splitting.hpp"
 #include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/lab/multi_stage.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/quantities.hpp"
@@ -68,6 +70,7 @@ TestProperties read_record(const TestResult& result) {
     for (std::size_t i = 0; i < own.size(); ++i) p.of_method[i] = own[i].value({result, peak->row, peak->stress_Pa, peak->reached});
     switch (method_of(result.test).reading) {
         case Reading::disc: p.brazilian = brazilian_failure(result, *peak); return p;
+        case Reading::stages: p.multi_stage = multi_stage(result, *peak); return p;
         case Reading::curve: return p;
         case Reading::column: break;
     }
@@ -119,6 +122,9 @@ void note_arcs(const TestResult& result, TestProperties& p) {
 
 TestProperties measure(const TestResult& result) {
     TestProperties p = read_record(result);
+    p.cycles = cycles_of(result);
+    for (const CycleProperties& cycle : p.cycles)
+        if (std::isfinite(cycle.damage)) p.damage_omega = cycle.damage;
     note_section(result, p);
     note_widening(p);
     note_arcs(result, p);

@@ -57,7 +57,7 @@ PostPeak post_peak(const TestResult& result, const Peak& peak, const LoadingCurv
         p.friction_share = friction / all;
         p.damping_share = damping / all;
     }
-    if (!branch_is_followed(result)) return p;
+    if (!branch_is_followed(result) || !result.stages.empty()) return p;   // cycles cut the branch to pieces
     const double sign = method_of(result.test).loading.sign;
     std::vector<BranchPoint> branch;
     for (std::size_t i = peak.row; i < result.history.size(); ++i) {

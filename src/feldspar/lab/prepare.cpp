@@ -10,6 +10,7 @@
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/stages.hpp"
 
 namespace feldspar {
 namespace {
@@ -110,6 +111,21 @@ double factor_at_maximum(const Experiment& e, double force_at_base, double force
     return (most - base) / (std::abs(force_now) - base);
 }
 
+// The same at which the first stage of a test ends, or of one that does not load first, at which the specimen is just in touch.
+// @param before  what the end of the stage looks at, at the base
+double factor_at_first_stage(const Experiment& e, double before, double damage_factor) {
+    constexpr double kInTouch = 0.01;   // of the first damage
+    if (e.stages.empty()) return std::numeric_limits<double>::infinity();
+    const StageSpec& first = e.stages.front().stages.front();
+    if (first.kind != StageKind::load) return kInTouch * damage_factor;
+    if (first.end == StageEnd::share_of_peak) return std::numeric_limits<double>::infinity();
+    const double change = stage_quantity(e, first) - before, wanted = first.counts != StageValue::reached ? std::copysign(first.value, change) : first.value - before;
+    const double factor = wanted / change;
+    return factor > 0.0 ? factor : std::numeric_limits<double>::infinity();   // no end of this kind, or one that the loading moves away from
+}
+
+double quantity_at_base(const Experiment& e) { return e.stages.empty() ? 0.0 : stage_quantity(e, e.stages.front().stages.front()); }
+
 // Whether the state stands where the elastic phase ends: at the maximum stress, or just below the first damage at a further factor.
 bool is_end_of_elastic_phase(double damage_factor, double nearly, double maximum_factor) {
     return damage_factor > 1.0 && (damage_factor < nearly || std::abs(maximum_factor - 1.0) < 1e-3);
@@ -117,7 +133,7 @@ bool is_end_of_elastic_phase(double damage_factor, double nearly, double maximum
 
 // Axial loading of the relaxed state `base` up to the maximum stress or just below the first damage; sets B. Platens that stay in touch.
 void elastic_loading(Experiment& e, const BodyState& base) {
-    const double force_before = platen_force(e);
+    const double force_before = platen_force(e), quantity_before = quantity_at_base(e);
     add_affine(e, 1e-5 * e.length_m);
     relax_or_throw(e, kOnTheWay);
     learn_from(e, platen_force(e) - force_before, e.platen_travel_m - base.platen_travel_m);
@@ -125,7 +141,7 @@ void elastic_loading(Experiment& e, const BodyState& base) {
         const BodyState reached = capture(e.assembly, e.platen_travel_m);
         const double factor = first_damage(e.assembly, base, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded");
-        const double most = factor_at_maximum(e, force_before, platen_force(e));
+        const double most = std::min(factor_at_maximum(e, force_before, platen_force(e)), factor_at_first_stage(e, quantity_before, factor));
         if (attempt > 0 && is_end_of_elastic_phase(factor, 1.05, most)) break;
         go_to(e, superpose(base, reached, std::min(kBelowDamage * factor, most)));
         relax_or_throw(e);
@@ -179,7 +195,7 @@ void elastic_contacts(Experiment& e) {
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded: its fixtures do not strain it");
-        const double most = factor_at_maximum(e, 0.0, platen_force(e));
+        const double most = std::min(factor_at_maximum(e, 0.0, platen_force(e)), factor_at_first_stage(e, 0.0, factor));
         if (round > 0 && is_end_of_elastic_phase(factor, 1.04, most)) break;
         go_to(e, superpose(unloaded, reached, std::min({kBelowDamage * factor, most, 20.0})));
         reached = settle(kOnTheWay);

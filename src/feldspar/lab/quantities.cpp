@@ -55,6 +55,11 @@ QuantityPlace brazilian_failure() {
 }
 
 template <auto member>
+QuantityPlace stages_of_one() {
+    return at<&R::properties, &P::multi_stage, member>();
+}
+
+template <auto member>
 QuantityPlace evidence() {
     return at<&R::evidence, member>();
 }
@@ -115,7 +120,9 @@ std::vector<TestQuantity> table() {
     const std::set<MethodId> discs = those([](const TestMethod& m) { return m.reading == Reading::disc; });
     const std::set<MethodId> loaded = those([](const TestMethod& m) { return m.reading == Reading::column; });   // between platens
     const std::set<MethodId> forces = those([](const TestMethod& m) { return m.reading == Reading::curve; });
-    const std::set<MethodId> compressed = those([](const TestMethod& m) { return m.loading.widens; });
+    const std::set<MethodId> compressed = those([](const TestMethod& m) { return m.reading == Reading::column && m.loading.widens; });
+    const std::set<MethodId> cyclic = those([](const TestMethod& m) { return m.reading == Reading::column && m.build.stages != nullptr; });
+    const std::set<MethodId> multi_stage = those([](const TestMethod& m) { return m.reading == Reading::stages; });
     std::vector<TestQuantity> all;
     const auto add = [&](QuantityGroup group, const std::set<MethodId>& tests, std::vector<TestQuantity> rows) {
         for (TestQuantity& row : rows) {
@@ -190,6 +197,15 @@ std::vector<TestQuantity> table() {
         const std::span<const MethodProperty> properties = method_of(method).properties;
         for (std::size_t i = 0; i < properties.size(); ++i) add(G::of_method, {method}, {{properties[i].name, properties[i].unit, properties[i].definition, of_method(i)}});
     }
+    add(G::cycles, cyclic, {
+        {"cycles", pure, "", {QuantityForm::whole, [](const R& r) { return static_cast<double>(r.properties.cycles.size()); }}, absent, same, absent},
+        {"damage_omega", pure, "(P43)", property<&P::damage_omega>()},
+    });
+    add(G::multi_stage, multi_stage, {
+        {"peak_over_reversal", pure, "(P44)", stages_of_one<&MultiStageProperties::peak_over_reversal>()},
+        {"multi_stage_cohesion", stress, "(P45)", stages_of_one<&MultiStageProperties::cohesion_Pa>(), same, "cohesion", "cohesion"},
+        {"multi_stage_friction_angle", angle, "(P45)", stages_of_one<&MultiStageProperties::friction_angle_deg>(), same, "friction_angle", "friction_angle"},
+    });
     add(G::cracks, any, {
         {"cracks_tensile", pure, "", count<CrackMode::tensile>(), same, same, "tensile"},
         {"cracks_shear", pure, "", count<CrackMode::shear>(), same, same, "shear"},

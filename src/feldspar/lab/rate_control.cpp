@@ -79,10 +79,10 @@ void LoadingModeUpdate::begin(const Assembly& assembly, long long step, double p
     start_displacement_m_ = assembly.nodes.displacement;
 }
 
-void LoadingModeUpdate::observe(Assembly& assembly, long long step, double platen_travel_m) {
+void LoadingModeUpdate::observe(Assembly& assembly, long long step, double platen_travel_m, bool both_ways) {
     if (start_step_ < 0) return begin(assembly, step, platen_travel_m);
     if (static_cast<double>(step - start_step_) < window_) return;
-    if (platen_travel_m > start_travel_m_ + kTeaches * platen_travel_m) {
+    if (platen_travel_m > start_travel_m_ + kTeaches * platen_travel_m || (both_ways && platen_travel_m < start_travel_m_ - kTeaches * start_travel_m_)) {
         const double per_travel = 1.0 / (platen_travel_m - start_travel_m_);
         const auto bounded = [](double mode) { return std::clamp(mode, -kMostMode, kMostMode); };
         Nodes& nodes = assembly.nodes;

@@ -79,7 +79,11 @@ public:
     explicit LoadingModeUpdate(double travel_time) : window_(travel_time) {}
 
     /// To be called after every block of steps.
-    void observe(Assembly& assembly, long long step, double platen_travel_m);
+    /// @param both_ways  a window in which the platen went back teaches too
+    void observe(Assembly& assembly, long long step, double platen_travel_m, bool both_ways = false);
+
+    /// The window under way does not count: the loading turns.
+    void forget() { start_step_ = -1; }
 
 private:
     void begin(const Assembly& assembly, long long step, double platen_travel_m);

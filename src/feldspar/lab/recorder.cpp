@@ -60,6 +60,7 @@ HistoryRow Recorder::present(Phase phase) {
     row.stress_bottom_Pa = e_.stress(reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
     row.sigma3_Pa = e_.assembly.pressure_Pa;
+    row.stage = e_.stage;
     row.cracks_tensile = now_.tensile;
     row.cracks_shear = now_.shear;
     const double force = 0.5 * (std::abs(reactions.loading) + std::abs(reactions.rest));

@@ -29,11 +29,17 @@ RockProperty in_compression(std::string_view quantity, const char* label, const 
     return read(quantity, method_of_strength("UCS"), label, symbol, laboratory);
 }
 
+/// The first method of which this is read.
+MethodId method_that_reads(Reading reading) {
+    const std::span<const MethodId> all = test_methods();
+    return *std::ranges::find_if(all, [&](MethodId id) { return method_of(id).reading == reading; });
+}
+
 RockProperty strength(MethodId kind) {
     const MethodStrength& measured = method_of(kind).strength;
-    RockProperty p = read("strength", kind, measured.label, "", measured.name);
+    RockProperty p = read("strength", kind, measured.label, "", measured.laboratory.empty() ? measured.name : measured.laboratory);
     p.name = measured.name;
-    p.symbol = measured.name;
+    p.symbol = measured.symbol.empty() ? measured.name : measured.symbol;
     p.of_broken_only = true;
     return p;
 }
@@ -81,6 +87,8 @@ std::vector<RockProperty> table() {
         fitted("cohesion", stress, "Cohesion, Mohr-Coulomb", "c", "(P12)", &EnvelopeFit::cohesion_Pa, "cohesion"),
         fitted("friction_angle", angle, "Friction angle, Mohr-Coulomb", "\u03c6", "(P12)", &EnvelopeFit::friction_angle_deg, "friction_angle"),
         fitted("hoek_brown_mi", pure, "Hoek-Brown constant, intact rock", "mi", "(P13)", &EnvelopeFit::hoek_brown_mi, "hoek_brown_mi"),
+        read("multi_stage_cohesion", method_that_reads(Reading::stages), "Cohesion, one specimen under rising pressures", "c multi-stage", "cohesion"),
+        read("multi_stage_friction_angle", method_that_reads(Reading::stages), "Friction angle, one specimen under rising pressures", "\u03c6 multi-stage", "friction_angle"),
         ratio("UCS_over_BTS", "UCS", "BTS"),
         ratio("UCS_over_DTS", "UCS", "DTS"),
         ratio("BTS_over_DTS", "BTS", "DTS"),

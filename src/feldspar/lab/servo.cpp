@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kSmoothing = 0.1;    // travel times over which the growth is averaged: a burst of cracks is shorter than that
 constexpr double kFastestBack = 4.0;  // times the speed with which the platen would go forward if nothing failed
+constexpr double kArrest = 8.0;       // times the failure under way, relative to the limit: at half of the limit it goes back as fast as it may
 constexpr double kFails = 0.25;       // of the limit: with less the low stress is that of an unloaded body
 
 }  // namespace
@@ -28,6 +29,10 @@ void Servo::observe(const HistoryRow& row, int steps) {
 
 double Servo::speed(double platen_travel_m) const {
     return share_ * platen_travel_m / travel_time_ * std::clamp(1.0 - growth_, -kFastestBack, 1.0);
+}
+
+double Servo::arrest(double platen_travel_m) const {
+    return share_ * platen_travel_m / travel_time_ * std::clamp(kArrest * growth_, 0.0, kFastestBack);
 }
 
 bool Servo::unloading() const { return on() && growth_ < kFails; }

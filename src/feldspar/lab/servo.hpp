@@ -28,6 +28,9 @@ public:
     /// What it lets the platen do, m a step; negative: back. @param platen_travel_m  so far
     double speed(double platen_travel_m) const;
 
+    /// How fast the platen must go back so that the specimen stops to fail, m a step; 0 or more. Its speed() lets it fail slowly instead.
+    double arrest(double platen_travel_m) const;
+
     /// Whether the specimen fails so slowly that a low stress is that of an unloaded body, not of a failed one.
     bool unloading() const;
 

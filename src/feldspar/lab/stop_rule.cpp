@@ -1,5 +1,6 @@
 #include "feldspar/lab/stop_rule.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -18,16 +19,17 @@ StopRule::StopRule(const Experiment& experiment, const TestResult& result) : e_(
     if (const auto& stop = experiment.setup.test.stop_gauge) gauge_ = experiment.gauges.find(stop->gauge);
 }
 
-bool StopRule::past_peak(double load_Pa) const { return load_Pa < kPastPeak * peak_Pa_ && (!splitting_ || split()); }
+bool StopRule::past_peak(double load_Pa) const { return load_Pa < kPastPeak * (e_->stages.empty() ? peak_Pa_ : stage_peak_Pa_) && (!splitting_ || split()); }
 
 bool StopRule::steps_are_spent() const {
     const auto& most = e_->setup.numerics.maximum_steps;
     return most && result_->steps >= *most;
 }
 
-std::optional<std::string> StopRule::ended(const HistoryRow& row, bool unloading) {
+std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bool unloading) {
     const double load = e_->direction * row.axial_stress_Pa;
-    if (load > peak_Pa_ && !split()) {
+    if (loads) stage_peak_Pa_ = std::max(stage_peak_Pa_, load);
+    if (loads && load > peak_Pa_ && !split()) {
         peak_Pa_ = load;
         peak_step_ = e_->step;
         peak_strain_ = row.axial_strain;
@@ -38,8 +40,9 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool unloading
     if (splitting_ && after >= kStepsAfterPeak && row.axial_strain >= kPressedOn * peak_strain_)
         return fmt::format("the plates have approached {:g} times as far as at the {}", kPressedOn,
                            split() ? "strength of the disc" : "largest stress, and the disc is not split");
-    if (after >= kStepsAfterPeak && load <= test.stop_fraction * peak_Pa_ && !unloading && (!splitting_ || split()))
-        return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * test.stop_fraction);
+    const bool falls = loads && (e_->stages.empty() || past_peak(load));
+    if (falls && after >= kStepsAfterPeak && load <= test.stop_fraction * peak_Pa_ && !unloading && (!splitting_ || split()))
+        return fallen();
     if (std::abs(row.axial_strain) >= test.maximum_strain)
         return fmt::format("the axial strain has reached its maximum of {:.3g}", test.maximum_strain);
     if (gauge_ >= 0) {
@@ -51,6 +54,8 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool unloading
     if (steps_are_spent()) return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);
     return std::nullopt;
 }
+
+std::string StopRule::fallen() const { return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * e_->setup.test.stop_fraction); }
 
 void StopRule::look_for_split() {
     if (!splitting_) return;

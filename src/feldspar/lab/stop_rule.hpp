@@ -22,12 +22,28 @@ public:
     /// Whether the largest stress was the strength: the load has fallen below it, and a disc is split, for it dips and rises again before.
     bool past_peak(double load_Pa) const;
 
+    /// Largest load of the stage under way, Pa.
+    double stage_peak() const { return stage_peak_Pa_; }
+
+    /// Whether the strength so far was in the stage under way.
+    bool peak_in_stage() const { return peak_step_ >= stage_step_; }
+
+    /// A new stage begins: what fell in the one before is none of its falls.
+    void stage_began() {
+        stage_peak_Pa_ = 0.0;
+        stage_step_ = e_->step;
+    }
+
     /// Whether all steps that the user allows have been made, those of earlier passages too.
     bool steps_are_spent() const;
 
+    /// @param loads      the row is of a stage that loads: what falls elsewhere has not failed
     /// @param unloading  the specimen hardly fails (Servo::unloading()): that the stress is low then is no sign of failure
     /// @return why the test ends now, in words; nothing if it goes on
-    std::optional<std::string> ended(const HistoryRow& row, bool unloading = false);
+    std::optional<std::string> ended(const HistoryRow& row, bool loads, bool unloading = false);
+
+    /// That the stress has fallen to the share of the peak at which the test ends, in words.
+    std::string fallen() const;
 
 private:
     bool split() const { return splitting_ && splitting_->split(); }
@@ -40,6 +56,8 @@ private:
     int gauge_ = -1;   // that ends the test
     double peak_strain_ = 0.0;
     double peak_Pa_ = 0.0;
+    double stage_peak_Pa_ = 0.0;   // largest load of the stage under way
+    long long stage_step_ = 0;     // when it began
     long long peak_step_ = 0;
 };
 

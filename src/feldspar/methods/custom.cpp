@@ -84,6 +84,7 @@ const TestMethod custom{
 # width = "220 mm"                  # stress = load / (width x thickness): its extent across the loading unless given
 # control = "dissipation"           # behind the peak; also "displacement", or a gauge
 # until = { gauge = "deflection", at = "0.5 mm" }
+# stages = [{ kind = "load", until = "load", at = "10 kN" }, { kind = "unload" }, { kind = "load" }]   # in place of loading until the test ends
 )",
             .tables = R"(
 [[test.fixture]]                    # what loads the specimen: "roller", flat "plate", hollow "jaw", or "boundary", which its own nodes follow

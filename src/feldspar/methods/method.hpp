@@ -35,6 +35,7 @@ struct MethodBuild {
     std::vector<GaugeSpec> (*gauges)(const MethodInput&) = nullptr;   ///< none: no gauges but those of the strain in the specimen's middle
     std::span<const char* const> gauge_names{};   ///< that it may have
     void (*check)(const Outline&, double thickness_m, const TestSpec&) = nullptr;   ///< throws InputError if the specimen is none for the test; none: it stands between platens
+    std::vector<StageGroup> (*stages)(const TestSpec&) = nullptr;     ///< of the loading; none: those that the job gives, if it gives any
 };
 
 /// What results and pages call things.
@@ -55,18 +56,29 @@ struct MethodStart {
 enum class Reading {
     column,   ///< moduli, Poisson's ratio, thresholds and the branch behind the peak of a specimen that is strained evenly
     disc,     ///< how a disc was split
+    stages,   ///< the strength at each of the pressures that one specimen went through
     curve     ///< the largest load alone
 };
 
-/// A key that the method adds to [[test]]: a quantity with its unit, or a plain number.
+enum class MethodKeyForm {
+    quantity,   ///< text: a number with its unit
+    number,     ///< a plain number
+    share,      ///< a plain number, or text with a percent sign
+    whole       ///< a whole number
+};
+
+/// A key that the method adds to [[test]].
 struct MethodKey {
     std::string_view name;
-    Dimension dimension = Dimension::fraction;   ///< fraction: a plain number
+    MethodKeyForm form = MethodKeyForm::quantity;
+    Dimension dimension = Dimension::fraction;   ///< of a quantity
     Range range = positive;
-    const char* usual = "";         ///< in words, what holds without it
+    const char* usual = "";         ///< in words, what holds without it; or
+    std::optional<double> value{};  ///< the value that holds then
     const char* meaning = "";       ///< one sentence in Markdown, without the full stop
     bool needed = false;            ///< the test must give it
-    bool list = false;              ///< one value or a list
+    bool list = false;              ///< of quantities: one or a list
+    std::string_view in_place_of{}; ///< another key of the method, which is refused beside it
 };
 
 /// The record of a test, and its largest load.
@@ -92,6 +104,8 @@ struct MethodProperty {
 struct MethodStrength {
     std::string_view name{};        ///< "UCS"; empty: its largest stress is no property of the rock
     const char* label = "";
+    std::string_view symbol{};      ///< empty: the name
+    std::string_view laboratory{};  ///< the key of a job's [laboratory] that it compares with; empty: the name
 };
 
 /// What `feldspar new` writes.
@@ -184,6 +198,9 @@ inline const TestMethod& method_of(const TestSpec& test) { return test.kind.defi
 
 /// What files call the test: the method, or the name that the user gave his own.
 inline std::string test_name(const TestSpec& test) { return test.custom.name.empty() ? name(test.kind) : test.custom.name; }
+
+/// The stages that a test goes through; empty: it loads until its stop rule ends it.
+std::vector<StageGroup> stages_of(const TestSpec& test);
 
 /// Whether a pressure acts on the sides of the specimen.
 inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }

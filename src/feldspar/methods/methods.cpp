@@ -21,6 +21,11 @@ MethodId the_one(const Such& such, std::string_view what) {
 
 }  // namespace
 
+std::vector<StageGroup> stages_of(const TestSpec& test) {
+    const auto& of_method = method_of(test).build.stages;
+    return of_method != nullptr ? of_method(test) : test.stages;
+}
+
 std::span<const MethodId> test_methods() {
     static const std::array all{
 #define FELDSPAR_METHOD(definition) MethodId(methods::definition),

@@ -54,6 +54,7 @@ struct HistoryRow {
     double kinetic_deviation = 0.0;       ///< J, of the motion that departs from the loading motion
     double contact_arc_top_deg = 0.0;     ///< Brazilian: arc of the disc that presses on the plate, between the ends of its outermost pressed grain edges
     double contact_arc_bottom_deg = 0.0;
+    int stage = 0;                        ///< number of the stage, from 1 (TestResult::stages); 0 before the first, and in a test without stages
     std::vector<double> gauges;           ///< of the method or the user, in the order of TestResult::gauges, SI
     EnergyLedger energy;
 };
@@ -141,6 +142,47 @@ struct PostPeak {
     double damping_share = none;    ///< and by damping, into which goes all that breaks in jumps
 };
 
+/// What a test did in one of its stages. The rows [first_row, last_row] are those of its loading: it begins in the state of the first.
+struct StageRecord {
+    StageKind kind = StageKind::load;
+    int group = 0;                   ///< of the test's groups of stages, from 0
+    int pass = 0;                    ///< repetition of the group, from 0
+    std::size_t first_row = 0, last_row = 0;   ///< of the history
+    std::string ended;               ///< why, in words; empty if the test ended before
+};
+
+/// Loading and the unloading behind it, of a test that has such stages (P41)-(P43). Stresses are total ones; not-a-number where the record defines none.
+struct CycleProperties {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    int first_stage = 0, last_stage = 0;     ///< numbers from 1
+    double sigma3_Pa = 0.0;                  ///< at the largest stress
+    double peak_stress_Pa = none;            ///< largest stress of its loading
+    double peak_strain = none;               ///< axial strain at it
+    double reloading_modulus_Pa = none;      ///< slope of its loading where that begins from a load: (P41); not of the first cycle
+    double unloading_modulus_Pa = none;      ///< (P41); not of a last cycle without unloading
+    double permanent_axial_strain = none;    ///< left when it is unloaded, since the unloaded specimen before the test (P42); lateral: < 0 wider
+    double permanent_lateral_strain = none;
+    double permanent_volumetric_strain = none;
+    double damage = none;                    ///< omega (P43): 0 and growing as the specimen dilates
+    double first_crack_Pa = none;            ///< stress at its first crack
+    double sigma_ci_Pa = none;               ///< by the crack volumetric strain (P9) of its loading
+    double sigma_cd_Pa = none;               ///< reversal of the volumetric strain (P8) in its loading
+    double work_J = 0.0;                     ///< supplied
+    double dissipated_J = 0.0;               ///< by fracture, friction and damping
+    int cracks = 0;                          ///< in its course
+};
+
+/// A strength envelope from one specimen under rising pressures (P44), (P45). Not-a-number where the test defines none.
+struct MultiStageProperties {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> sigma3_Pa;           ///< of the stages that loaded, in order
+    std::vector<double> reversal_Pa;         ///< sigma1 at which the volumetric strain turned
+    std::vector<double> strength_Pa;         ///< sigma1: of the last stage measured, of the others estimated (P44)
+    double peak_over_reversal = none;        ///< of the deviator in the last stage
+    double cohesion_Pa = none;               ///< (P12) of these strengths
+    double friction_angle_deg = none;
+};
+
 /// Properties read from one test. Not-a-number where the test does not define one.
 struct TestProperties {
     double peak_stress_Pa;        ///< strength, a positive magnitude; Brazilian: the largest until the disc is split
@@ -161,8 +203,11 @@ struct TestProperties {
     double section_width_m;               ///< of the section that the stresses are taken over: the narrowest one across the load
     std::vector<std::string> remarks;     ///< sentences that a reader of the numbers must know
     BrazilianFailure brazilian{};         ///< Brazilian test only
-    PostPeak post_peak{};                 ///< not of a Brazilian test
+    PostPeak post_peak{};                 ///< not of a Brazilian test; modulus and brittleness not of a test with stages
     std::vector<double> of_method{};      ///< those that the method adds (MethodProperty), in its order
+    std::vector<CycleProperties> cycles{};   ///< of a test with stages that unload
+    double damage_omega = std::numeric_limits<double>::quiet_NaN();   ///< (P43) after the last cycle that was unloaded
+    MultiStageProperties multi_stage{};   ///< of a multi-stage test only
 };
 
 struct TestResult {
@@ -177,6 +222,7 @@ struct TestResult {
     std::vector<HistoryRow> history;
     std::vector<Crack> cracks;
     std::vector<Snapshot> snapshots;
+    std::vector<StageRecord> stages;      ///< of a test that has stages, in order
     std::vector<GaugeSpec> gauges;        ///< that the rows of the history have, beside those of the strain in the middle
     double length_m = std::numeric_limits<double>::quiet_NaN();     ///< strain = loading motion / length
     double section_m2 = std::numeric_limits<double>::quiet_NaN();   ///< stress = load / section

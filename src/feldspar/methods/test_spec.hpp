@@ -13,6 +13,7 @@
 
 #include "feldspar/model/fixture_spec.hpp"
 #include "feldspar/model/gauge_spec.hpp"
+#include "feldspar/model/stage_spec.hpp"
 #include "feldspar/model/spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -84,6 +85,8 @@ struct TestSpec {
     std::string control_gauge;           ///< LoadControl::gauge: the gauge that controls
     std::optional<GaugeStop> stop_gauge; ///< ends the test
     std::optional<SpecimenSpec> specimen;   ///< its own, of the same grains: a disc that the method cuts, or what the job gives; else the job's
+    std::vector<StageGroup> stages;      ///< custom only: what the loading does, in order; empty: it loads until the test ends. All methods': stages_of()
+    std::vector<double> later_sigma3_Pa; ///< multi-stage: the pressures after sigma3_Pa, each larger than the one before
     CustomTest custom;                   ///< of methods whose fixtures the job gives
 
     /// The value of a key of the method's own, if the job gives it.

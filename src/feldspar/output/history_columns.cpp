@@ -81,6 +81,8 @@ std::vector<FileColumn> history_columns(const TestResult& result) {
         const std::string name = unit.name == std::string_view("1") ? gauge.name : gauge.name + "_" + unit.name;
         all.push_back({name, unit.name, gauge.meaning, false, [g, unit](Row r) { return g < r.gauges.size() ? r.gauges[g] * unit.factor : 0.0; }});
     }
+    if (!result.stages.empty())
+        all.push_back({"stage", "1", "number of the stage of loading, from 1; 0 before the first", true, [](Row r) { return static_cast<double>(r.stage); }});
     return all;
 }
 

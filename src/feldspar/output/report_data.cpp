@@ -39,8 +39,10 @@ std::vector<std::size_t> kept_rows(const TestResult& result, std::size_t tests) 
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
     const std::size_t strength = strength_row(result);
     const auto dip = method_of(result.test).reading == Reading::disc ? first_dip(result) : std::nullopt;
+    std::vector<std::size_t> turns;   // where stages begin and end
+    for (const StageRecord& stage : result.stages) turns.push_back(stage.last_row);
     for (std::size_t r = 0; r < history.size(); ++r) {
-        if (r % stride == 0 || r == peak || r == strength || (dip && r == dip->row) || r + 1 == history.size()) kept.push_back(r);
+        if (std::ranges::binary_search(turns, r) || r % stride == 0 || r == peak || r == strength || (dip && r == dip->row) || r + 1 == history.size()) kept.push_back(r);
     }
     return kept;
 }
@@ -104,6 +106,36 @@ Json brazilian_json(const TestResult& result) {
     return json;
 }
 
+/// The cycles of a test, as the report's table has them.
+Json cycles_json(const TestResult& result) {
+    Json list = Json::array();
+    for (const CycleProperties& c : result.properties.cycles)
+        list.push_back({{"peak", rounded(c.peak_stress_Pa * MPa)},
+                        {"sigma3", rounded(c.sigma3_Pa * MPa)},
+                        {"reloading", rounded(c.reloading_modulus_Pa * GPa)},
+                        {"unloading", rounded(c.unloading_modulus_Pa * GPa)},
+                        {"axial", rounded(c.permanent_axial_strain * 1e3)},
+                        {"lateral", rounded(c.permanent_lateral_strain * 1e3)},
+                        {"volumetric", rounded(c.permanent_volumetric_strain * 1e3)},
+                        {"omega", rounded(c.damage * 1e3)},
+                        {"first_crack", rounded(c.first_crack_Pa * MPa)},
+                        {"sigma_ci", rounded(c.sigma_ci_Pa * MPa)},
+                        {"sigma_cd", rounded(c.sigma_cd_Pa * MPa)},
+                        {"work", rounded(c.work_J)},
+                        {"dissipated", rounded(c.dissipated_J)},
+                        {"cracks", c.cracks}});
+    return list;
+}
+
+Json multi_stage_json(const TestResult& result) {
+    const MultiStageProperties& p = result.properties.multi_stage;
+    Json json, points = Json::array();
+    for (std::size_t i = 0; i < p.sigma3_Pa.size(); ++i) points.push_back({rounded(p.sigma3_Pa[i] * MPa), rounded(p.reversal_Pa[i] * MPa), rounded(p.strength_Pa[i] * MPa)});
+    json["points"] = points;
+    add(json, result, QuantityGroup::multi_stage);
+    return json;
+}
+
 /// What users read for a test: the method, or the name of a test of their own.
 std::string title_of(const TestSpec& test) { return test.custom.name.empty() ? method_of(test).words.title : test.custom.name; }
 
@@ -147,7 +179,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["stem"] = test_stem(result);
     test["kind"] = name(result.test.kind);
     test["title"] = title_of(result.test);
-    test["confined"] = method_of(result.test).specimen.confined;
+    test["confined"] = method_of(result.test).specimen.confined && method_of(result.test).reading != Reading::stages;
     test["axes"] = axes_json(result);
     test["seed"] = result.seed;
     test["sigma3"] = rounded(result.test.sigma3_Pa * MPa);
@@ -160,6 +192,8 @@ Json test_json(const TestResult& result, std::size_t tests) {
     const Reading reading = method_of(result.test).reading;
     if (reading == Reading::disc) test["brazilian"] = brazilian_json(result);
     test["properties"] = properties_json(result);
+    if (!result.properties.cycles.empty()) test["cycles"] = cycles_json(result);
+    if (reading == Reading::stages) test["multi_stage"] = multi_stage_json(result);
     test["gauges"] = gauges_json(result, tests);
     add(test["post_peak"], result, QuantityGroup::post_peak);
     add(test, result, QuantityGroup::elastic);

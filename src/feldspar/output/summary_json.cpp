@@ -53,6 +53,62 @@ Json files_json(const RunDirectory& directory, const std::string& stem) {
 
 std::string control_of(const TestSpec& test) { return test.control == LoadControl::gauge ? test.control_gauge : name(test.control); }
 
+/// What each stage was, and why it ended.
+Json stages_json(const TestResult& result) {
+    Json list = Json::array();
+    for (const StageRecord& stage : result.stages) {
+        if (stage.last_row >= result.history.size()) continue;
+        const HistoryRow &from = result.history[stage.first_row], &to = result.history[stage.last_row];
+        list.push_back({{"kind", name(stage.kind)},
+                        {"group", stage.group + 1},
+                        {"pass", stage.pass + 1},
+                        {"from_stress_MPa", in_MPa(from.axial_stress_Pa)},
+                        {"to_stress_MPa", in_MPa(to.axial_stress_Pa)},
+                        {"sigma3_MPa", in_MPa(to.sigma3_Pa)},
+                        {"from_strain", number(from.axial_strain)},
+                        {"to_strain", number(to.axial_strain)},
+                        {"steps", to.step - from.step},
+                        {"work_J", number(to.energy.supplied() - from.energy.supplied())},
+                        {"cracks", to.cracks_tensile + to.cracks_shear - from.cracks_tensile - from.cracks_shear},
+                        {"ended", stage.ended.empty() ? Json(nullptr) : Json(stage.ended)}});
+    }
+    return list;
+}
+
+Json cycles_json(const TestResult& result) {
+    Json list = Json::array();
+    for (const CycleProperties& c : result.properties.cycles)
+        list.push_back({{"first_stage", c.first_stage},
+                        {"last_stage", c.last_stage},
+                        {"sigma3_MPa", in_MPa(c.sigma3_Pa)},
+                        {"peak_stress_MPa", in_MPa(c.peak_stress_Pa)},
+                        {"strain_at_peak", number(c.peak_strain)},
+                        {"reloading_modulus_GPa", number(c.reloading_modulus_Pa * GPa)},
+                        {"unloading_modulus_GPa", number(c.unloading_modulus_Pa * GPa)},
+                        {"permanent_axial_strain", number(c.permanent_axial_strain)},
+                        {"permanent_lateral_strain", number(c.permanent_lateral_strain)},
+                        {"permanent_volumetric_strain", number(c.permanent_volumetric_strain)},
+                        {"damage_omega", number(c.damage)},
+                        {"first_crack_MPa", in_MPa(c.first_crack_Pa)},
+                        {"sigma_ci_crack_volume_MPa", in_MPa(c.sigma_ci_Pa)},
+                        {"sigma_cd_MPa", in_MPa(c.sigma_cd_Pa)},
+                        {"work_J", number(c.work_J)},
+                        {"dissipated_J", number(c.dissipated_J)},
+                        {"cracks", c.cracks}});
+    return list;
+}
+
+Json multi_stage_json(const TestResult& result) {
+    const MultiStageProperties& p = result.properties.multi_stage;
+    Json json, points = Json::array();
+    for (std::size_t i = 0; i < p.sigma3_Pa.size(); ++i)
+        points.push_back({{"sigma3_MPa", in_MPa(p.sigma3_Pa[i])}, {"reversal_MPa", in_MPa(p.reversal_Pa[i])}, {"strength_MPa", in_MPa(p.strength_Pa[i])},
+                          {"measured", i + 1 == p.sigma3_Pa.size()}});
+    json["pressures"] = points;
+    add(json, result, QuantityGroup::multi_stage);
+    return json;
+}
+
 /// What the gauges read at the largest stress and at the end.
 Json gauges_json(const TestResult& result) {
     Json json = Json::object();
@@ -91,12 +147,16 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     } else if (!method_of(result.test).properties.empty()) {
         Json& own = test[method_of(result.test).properties_table] = {{"control", control_of(result.test)}};
         add(own, result, QuantityGroup::of_method);
-    } else if (reading == Reading::curve) {
+    } else if (reading == Reading::curve || reading == Reading::stages) {
         test["control"] = control_of(result.test);
     } else {
         Json& branch = test["post_peak"] = {{"control", name(result.test.control)}};
         add(branch, result, QuantityGroup::post_peak);
     }
+    if (!result.stages.empty()) test["stages"] = stages_json(result);
+    if (!result.properties.cycles.empty()) test["each_cycle"] = cycles_json(result);
+    if (reading == Reading::column && method_of(result.test).build.stages != nullptr) add(test, result, QuantityGroup::cycles);
+    if (reading == Reading::stages) test["multi_stage"] = multi_stage_json(result);
     if (!result.gauges.empty()) test["gauges"] = gauges_json(result);
     if (method_of(result.test).start.strained_evenly)   // else there is no such modulus, and no threshold
         for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage}) add(test, result, group);

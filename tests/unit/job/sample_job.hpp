@@ -66,6 +66,26 @@ from = ["40 mm", "70 mm"]
 to = ["40 mm", "90 mm"]
 )";
 
+/// Stages of every kind that such a test can take.
+inline const std::string stages = R"(stages = [
+  { kind = "load", until = "stress", at = "2 MPa" },
+  { kind = "hold", travel_times = 5 },
+  { kind = "hold" },
+  { kind = "unload", until = "load", at = "1 kN" },
+  { kind = "load", until = "axial-strain", at = "0.01 %" },
+  { kind = "unload" },
+  { kind = "load", until = "lateral-strain", by = "0.001 %" },
+  { kind = "unload", until = "share-of-peak", at = "10 %" },
+  { kind = "cycle", times = 3, stages = [{ kind = "load", until = "gap", beyond = "0.01 mm" }, { kind = "unload", until = "gap", by = "0.005 mm" }] },
+  { kind = "cycle", stages = [{ kind = "load", until = "stress", beyond = "1 MPa" }, { kind = "unload" }] },
+]
+)";
+inline const std::string custom_test_in_stages = [] {
+    std::string text = custom_test;
+    const std::string before = "[[test.fixture]]";
+    return text.insert(text.find(before), stages);
+}();
+
 /// A job of variants: the same packings modelled in several ways.
 inline const std::string variant_job = R"([specimen]
 shape = "rectangle"

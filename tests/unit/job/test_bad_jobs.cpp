@@ -29,6 +29,10 @@ std::string with_outline(const std::string& keys) {
     return edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", keys);
 }
 
+std::string with_stages(const std::string& stages) {
+    return with_test(edited("[[test.fixture]]\nname = \"lower end\"", "stages = [" + stages + "]\n[[test.fixture]]\nname = \"lower end\"", custom_test));
+}
+
 std::vector<BadJob> bad_jobs() {
     return {
         {"empty file", "", 0, {"missing keys: specimen, material, test"}},
@@ -283,6 +287,37 @@ std::vector<BadJob> bad_jobs() {
          with_test(edited("at = \"0.2 mm\"", "at = \"2 kN\"", custom_test)),
          34,
          {"test[1].until.at", "is a force, not a length"}},
+        {"an end of a stage that is no gauge", with_stages("{ kind = \"load\", until = \"gape\", at = \"1 mm\" }"), 35, {"test[1].stages[1].until", "neither an end of a stage nor a gauge", "gap"}},
+        {"an end of a stage in another unit", with_stages("{ kind = \"load\", until = \"stress\", at = \"1 mm\" }"), 35, {"test[1].stages[1].at", "is a length, not a stress"}},
+        {"an end of a stage without a value", with_stages("{ kind = \"load\", until = \"stress\" }"), 35, {"test[1].stages[1].until", "of what value is missing", "at, by or beyond"}},
+        {"two values for the end of a stage", with_stages("{ kind = \"load\", until = \"stress\", at = \"2 MPa\", by = \"1 MPa\" }"), 35, {"test[1].stages[1].by", "given beside at"}},
+        {"unloading to more than there is",
+         with_stages("{ kind = \"load\", until = \"stress\", at = \"2 MPa\" }, { kind = \"unload\", until = \"stress\", at = \"3 MPa\" }"),
+         35,
+         {"test[1].stages[2].at", "cannot be reached", "less than where the stage before ends"}},
+        {"loading to less than there is",
+         with_stages("{ kind = \"load\", until = \"stress\", at = \"2 MPa\" }, { kind = \"load\", until = \"stress\", at = \"1 MPa\" }"),
+         35,
+         {"test[1].stages[2].at", "cannot be reached", "more than where the stage before ends"}},
+        {"a cycle whose second loading begins where it ends",
+         with_stages("{ kind = \"cycle\", times = 2, stages = [{ kind = \"load\", until = \"stress\", at = \"2 MPa\" }] }"),
+         35,
+         {"test[1].stages[1].stages[1].at", "cannot be reached"}},
+        {"stages behind the end of the test", with_stages("{ kind = \"load\" }, { kind = \"unload\" }"), 35, {"test[1].stages[1].kind", "stages stand behind it"}},
+        {"a strain beyond the end of the test", with_stages("{ kind = \"load\", until = \"axial-strain\", at = \"6 %\" }"), 35, {"test[1].stages[1].at", "the test ends at an axial strain of 0.05"}},
+        {"a cycle without end",
+         with_stages("{ kind = \"cycle\", stages = [{ kind = \"load\", until = \"stress\", at = \"2 MPa\" }, { kind = \"unload\" }] }"),
+         35,
+         {"test[1].stages[1].kind", "may go on for ever", "times = 5"}},
+        {"a cycle in a cycle", with_stages("{ kind = \"cycle\", times = 2, stages = [{ kind = \"cycle\", stages = [{ kind = \"hold\" }] }] }"), 35, {"test[1].stages[1].stages[1].kind", "a cycle in a cycle"}},
+        {"unloading what is not loaded", with_stages("{ kind = \"unload\" }"), 35, {"test[1].stages[1].kind", "not loaded yet"}},
+        {"a pressure that nothing carries", with_stages("{ kind = \"confine\", sigma3 = \"1 MPa\" }"), 35, {"test[1].stages[1].kind", "nothing presses on the sides"}},
+        {"a key of another stage", with_stages("{ kind = \"load\", until = \"stress\", by = \"1 MPa\" }, { kind = \"hold\", until = \"stress\", at = \"1 MPa\" }"), 35, {"test[1].stages[2].until", "does not apply to kind = \"hold\""}, 2},
+        {"stages of a method that has its own", with_test("kind = \"cyclic-compression\"\nstages = [{ kind = \"load\" }]"), 33, {"test[1].stages", "only with kind = \"custom\""}},
+        {"cycles by two steps", with_test("kind = \"cyclic-compression\"\nstress_step = \"10 MPa\"\nlateral_strain_step = 1e-4"), 34, {"test[1].lateral_strain_step", "stress_step"}},
+        {"cycles at a fixed speed", edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"", with_test("kind = \"cyclic-compression\"")), 31, {"test[1].kind", "only adaptive numerics"}},
+        {"a multi-stage test with one pressure", with_test("kind = \"multi-stage-biaxial\"\nsigma3 = \"2 MPa\""), 33, {"test[1].sigma3", "several pressures"}},
+        {"pressures that fall", with_test("kind = \"multi-stage-biaxial\"\nsigma3 = [\"5 MPa\", \"2 MPa\"]"), 33, {"test[1].sigma3", "must rise"}},
         {"a name that is a method", with_test(edited("name = \"pull\"", "name = \"biaxial\"", custom_test)), 33, {"test[1].name", "is a test method"}},
         {"plates in compression",
          with_test("kind = \"uniaxial-compression\"\nplate_mu = 0.1"),

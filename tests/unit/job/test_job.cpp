@@ -9,6 +9,7 @@
 #include "feldspar/job/job.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/job/job_template.hpp"
+#include "feldspar/methods/method.hpp"
 #include "../../switched_on.hpp"
 #include "../../table7.hpp"
 #include "sample_job.hpp"
@@ -168,6 +169,31 @@ TEST(Job, HolesNotchesAndLabelsByPlace) {
     EXPECT_EQ(outline.labels[1].b_m, (Vec2{0.001, 0.08}));
     EXPECT_EQ(outline.labels[2].kind, PlaceKind::line);
     EXPECT_EQ(outline.labels[2].within_m, 1e-5);
+}
+
+TEST(Job, StagesAreReadAsTheyStandAndWrittenBack) {
+    const std::string text = edited("kind = \"uniaxial-compression\"\n", custom_test_in_stages);
+    const Job job = parse_job(text, "job");
+    const std::vector<StageGroup>& groups = job.tests.front().stages;
+    ASSERT_EQ(groups.size(), 10U);
+    EXPECT_EQ(groups[0].stages.front(), (StageSpec{.kind = StageKind::load, .end = StageEnd::stress, .value = 2e6}));
+    EXPECT_EQ(groups[1].stages.front().travel_times, 5.0);
+    EXPECT_EQ(groups[2].stages.front().travel_times, std::nullopt);
+    EXPECT_EQ(groups[3].stages.front().value, 1e3);
+    EXPECT_EQ(groups[5].stages.front(), (StageSpec{.kind = StageKind::unload, .end = StageEnd::stress}));
+    EXPECT_EQ(groups[6].stages.front().counts, StageValue::changed);
+    EXPECT_EQ(groups[8].times, 3);
+    EXPECT_EQ(groups[8].stages.front(), (StageSpec{.kind = StageKind::load, .end = StageEnd::gauge, .value = 1e-5, .counts = StageValue::beyond, .gauge = "gap"}));
+    EXPECT_EQ(groups[9].times, 0);
+    EXPECT_EQ(parse_job(resolved_toml(job), "job").tests.front().stages, groups);
+}
+
+TEST(Job, APressureListIsOneMultiStageTest) {
+    const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\", \"10 MPa\"]"), "job");
+    ASSERT_EQ(job.tests.size(), 1U);
+    EXPECT_EQ(job.tests.front().sigma3_Pa, 2e6);
+    EXPECT_EQ(job.tests.front().later_sigma3_Pa, (std::vector<double>{5e6, 10e6}));
+    EXPECT_EQ(stages_of(job.tests.front()).size(), 5U);
 }
 
 TEST(Job, MergeLengthIsAutoNoneOrALength) {

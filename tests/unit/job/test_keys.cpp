@@ -67,6 +67,9 @@ const std::vector<std::string>& bases() {
             own,
             plates,
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\" }"),
+            replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test_in_stages),
+            replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"cyclic-compression\""),
+            replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
         };
     }();
     return all;
@@ -150,7 +153,7 @@ TEST(Keys, EachIsAsOftenAsItsNameInATableAndSaysWhatItIs) {
 }
 
 TEST(Keys, OfATestSayWhichMethodsTakeThem) {
-    EXPECT_EQ(applies_text(job_key("test", "sigma3")), "with `kind = \"biaxial\"`");
+    EXPECT_EQ(applies_text(job_key("test", "sigma3")), "with `kind = \"biaxial\", \"multi-stage-biaxial\"`");
     EXPECT_EQ(applies_text(job_key("test", "flat_angle")), "with `kind = \"brazilian\"`");
     EXPECT_EQ(applies_text(job_key("test", "stop_fraction")), "");
     EXPECT_TRUE(job_key("test", "plate_mu").when.holds("biaxial"));

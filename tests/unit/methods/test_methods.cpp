@@ -49,7 +49,7 @@ TEST(Methods, MeasureEachThingOnce) {
         EXPECT_STRNE(m.job.gives, "");
     }
     EXPECT_EQ(confined, 1);
-    EXPECT_EQ(strengths, (std::set<std::string_view>{"BTS", "DTS", "UCS"}));
+    EXPECT_EQ(strengths, (std::set<std::string_view>{"BTS", "DTS", "UCS", "UCS_cyclic"}));
 }
 
 TEST(Methods, FactsAgree) {

@@ -226,6 +226,34 @@ function writeTest(host, tests) {
   const c = new XYChart(third, {x: strainLabel, y: "Energy (J)", series: energySeries(tests[0])});
   updates.push((i) => c.set(energySeries(tests[i])));
   grid.append(testFacts(tests, updates));
+  writeCycles(host, tests, updates);
+}
+
+/** What each cycle of loading and unloading shows, one row a cycle. */
+function writeCycles(host, tests, updates) {
+  if (!tests.some((t) => t.cycles)) return;
+  const box = h("div", {});
+  host.append(box);
+  const cell = (v, digits) => td(v === null ? "\u2013" : show(v, digits), true);
+  const fill = (i) => {
+    const cycles = tests[i].cycles || [];
+    box.replaceChildren(h("h4", {}, "Cycles, packing " + tests[i].seed), table("evidence",
+      [th("Cycle", true), th(["Largest", h("br"), "stress, MPa"], true), th(["E loading", h("br"), "GPa"], true, "slope of the reloading in the middle half of its stress"),
+        th(["E unloading", h("br"), "GPa"], true, "slope of the unloading in the middle half of its stress"), th(["Permanent strain, 10\u207b\u00b3:", h("br"), "axial"], true, "left when it is unloaded"), th("lateral", true), th("volumetric", true),
+        th(["Damage \u03c9", h("br"), "10\u207b\u00b3"], true, "sum of the permanent dilation of all cycles (Martin and Chandler 1994)"), th(["First crack", h("br"), "MPa"], true), th(["\u03c3ci", h("br"), "MPa"], true, "crack volumetric strain of this loading"), th(["\u03c3cd", h("br"), "MPa"], true, "reversal of the volumetric strain in this loading"),
+        th(["Work", h("br"), "J"], true), th(["Dissipated", h("br"), "J"], true), th("Cracks", true)],
+      cycles.map((c, n) => h("tr", {}, td(String(n + 1), true), cell(c.peak, 4), cell(c.reloading), cell(c.unloading), cell(c.axial), cell(c.lateral), cell(c.volumetric), cell(c.omega), cell(c.first_crack), cell(c.sigma_ci), cell(c.sigma_cd), cell(c.work), cell(c.dissipated), td(String(c.cracks), true)))));
+  };
+  fill(0);
+  updates.push(fill);
+}
+
+/** What one specimen under rising pressures shows, in words. */
+function addMultiStage(t, add) {
+  const m = t.multi_stage;
+  for (const [sigma3, reversal, strength] of m.points)
+    add("At \u03c3\u2083 = " + show(sigma3) + " MPa", "volumetric strain turns at " + show(reversal, 4) + " MPa" + (strength === null ? "" : ", strength " + show(strength, 4) + " MPa" + (sigma3 === m.points[m.points.length - 1][0] ? "" : " (estimated)")));
+  if (m.cohesion !== null) add("Mohr-Coulomb", "c = " + show(m.cohesion) + " MPa, \u03c6 = " + show(m.friction_angle) + "\u00b0; deviator at the peak over that at the reversal " + show(m.peak_over_reversal));
 }
 
 function testFacts(tests, updates) {
@@ -237,6 +265,7 @@ function testFacts(tests, updates) {
     if (t.peak_load !== null) add("Largest load", show(t.peak_load, 4) + " kN");
     add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^./, (c) => c.toLowerCase()) : ""));
     for (const p of t.properties) add(p.label, show(p.value, 4) + (p.unit ? " " + unitWords(p.unit) : ""));
+    if (t.multi_stage) addMultiStage(t, add);
     for (const gauge of t.gauges) add("Gauge " + gauge.name, gauge.meaning);
     if (t.section_width !== null) add("Section", show(t.section_width) + " mm wide");
     for (const remark of t.remarks) add("Note", remark);
