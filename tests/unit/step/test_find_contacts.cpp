@@ -1,0 +1,57 @@
+// Contacts that begin where bodies come to overlap, and end where broken ones are open.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fixtures.hpp"
+
+using namespace feldspar;
+
+namespace {
+
+Assembly bar() { return assemble(*fixtures::two_grain_bar(0.01), fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table7()); }
+
+void break_all(Assembly& assembly) {
+    for (std::size_t p = 0; p < assembly.points.size(); ++p) {
+        BondState bond = assembly.bond(static_cast<int>(p));
+        bond.damage = 1.0;
+        assembly.set_bond(static_cast<int>(p), bond);
+        assembly.points[p].broken_step = 0;
+    }
+}
+
+void lift_upper(Assembly& assembly, double by_m) { assembly.nodes.displacement[assembly.bodies[1].centre_node].y += by_m; }
+
+}  // namespace
+
+TEST(FindContacts, IntactBodiesGetNoneBeside) {
+    Assembly assembly = bar();
+    ContactFinder finder(assembly, 1e-3);
+    lift_upper(assembly, -1e-4);
+    const ContactFinder::Changes changes = finder.update(assembly, 0.0);
+    EXPECT_EQ(changes.made, 0);
+    EXPECT_EQ(changes.dropped, 0);
+}
+
+// A broken contact that is open beyond its closing distance is dropped; when the grains meet again a frictional one begins, once.
+TEST(FindContacts, BrokenOnesAreDroppedWhenOpenAndBeginAgainWithAnOverlap) {
+    Assembly assembly = bar();
+    ContactFinder finder(assembly, 1e-3);
+    break_all(assembly);
+    lift_upper(assembly, 0.01);
+    for (Contact& contact : assembly.contacts)
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {   // as a step would leave it: open
+            BondState bond = assembly.bond(p);
+            bond.un_m = 0.01;
+            bond.Fn_N = bond.Fs_N = 0.0;
+            assembly.set_bond(p, bond);
+        }
+    EXPECT_EQ(finder.update(assembly, 0.0).dropped, 1);
+    EXPECT_TRUE(assembly.contacts.front().dropped);
+    lift_upper(assembly, -0.01 - 1e-4);
+    EXPECT_EQ(finder.update(assembly, 0.0).made, 1);
+    EXPECT_EQ(finder.update(assembly, 0.0).made, 0) << "one pair, one contact";
+    const auto made = std::ranges::find(assembly.contacts, true, &Contact::new_contact);
+    ASSERT_NE(made, assembly.contacts.end());
+    EXPECT_EQ(assembly.bond(made->first_point).damage, 1.0) << "it carries friction only";
+}
