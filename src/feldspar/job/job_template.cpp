@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <sstream>
+#include <utility>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/keys.hpp"
@@ -13,7 +15,7 @@
 namespace feldspar {
 namespace {
 
-constexpr std::array<std::string_view, 7> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "three-point-bend", "custom", "laboratory"};
+constexpr std::array<std::string_view, 9> kinds{"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "three-point-bend", "semi-circular-bend", "hole-compression", "custom", "laboratory"};
 
 // A line "#= key" shows a key that may be left out, with the default and the sentence of its row (keys.hpp).
 constexpr const char* common_head = R"(#
@@ -145,6 +147,27 @@ kind = "three-point-bend"           # a beam that lies along x: flexural strengt
 )") + common_test;
 }
 
+std::string half_disc_test() {
+    return std::string(R"(
+[[test]]
+kind = "semi-circular-bend"         # a notched half disc on two rollers: K_Ic and work of fracture
+# span = "48 mm"                    # distance of the two supports; 1.2 radii unless given (ISRM: 0.5 to 0.8 diameters)
+# roller_radius = "4 mm"            # of the three rollers; a tenth of the radius unless given
+# control = "dissipation"           # behind the peak; also "displacement", or the gauge "CMOD", the opening of the notch's mouth
+# until = { gauge = "CMOD", at = "0.2 mm" }   # ends the test there
+)") + common_test;
+}
+
+std::string hole_test() {
+    return std::string(R"(
+[[test]]
+kind = "hole-compression"           # a plate with a round hole: stress at its edge, first cracks, breakouts
+# sigma3 = "4 MPa"                  # pressure on the sides of the plate, or a list; none unless given
+# control = "dissipation"           # behind the peak; also "displacement", or a gauge: "side-stress", "pole-stress"
+# until = { gauge = "side-stress", at = "200 MPa" }   # ends the test there
+)") + common_test;
+}
+
 std::string custom_test() {
     return std::string(R"(
 [[test]]
@@ -195,17 +218,32 @@ direction = [0, -1]                 # downwards
 )";
 }
 
-// The common head with a beam in place of an upright specimen.
-std::string beam_head() {
+// The common head with some lines in place of others, each known by its beginning.
+std::string head_with(std::initializer_list<std::pair<std::string_view, std::string_view>> lines) {
     std::string head = common_head;
-    const auto replace = [&](std::string_view line, std::string_view by) {
+    for (const auto& [line, by] : lines) {
         const std::size_t at = head.find(line);
         head.replace(at, head.find('\n', at) - at, by);
-    };
-    replace("width = \"80 mm\"", "width = \"220 mm\"                    # along the beam");
-    replace("height = \"160 mm\"", "height = \"50 mm\"                    # the load acts downwards\n"
-                                     "# notches = [{ from = [\"110 mm\", \"0 mm\"], to = [\"110 mm\", \"15 mm\"], width = \"1 mm\" }]   # sawn slits; \"0 mm\": a cut");
+    }
     return head;
+}
+
+std::string half_disc_head() {
+    return head_with({{"shape = \"rectangle\"", "shape = \"half-disc\"                 # stands on its flat, whose middle is (0, 0)"},
+                      {"width = \"80 mm\"", "diameter = \"80 mm\"                  # ISRM: at least 76 mm, or ten grains"},
+                      {"height = \"160 mm\"", "notches = [{ from = [\"0 mm\", \"0 mm\"], to = [\"0 mm\", \"20 mm\"], width = \"1 mm\" }]   # 0.4 to 0.6 of the radius"}});
+}
+
+std::string hole_head() {
+    return head_with({{"height = \"160 mm\"", "height = \"160 mm\"                   # the direction of loading\n"
+                                               "holes = [{ centre = [\"40 mm\", \"80 mm\"], diameter = \"24 mm\" }]"}});
+}
+
+// An upright specimen becomes a beam.
+std::string beam_head() {
+    return head_with({{"width = \"80 mm\"", "width = \"220 mm\"                    # along the beam"},
+                      {"height = \"160 mm\"", "height = \"50 mm\"                    # the load acts downwards\n"
+                                     "# notches = [{ from = [\"110 mm\", \"0 mm\"], to = [\"110 mm\", \"15 mm\"], width = \"1 mm\" }]   # sawn slits; \"0 mm\": a cut"}});
 }
 
 constexpr std::size_t comment_column = 36;
@@ -236,6 +274,8 @@ std::string unfinished_template(std::string_view kind) {
     if (kind == "biaxial")  // the envelope needs the uniaxial point
         return "# Biaxial tests at two confining stresses and a uniaxial one: the strength envelope.\n" + std::string(common_head) + uniaxial_test() + biaxial_test() + common_end;
     if (kind == "three-point-bend") return "# Three-point bending of a beam on the packing of each seed.\n" + beam_head() + bending_test() + common_end;
+    if (kind == "semi-circular-bend") return "# Semi-circular bending of a notched half disc on the packing of each seed.\n" + half_disc_head() + half_disc_test() + common_end;
+    if (kind == "hole-compression") return "# A plate with a round hole in compression.\n" + hole_head() + hole_test() + common_end;
     if (kind == "custom") return "# A test of your own: here a beam on four rollers.\n" + beam_head() + custom_test() + common_end;
     if (kind == "laboratory")
         return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + uniaxial_test() + tension_test() + brazilian_test() +

@@ -225,10 +225,12 @@ ReadTest read_one(const JobTable& table, const SpecimenSpec& specimen, const std
         result.diameter_m = brazilian_diameter(table, specimen, known);
         result.flat_angle_rad = read_flats(table, flattened, specimen, *result.diameter_m, known, test);
     }
-    if (!method.specimen.confined) {
+    if (!method.specimen.confined || (method.specimen.stands_free && !table.has("sigma3"))) {
         result.tests.push_back(test);
         return result;
     }
+    table.require({"sigma3"});
+    if (!table.has("sigma3")) return result;
     for (double sigma3 : confining_stresses(table)) {
         test.sigma3_Pa = sigma3;
         table.check({"maximum_stress", "sigma3"}, [&] {
@@ -287,7 +289,7 @@ TestList read_tests(const JobTable& root, const SpecimenSpec& specimen, const st
                 const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
                 const std::string key =
                     test_name(test) +
-                    (method_of(test).specimen.confined ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
+                    (tells_pressure(test) ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
                 const bool again = !taken.insert(key + " s" + std::to_string(seed)).second;
                 if (again && root.sound({"run"}))
                     table.check({"kind", "sigma3", "seeds"}, [&] {

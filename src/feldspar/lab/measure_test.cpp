@@ -9,6 +9,7 @@
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
 #include "feldspar/lab/disc_splitting.hpp"
+#include "feldspar/lab/hole_failure.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
@@ -68,6 +69,8 @@ TestProperties read_record(const TestResult& result) {
     switch (method_of(result.test).reading) {
         case Reading::disc: p.brazilian = brazilian_failure(result, *peak); return p;
         case Reading::beam: p.bending = bending(result, *peak); return p;
+        case Reading::half_disc: p.bending = half_disc_bending(result, *peak); return p;
+        case Reading::hole: p.hole = hole_failure(result, *peak); return p;
         case Reading::curve: return p;
         case Reading::column: break;
     }

@@ -60,6 +60,11 @@ QuantityPlace bending() {
 }
 
 template <auto member>
+QuantityPlace hole() {
+    return at<&R::properties, &P::hole, member>();
+}
+
+template <auto member>
 QuantityPlace evidence() {
     return at<&R::evidence, member>();
 }
@@ -111,7 +116,9 @@ std::vector<TestQuantity> table() {
     const std::set<TestKind> discs = those([](const TestMethod& m) { return m.reading == Reading::disc; });
     const std::set<TestKind> loaded = those([](const TestMethod& m) { return m.reading == Reading::column; });   // between platens
     const std::set<TestKind> beams = those([](const TestMethod& m) { return m.reading == Reading::beam; });
-    const std::set<TestKind> forces = those([](const TestMethod& m) { return m.reading == Reading::beam || m.reading == Reading::curve; });
+    const std::set<TestKind> notched = those([](const TestMethod& m) { return m.reading == Reading::beam || m.reading == Reading::half_disc; });
+    const std::set<TestKind> holed = those([](const TestMethod& m) { return m.reading == Reading::hole; });
+    const std::set<TestKind> forces = those([](const TestMethod& m) { return m.reading == Reading::beam || m.reading == Reading::half_disc || m.reading == Reading::curve; });
     const std::set<TestKind> compressed = those([](const TestMethod& m) { return m.loading.widens; });
     std::vector<TestQuantity> all;
     const auto add = [&](QuantityGroup group, const std::set<TestKind>& tests, std::vector<TestQuantity> rows) {
@@ -186,11 +193,26 @@ std::vector<TestQuantity> table() {
     add(G::bending, beams, {
         {"flexural_strength", stress, "(P36)", bending<&BendingProperties::flexural_strength_Pa>()},
         {"E_bending", modulus, "(P37), (P39)", bending<&BendingProperties::E_Pa>()},
-        {"K_Ic", toughness, "(P38)", bending<&BendingProperties::K_Ic_Pa_sqrt_m>()},
+    });
+    add(G::bending, notched, {
+        {"K_Ic", toughness, "(P38), (P47)", bending<&BendingProperties::K_Ic_Pa_sqrt_m>()},
         {"work_of_fracture", fracture_work, "(P40)", bending<&BendingProperties::work_of_fracture_J_m2>()},
         {"softening_length", length, "(P40)", bending<&BendingProperties::softening_length_m>()},
         {"crack_path", pure, "(P40)", bending<&BendingProperties::crack_path_over_ligament>()},
+        {"main_crack", pure, "(P40)", bending<&BendingProperties::main_crack_over_ligament>()},
         {"notch", length, "", bending<&BendingProperties::notch_m>()},
+    });
+    add(G::hole, holed, {
+        {"hole_radius", length, "", hole<&HoleProperties::radius_m>()},
+        {"hole_radius_over_grain", pure, "", hole<&HoleProperties::radius_over_grain>()},
+        {"hole_side_factor", pure, "(P49)", hole<&HoleProperties::side_factor>()},
+        {"hole_pole_factor", pure, "(P49)", hole<&HoleProperties::pole_factor>()},
+        {"hole_pole_crack", stress, "(P50)", hole<&HoleProperties::pole_crack_Pa>()},
+        {"hole_side_crack", stress, "(P50)", hole<&HoleProperties::side_crack_Pa>()},
+        {"hole_breakout", stress, "(P51)", hole<&HoleProperties::breakout_Pa>()},
+        {"hole_breakout_side_stress", stress, "(P51)", hole<&HoleProperties::breakout_side_stress_Pa>()},
+        {"hole_depth_at_peak", length, "(P51)", hole<&HoleProperties::depth_at_peak_m>()},
+        {"hole_depth_at_end", length, "(P51)", hole<&HoleProperties::depth_at_end_m>()},
     });
     add(G::cracks, any, {
         {"cracks_tensile", pure, "", count<CrackMode::tensile>(), same, same, "tensile"},

@@ -40,7 +40,7 @@ inline constexpr QuantityUnit pure{"", ""}, stress{"Pa", "MPa", MPa, Dimension::
 
 /// Files list numbers group by group, each in its own order of groups; within a group the order is the same everywhere.
 enum class QuantityGroup {
-    strength, load, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, bending, cracks, pattern, evidence, repeats, balance, energies, steps,
+    strength, load, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, bending, hole, cracks, pattern, evidence, repeats, balance, energies, steps,
     bookkeeping, cost
 };
 

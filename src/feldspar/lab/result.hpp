@@ -140,16 +140,32 @@ struct PostPeak {
     double damping_share = none;    ///< and by damping, into which goes all that breaks in jumps
 };
 
-/// What a bent beam shows (P36)-(P40). Not-a-number where the record or the beam defines none.
+/// What a bent beam shows (P36)-(P40), and a bent half disc (P47), (P48). Not-a-number where the record or the beam defines none.
 struct BendingProperties {
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double E_Pa = none;                   ///< from the deflection of a plain beam (P37), or the opening of a notch's mouth (P39): secant at half the largest load
     double flexural_strength_Pa = none;   ///< of a plain beam (P36)
-    double K_Ic_Pa_sqrt_m = none;         ///< of a notched beam, from the largest load (P38)
+    double K_Ic_Pa_sqrt_m = none;         ///< of a notched beam (P38) or half disc (P47), from the largest load
     double work_of_fracture_J_m2 = none;  ///< of a notched beam: work of the loading over the ligament (P40); of a record that ends below a tenth of the largest load
     double softening_length_m = none;     ///< E Gf / sigma_t^2 of the contacts: K_Ic means something only where it is small beside notch and ligament
     double crack_path_over_ligament = none;   ///< length of all cracks over the ligament's: 1 for one straight crack
+    double main_crack_over_ligament = none;   ///< likewise of the shortest chain of cracks from the notch to the farthest one
     double notch_m = none;                ///< a
+};
+
+/// How a plate with a round hole fails (P49)-(P51). Stresses along the axis are those of the whole plate. Not-a-number where the record shows none.
+struct HoleProperties {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double radius_m = none;
+    double radius_over_grain = none;        ///< over the mean diameter of the grains
+    double side_factor = none;              ///< stress along the edge at the sides over the axial stress, elastic; of a plate with free sides
+    double pole_factor = none;              ///< likewise at the poles
+    double pole_crack_Pa = none;            ///< axial stress at the first tensile crack at a pole
+    double side_crack_Pa = none;            ///< axial stress at the first crack at a side
+    double breakout_Pa = none;              ///< axial stress at which a breakout at a side has become one grain deep
+    double breakout_side_stress_Pa = none;  ///< stress along the edge at the sides then, from the elastic field around the hole
+    double depth_at_peak_m = none;          ///< of the deeper breakout
+    double depth_at_end_m = none;
 };
 
 /// Properties read from one test. Not-a-number where the test does not define one.
@@ -173,7 +189,8 @@ struct TestProperties {
     std::vector<std::string> remarks;     ///< sentences that a reader of the numbers must know
     BrazilianFailure brazilian{};         ///< Brazilian test only
     PostPeak post_peak{};                 ///< not of a Brazilian test
-    BendingProperties bending{};          ///< of a bent beam only
+    BendingProperties bending{};          ///< of a bent beam or half disc only
+    HoleProperties hole{};                ///< of a plate with a hole only
 };
 
 struct TestResult {

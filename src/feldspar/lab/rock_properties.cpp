@@ -42,6 +42,13 @@ RockProperty share(std::string_view name, std::string_view quantity, TestKind ki
     return p;
 }
 
+/// A number that several kinds of test have, of another kind than the one that it is called after.
+RockProperty read_as(std::string_view name, std::string_view quantity, TestKind kind, const char* label, const char* symbol, std::string_view laboratory = {}) {
+    RockProperty p = read(quantity, kind, label, symbol, laboratory);
+    p.name = name;
+    return p;
+}
+
 RockProperty ratio(std::string_view name, std::string_view above, std::string_view below, const std::set<TestKind>& tests) {
     RockProperty p{name, units::pure, fmt::format("Ratio {} / {}", above, below), fmt::format("{}/{}", above, below), "(P11)", Source::ratio, tests};
     p.above = above;
@@ -67,6 +74,7 @@ std::vector<RockProperty> table() {
         strength("BTS", brazilian, "Brazilian tensile strength"),
         read("flexural_strength", three_point_bend, "Flexural strength, three-point bending", "\u03c3f", "flexural_strength"),
         read("K_Ic", three_point_bend, "Fracture toughness, notched three-point bending", "KIc", "K_Ic"),
+        read_as("K_Ic_half_disc", "K_Ic", semi_circular_bend, "Fracture toughness, semi-circular bending", "KIc SCB", "K_Ic"),
         read("E_bending", three_point_bend, "Young's modulus, three-point bending", "E bending", "E"),
         read("work_of_fracture", three_point_bend, "Work of fracture, notched three-point bending", "GF", "work_of_fracture"),
         read("BTS_first_dip", brazilian, "Brazilian test, stress at the first fall of 5 %", "BTS dip", "BTS"),
@@ -83,6 +91,12 @@ std::vector<RockProperty> table() {
         {"mohr_coulomb_tension", stress, "Tensile strength, Mohr-Coulomb line", "\u03c3t M-C", "(P19)"},
         fitted("hoek_brown_UCS", stress, "UCS from the Hoek-Brown fit", "\u03c3ci fit", "(P13)", &EnvelopeFit::hoek_brown_UCS_Pa),
         {"hoek_brown_tension", stress, "Tensile strength, Hoek-Brown parabola", "\u03c3t H-B", "(P19)"},
+        read("hole_side_factor", hole_compression, "Stress at the sides of a hole over the axial stress, elastic", "k side"),
+        read("hole_pole_factor", hole_compression, "Stress at the poles of a hole over the axial stress, elastic", "k pole"),
+        read("hole_pole_crack", hole_compression, "Axial stress at the first tensile crack at a pole of a hole", "\u03c3 pole"),
+        read("hole_side_crack", hole_compression, "Axial stress at the first crack at a side of a hole", "\u03c3 side"),
+        read("hole_breakout", hole_compression, "Axial stress at which a breakout begins", "\u03c3 breakout"),
+        read("hole_breakout_side_stress", hole_compression, "Stress at the sides of a hole when a breakout begins", "\u03c3\u03b8 breakout"),
         in_compression("first_crack", "Stress at the first crack", "\u03c31st"),
         in_compression("sigma_ci_crack_count", "Crack initiation stress, crack count", "\u03c3ci"),
         in_compression("sigma_ci_crack_volume", "Crack initiation stress, crack volumetric strain", "\u03c3ci"),

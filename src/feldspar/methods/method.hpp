@@ -51,6 +51,8 @@ enum class Reading {
     column,   ///< moduli, Poisson's ratio, thresholds and the branch behind the peak of a specimen that is strained evenly
     disc,     ///< how a disc was split
     beam,     ///< flexural strength, modulus and toughness
+    half_disc,   ///< toughness of a notched half disc
+    hole,     ///< stresses, cracks and breakouts at the edge of a round hole
     curve     ///< the largest load alone
 };
 
@@ -58,6 +60,7 @@ enum class Reading {
 struct MethodSpecimen {
     bool own_disc = false;     ///< a disc that the test cuts itself and presses between two plates; else the job's specimen, between platens at its ends
     bool confined = false;     ///< a pressure sigma3 on the sides (and first on all sides), which the job gives
+    bool stands_free = false;  ///< confined, but a job may leave the pressure out
     bool glued = false;        ///< the ends are glued to the platens; else they may slide and come off
     double plate_mu = 0.0;     ///< friction of plates, unless the job gives another
     bool plates = false;       ///< plates or rollers load it whatever its grains are; else only rigid grains and inner particles
@@ -105,7 +108,7 @@ struct TestMethod {
 
 /// One definition a file, named as jobs name the method.
 namespace methods {
-extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom;
+extern const TestMethod uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, semi_circular_bend, hole_compression, custom;
 }
 
 /// The facts of a method.
@@ -117,6 +120,9 @@ inline std::string test_name(const TestSpec& test) { return test.custom.name.emp
 
 /// Whether a pressure acts on the sides of the specimen.
 inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }
+
+/// Whether names of results and tables tell the pressure: of every test that must have one, and of others that have.
+inline bool tells_pressure(const TestSpec& test) { return method_of(test).specimen.confined && (test.sigma3_Pa > 0.0 || !method_of(test).specimen.stands_free); }
 
 /// What the platens do behind the strength unless the job says otherwise. @param adaptive  the numerics can change the speed at all
 inline LoadControl usual_control(TestKind kind, bool adaptive) { return adaptive ? method_of(kind).loading.control : LoadControl::displacement; }

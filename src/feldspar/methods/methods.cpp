@@ -11,7 +11,7 @@ constexpr double tape_Kn_Pa_m = 1.6e12;
 
 const TestMethod& method_of(TestKind kind) {
     for (const TestMethod* method : {&methods::uniaxial_compression, &methods::direct_tension, &methods::biaxial, &methods::brazilian,
-                                     &methods::three_point_bend, &methods::custom})
+                                     &methods::three_point_bend, &methods::semi_circular_bend, &methods::hole_compression, &methods::custom})
         if (method->kind == kind) return *method;
     return methods::uniaxial_compression;   // never: every kind has its method
 }

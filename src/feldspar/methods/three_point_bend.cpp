@@ -1,39 +1,19 @@
 // Three-point bending of a plain or notched beam: flexural strength and modulus, or toughness and work of fracture (ASTM C880, E399; RILEM TC50-FMC).
-#include <cmath>
-
 #include "feldspar/methods/beam.hpp"
 #include "feldspar/methods/method.hpp"
-#include "feldspar/methods/platens.hpp"
+#include "feldspar/methods/rollers.hpp"
 
 namespace feldspar::methods {
 namespace {
 
 constexpr double kRoller = 0.1;         // radius of the rollers over the beam's height
-constexpr double kHolds = 0.4;          // friction of the loading roller, which keeps the beam from sliding away; the supports roll
 
 Beam beam(const MethodInput& in) { return beam_of(in.specimen.outline, in.specimen.spec.thickness_m, in.test); }
 
-FixtureSpec roller(const MethodInput& in, const Beam& b, const char* name, Vec2 at, bool loads) {
-    FixtureSpec roller;
-    roller.name = name;
-    roller.kind = FixtureKind::plate;
-    roller.normal = {0.0, loads ? 1.0 : -1.0};
-    roller.motion = {0.0, loads ? -1.0 : 0.0};
-    roller.radius_m = -in.test.roller_radius_m.value_or(kRoller * b.height_m);
-    roller.axis = at;
-    roller.touch = Touch::nearest_axis;
-    roller.part.facing = roller.normal;
-    roller.part.at = at;
-    roller.part.reach_m = std::abs(roller.radius_m);
-    roller.contact = plate_contact(in);
-    if (!loads) roller.contact.mu = 0.0;
-    return roller;
-}
-
 std::vector<FixtureSpec> rollers(const MethodInput& in) {
     const Beam b = beam(in);
-    return {roller(in, b, "loading roller", {b.middle_m, b.top_m()}, true), roller(in, b, "left support", {b.middle_m - 0.5 * b.span_m, b.bottom_m}, false),
-            roller(in, b, "right support", {b.middle_m + 0.5 * b.span_m, b.bottom_m}, false)};
+    return three_rollers(in, {{b.middle_m, b.top_m()}, {b.middle_m - 0.5 * b.span_m, b.bottom_m}, {b.middle_m + 0.5 * b.span_m, b.bottom_m},
+                              in.test.roller_radius_m.value_or(kRoller * b.height_m)});
 }
 
 // Strain of the outermost fibre in the middle of a plain slender beam: 6 h deflection / S^2.
@@ -79,7 +59,7 @@ const TestMethod three_point_bend{
     .build = {rollers, length_m, section_m2, gauges, {"deflection", "CMOD"}, check},
     .start = {.strained_evenly = false, .stays_in_touch = false, .time_of_mode = true},
     .reading = Reading::beam,
-    .specimen = {.plate_mu = kHolds, .plates = true},
+    .specimen = {.plate_mu = kRollerHolds, .plates = true},
     .loading = {.control = LoadControl::dissipation, .stop_fraction = 0.1, .tensile = true},
     .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 150.0, .seconds = 60.0, .fixed_speed_strain = 2e-3},
     .verdict = {.error_a = 1e-2, .imbalance_a = 2e-2, .imbalance_b = 4e-2},

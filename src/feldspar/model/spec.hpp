@@ -63,7 +63,7 @@ struct NumericsSpec {
 
 enum class PlateShape { flat, curved };   ///< of the plates of a Brazilian test; curved: the jaws of ISRM
 
-enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, custom };
+enum class TestKind { uniaxial_compression, direct_tension, biaxial, brazilian, three_point_bend, semi_circular_bend, hole_compression, custom };
 
 /// What the loading keeps constant behind the strength: its own speed, the growth of the lateral strain, of the dissipated energy, or of a gauge.
 enum class LoadControl { displacement, lateral_strain, dissipation, gauge };
@@ -85,7 +85,7 @@ struct GaugeStop {
 
 struct TestSpec {
     TestKind kind = TestKind::uniaxial_compression;
-    double sigma3_Pa = 0.0;              ///< biaxial only
+    double sigma3_Pa = 0.0;              ///< tests with a pressure on the sides only
     double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
     LoadControl control = LoadControl::displacement;   ///< behind the strength; jobs: that of the method unless said; lateral strain: compression only
     double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)
@@ -115,7 +115,7 @@ inline constexpr std::array numerics_kinds{NumericsKind::adaptive, NumericsKind:
 inline constexpr std::array plate_shapes{PlateShape::flat, PlateShape::curved};
 inline constexpr std::array load_controls{LoadControl::displacement, LoadControl::lateral_strain, LoadControl::dissipation};   // and gauges, by their names
 inline constexpr std::array test_kinds{TestKind::uniaxial_compression, TestKind::direct_tension, TestKind::biaxial, TestKind::brazilian,
-                                       TestKind::three_point_bend, TestKind::custom};
+                                       TestKind::three_point_bend, TestKind::semi_circular_bend, TestKind::hole_compression, TestKind::custom};
 
 inline const char* name(TestKind kind) {
     switch (kind) {
@@ -124,6 +124,8 @@ inline const char* name(TestKind kind) {
         case TestKind::biaxial: return "biaxial";
         case TestKind::brazilian: return "brazilian";
         case TestKind::three_point_bend: return "three-point-bend";
+        case TestKind::semi_circular_bend: return "semi-circular-bend";
+        case TestKind::hole_compression: return "hole-compression";
         case TestKind::custom: return "custom";
     }
     return "?";

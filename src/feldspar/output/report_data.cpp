@@ -150,7 +150,8 @@ Json test_json(const TestResult& result, std::size_t tests) {
     add(test, result, QuantityGroup::first_crack);
     const Reading reading = method_of(result.test).reading;
     if (reading == Reading::disc) test["brazilian"] = brazilian_json(result);
-    if (reading == Reading::beam) add(test["bending"], result, QuantityGroup::bending);
+    if (reading == Reading::beam || reading == Reading::half_disc) add(test["bending"], result, QuantityGroup::bending);
+    if (reading == Reading::hole) add(test["hole"], result, QuantityGroup::hole);
     test["gauges"] = gauges_json(result, tests);
     add(test["post_peak"], result, QuantityGroup::post_peak);
     add(test, result, QuantityGroup::elastic);

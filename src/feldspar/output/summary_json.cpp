@@ -88,9 +88,12 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
         Json& disc = test["brazilian"] = {{"plates", name(result.test.plates)}};
         add(disc, result, QuantityGroup::brazilian);
         if (result.specimen && result.specimen->outline.flattened()) add(disc, result, QuantityGroup::flattened);
-    } else if (reading == Reading::beam) {
+    } else if (reading == Reading::beam || reading == Reading::half_disc) {
         Json& beam = test["bending"] = {{"control", control_of(result.test)}};
         add(beam, result, QuantityGroup::bending);
+    } else if (reading == Reading::hole) {
+        Json& hole = test["hole"] = {{"control", control_of(result.test)}};
+        add(hole, result, QuantityGroup::hole);
     } else if (reading == Reading::curve) {
         test["control"] = control_of(result.test);
     } else {
@@ -98,7 +101,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
         add(branch, result, QuantityGroup::post_peak);
     }
     if (!result.gauges.empty()) test["gauges"] = gauges_json(result);
-    if (method_of(result.test).start.strained_evenly)   // else there is no such modulus, and no threshold
+    if (method_of(result.test).start.strained_evenly && reading != Reading::hole)   // else there is no such modulus, and no threshold
         for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage}) add(test, result, group);
     for (const QuantityGroup group : {QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
         add(test, result, group);

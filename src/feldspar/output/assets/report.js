@@ -195,12 +195,23 @@ function gaugeSeries(tests, chosen, g) {
     line(t, {label: "packing " + t.seed, color: "ink", width: 2.2})];
 }
 
-/** What a bent beam shows, in words. */
+/** What a plate with a hole shows, in words. */
+function addHole(t, add) {
+  const k = t.hole;
+  add("Hole", "radius " + show(k.hole_radius) + " mm, " + show(k.hole_radius_over_grain, 2) + " mean grains");
+  if (k.hole_side_factor !== null) add("Stress at its edge, elastic", show(k.hole_side_factor) + " times the axial stress at the sides, " + show(k.hole_pole_factor) + " at the poles");
+  if (k.hole_pole_crack !== null) add("First tensile crack at a pole", "axial stress " + show(k.hole_pole_crack, 4) + " MPa");
+  if (k.hole_side_crack !== null) add("First crack at a side", "axial stress " + show(k.hole_side_crack, 4) + " MPa");
+  if (k.hole_breakout !== null) add("Breakout, one grain deep", "axial stress " + show(k.hole_breakout, 4) + " MPa, at the sides " + show(k.hole_breakout_side_stress, 4) + " MPa");
+  add("Depth of the breakout", show(k.hole_depth_at_peak, 2) + " mm at the largest stress, " + show(k.hole_depth_at_end, 2) + " mm at the end");
+}
+
+/** What a bent beam or half disc shows, in words. */
 function addBending(t, add) {
   const b = t.bending;
-  if (b.flexural_strength !== null) add("Flexural strength", show(b.flexural_strength, 4) + " MPa");
+  if (b.flexural_strength != null) add("Flexural strength", show(b.flexural_strength, 4) + " MPa");
   if (b.K_Ic !== null) add("Fracture toughness KIc", show(b.K_Ic) + " MPa\u00a0m\u00bd, from the largest load; notch " + show(b.notch) + " mm, softening length " + show(b.softening_length, 2) + " mm");
-  if (b.E_bending !== null) add("E, secant at 50 %", show(b.E_bending) + " GPa, from the " + (b.notch > 0 ? "opening of the notch" : "deflection"));
+  if (b.E_bending != null) add("E, secant at 50 %", show(b.E_bending) + " GPa, from the " + (b.notch > 0 ? "opening of the notch" : "deflection"));
   if (b.work_of_fracture !== null) add("Work of fracture", show(b.work_of_fracture) + " J/m\u00b2 of the ligament; all cracks are " + show(b.crack_path, 2) + " times as long as it");
 }
 
@@ -246,6 +257,7 @@ function testFacts(tests, updates) {
     if (t.peak_load !== null) add("Largest load", show(t.peak_load, 4) + " kN");
     add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^./, (c) => c.toLowerCase()) : ""));
     if (t.bending) addBending(t, add);
+    if (t.hole) addHole(t, add);
     for (const gauge of t.gauges) add("Gauge " + gauge.name, gauge.meaning);
     if (t.section_width !== null) add("Section", show(t.section_width) + " mm wide");
     for (const remark of t.remarks) add("Note", remark);
