@@ -28,7 +28,7 @@ Elastic elastic(const SpecimenSpec& spec, double span_m, const ModelSpec& model,
     TestSetup s = fixtures::setup(fixtures::make(spec, seed), methods::three_point_bend);
     s.model = model;
     s.contact = contact;
-    s.test.span_m = span_m;
+    s.test.own["span"] = {span_m};
     const RunControl control = fixtures::threads(2);
     Experiment e(s, control);
     choose_step(e);
@@ -55,7 +55,7 @@ TEST(Bending, DeflectionIsThatOfAShortBeam) {   // (P37)
     for (const double span : {kSpan, 6.0 * kHeight}) {
         const Elastic e = elastic(beam(0.0, span), span, {}, fixtures::table7());
         TestSpec test;
-        test.span_m = span;
+        test.own["span"] = {span};
         const Beam b = beam_of(make_outline(beam(0.0, span).outline), 0.08, test);
             EXPECT_NEAR(e.load_N / e.deflection_m * deflection_factor(b, 0.23) / 0.08 / E, 1.0, 0.03);
         EXPECT_NEAR(e.imbalance, 0.0, 1e-3);

@@ -21,6 +21,7 @@ enum class Dimension {
     time,                ///< [s]
     angle,               ///< [rad] deg, degree or rad
     force,               ///< [N]
+    energy,              ///< [J]
     toughness,           ///< [Pa sqrt(m)] fracture toughness: "0.9 MPa m^0.5", also "MPa sqrt(m)" and "MPa m1/2"
     fraction,            ///< [1] "0.5 %"; a bare number is taken as it stands
 };

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <sstream>
+#include <utility>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/keys.hpp"
@@ -118,6 +120,7 @@ std::string head_for(const TestMethod& method) {
         const std::size_t at = head.find(line);
         head.replace(at, head.find('\n', at) - at, by);
     };
+    replace("shape = \"rectangle\"", method.job.shape);
     replace("width = \"80 mm\"", method.job.width);
     replace("height = \"160 mm\"", method.job.height);
     return head;

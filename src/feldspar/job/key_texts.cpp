@@ -44,6 +44,7 @@ std::string_view unit_of(const KeyValue& value) {
         case Dimension::time: return "s";
         case angle: return "deg";
         case force: return "kN";
+        case energy: return "J";
         case toughness: return "MPa m^0.5";
         case fraction: break;
     }

@@ -355,7 +355,7 @@ std::vector<JobKey> test_keys() {
     const TestSpec spec;
     std::vector<JobKey> keys{
         {"kind", choice_of(test_methods()), needed, "the method"},
-        {"sigma3", one_or_list_of(quantity(stress, confining)), must, "pressure on the sides; a list stands for one test each, or for the rising pressures of one multi-stage test", methods_that_are(confined)},
+        {"sigma3", one_or_list_of(quantity(stress, confining)), words("must be given; a plate with a hole has free sides without it"), "pressure on the sides; a list stands for one test each, or for the rising pressures of one multi-stage test", methods_that_are(confined)},
         {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
         {"specimen", table("test.specimen"), words("the job's"), "a specimen of the test's own, of the same grains and thickness: an outline with holes, notches and labels", methods_that_are(uses_specimen)},
         {"disc", choice_of(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
@@ -415,7 +415,7 @@ std::vector<JobKey> test_keys() {
 std::vector<JobKey> until_keys() {
     return {
         {"gauge", text("the name of a gauge"), needed, "a gauge of the method or of the test"},
-        {"at", quantity(length, any_value), needed, "the test ends when the gauge has reached this: a length, of a force gauge a force, of a strain gauge a fraction"},
+        {"at", quantity(length, any_value), needed, "the test ends when the gauge has reached this: a length, of a force gauge a force, of a stress gauge a stress, of an energy gauge an energy, of a strain gauge a fraction"},
     };
 }
 
@@ -467,16 +467,27 @@ std::vector<JobKey> fixture_keys() {
 }
 
 std::vector<JobKey> gauge_keys() {
-    const KeyCondition between = with("kind", {GaugeForm::extension, GaugeForm::strain});
+    const KeyCondition between = with("kind", {GaugeForm::extension, GaugeForm::strain}), means = with("kind", {GaugeForm::mean_stress, GaugeForm::mean_strain}),
+                       round = with("kind", {GaugeForm::mean_stress, GaugeForm::mean_strain, GaugeForm::hole_stress});
     return {
         {"name", text("1 to 40 letters, digits, '_' and '-'"), needed, "its column in the results; `control` and `until` may name it"},
         {"kind", choice_of(gauge_forms), needed,
-         "`\"extension\"`: by how much two points move apart; `\"strain\"`: the same over their distance; `\"displacement\"` of a point; `\"force\"` on a fixture"},
+         "`\"extension\"`: by how much two points move apart; `\"strain\"`: the same over their distance; `\"displacement\"` of a point; `\"force\"` on a fixture; `\"mean-stress\"` and "
+         "`\"mean-strain\"` in a region, and `\"hole-stress\"` along the edge of a round hole, compression positive; `\"energy\"` of the whole test "
+         "([definitions](theory/properties.md))"},
         {"from", point(), must, "first point", between},
         {"to", point(), must, "second point", between},
         {"at", point(), must, "the point", with("kind", {GaugeForm::displacement})},
         {"fixture", text("the name of a fixture"), must, "the fixture", with("kind", {GaugeForm::force})},
-        {"direction", direction(), must, "x and y of the direction in which it reads", with("kind", {GaugeForm::displacement, GaugeForm::force})},
+        {"box", pairs_of(quantity(length, any_value), quantity(length, any_value)), words("`box`, or `centre` and `radius`, must be given"), "the region: a box, by two opposite corners", means},
+        {"centre", point(), words("of a hole it must be given"), "centre of the region, a circle, or of the hole", round},
+        {"radius", quantity(length), words("of a hole it must be given"), "radius of the region or of the hole", round},
+        {"direction", direction(), must, "x and y of the direction in which it reads; of a hole: from its centre to the place on its edge",
+         with("kind", {GaugeForm::displacement, GaugeForm::force, GaugeForm::mean_stress, GaugeForm::mean_strain, GaugeForm::hole_stress})},
+        {"normal", direction(), words("`direction`: a normal component"),
+         "x and y of the normal of the plane on which the component along `direction` is read; one across `direction` gives a shear stress or strain", means},
+        {"term", choice(energy_terms), must, "a term of the energy balance ([theory](theory/loading.md)); `\"supplied\"`: by the loading, `\"elastic\"`: in grains and contacts",
+         with("kind", {GaugeForm::energy})},
     };
 }
 

@@ -73,6 +73,32 @@ FixtureSpec read_fixture(const JobTable& table) {
     return fixture;
 }
 
+// A box by its corners, or a circle.
+GaugeRegion read_region(const JobTable& table) {
+    GaugeRegion region;
+    if (table.has("box") == (table.has("centre") || table.has("radius"))) {
+        table.check({"box", "centre", "radius"}, [&] {
+            if (table.has("box")) table.fail("box", "given beside centre and radius", "one region: box, or centre and radius");
+            table.fail("box", "missing key: box (or centre and radius: the region)", "box = [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]], or centre and radius");
+        });
+        return region;
+    }
+    if (!table.has("box")) {
+        table.require({"centre", "radius"});
+        region.a = table.point("centre");
+        region.radius_m = table.quantity("radius");
+        return region;
+    }
+    std::vector<Vec2> corners;
+    table.pairs("box", "a corner", "two opposite corners: [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]]", [&](const toml::node& x, const toml::node& y) { corners.push_back({table.first_of(x, "box"), table.second_of(y, "box")}); });
+    table.check({"box"}, [&] {
+        if (corners.size() != 2 || corners[0].x == corners[1].x || corners[0].y == corners[1].y) table.fail("box", "is no box", "two opposite corners, such as [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]]");
+        region.a = corners[0];
+        region.b = corners[1];
+    });
+    return region;
+}
+
 GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
     GaugeSpec gauge;
     table.require({"name", "kind"});
@@ -96,6 +122,36 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
             gauge.kind = strain ? GaugeKind::strain : GaugeKind::displacement;
             gauge.points = {{to, weight}, {from, -weight}};
             gauge.meaning = strain ? "extension between two points over their distance" : "by how much two points have moved apart";
+            break;
+        }
+        case GaugeForm::mean_stress:
+        case GaugeForm::mean_strain: {
+            const bool stress = form == GaugeForm::mean_stress;
+            gauge.kind = stress ? GaugeKind::mean_stress : GaugeKind::mean_strain;
+            gauge.region = read_region(table);
+            gauge.direction = read_direction(table, "direction", true);
+            if (table.has("normal")) gauge.normal = read_direction(table, "normal", true);
+            gauge.meaning = stress ? "mean stress in a region, compression positive" : "mean strain in a region, compression positive";
+            break;
+        }
+        case GaugeForm::hole_stress: {
+            gauge.kind = GaugeKind::hole_stress;
+            table.require({"centre", "radius"});
+            gauge.region.a = table.point("centre");
+            gauge.region.radius_m = table.quantity("radius");
+            gauge.points = {{gauge.region.a + gauge.region.radius_m * read_direction(table, "direction", true), {}}};
+            gauge.meaning = "stress along the edge of a round hole, from the elastic field around it, compression positive";
+            break;
+        }
+        case GaugeForm::energy: {
+            gauge.kind = GaugeKind::energy;
+            gauge.term = table.choice("term", energy_terms);
+            gauge.meaning = gauge.term == EnergyTerm::supplied   ? "energy supplied by the loading"
+                            : gauge.term == EnergyTerm::elastic  ? "elastic energy in grains and contacts"
+                            : gauge.term == EnergyTerm::fracture ? "energy dissipated by fracture"
+                            : gauge.term == EnergyTerm::friction ? "energy dissipated by friction"
+                            : gauge.term == EnergyTerm::damping  ? "energy dissipated by numerical damping"
+                                                                 : "kinetic energy";
             break;
         }
         case GaugeForm::displacement:
@@ -191,9 +247,19 @@ void read_until(const JobTable& table, TestSpec& test) {
 }  // namespace
 
 Dimension dimension_of_gauge(const TestSpec& test, std::string_view gauge) {
-    for (const GaugeSpec& spec : test.custom.gauges)
-        if (spec.name == gauge) return spec.kind == GaugeKind::displacement ? Dimension::length : spec.kind == GaugeKind::force ? Dimension::force : Dimension::fraction;
-    return Dimension::length;   // those of methods are all displacements
+    for (const GaugeSpec& spec : test.custom.gauges) {
+        if (spec.name != gauge) continue;
+        switch (spec.kind) {
+            case GaugeKind::displacement: return Dimension::length;
+            case GaugeKind::force: return Dimension::force;
+            case GaugeKind::mean_stress:
+            case GaugeKind::hole_stress: return Dimension::stress;
+            case GaugeKind::energy: return Dimension::energy;
+            case GaugeKind::strain:
+            case GaugeKind::mean_strain: return Dimension::fraction;
+        }
+    }
+    return method_of(test).reading == Reading::hole ? Dimension::stress : Dimension::length;   // of other methods all are displacements
 }
 
 std::vector<std::string_view> gauge_names(const TestSpec& test) {

@@ -261,8 +261,10 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
         read_pressures(table, confining_stresses(table), test);
         return {test};
     }
-    if (!method.specimen.confined) return {test};
+    if (!method.specimen.confined || (method.specimen.stands_free && !table.has("sigma3"))) return {test};
     std::vector<TestSpec> tests;
+    table.require({"sigma3"});
+    if (!table.has("sigma3")) return tests;
     for (double sigma3 : confining_stresses(table)) {
         test.sigma3_Pa = sigma3;
         table.check({"maximum_stress", "sigma3"}, [&] {
@@ -323,7 +325,7 @@ std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& speci
                 const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
                 const std::string key =
                     test_name(test) +
-                    (method_of(test).specimen.confined ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
+                    (tells_pressure(test) ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
                 const bool again = !taken.insert(key + " s" + std::to_string(seed)).second;
                 if (again && root.sound({"run"}))
                     table.check({"kind", "sigma3", "seeds"}, [&] {

@@ -262,17 +262,42 @@ void write_fixture(Lines& out, const FixtureSpec& fixture) {
     flag("glued", fixture.contact.glued);
 }
 
+GaugeForm form_of(const GaugeSpec& gauge) {
+    switch (gauge.kind) {
+        case GaugeKind::force: return GaugeForm::force;
+        case GaugeKind::strain: return GaugeForm::strain;
+        case GaugeKind::mean_stress: return GaugeForm::mean_stress;
+        case GaugeKind::mean_strain: return GaugeForm::mean_strain;
+        case GaugeKind::hole_stress: return GaugeForm::hole_stress;
+        case GaugeKind::energy: return GaugeForm::energy;
+        case GaugeKind::displacement: break;
+    }
+    return gauge.points.size() == 2 ? GaugeForm::extension : GaugeForm::displacement;
+}
+
+void write_circle(Lines& out, const GaugeRegion& region) {
+    out.raw("centre", point(region.a));
+    out.quantity("radius", region.radius_m);
+}
+
 void write_gauge(Lines& out, const GaugeSpec& gauge) {
     out.head("test.gauge");
     out.word("name", gauge.name);
-    const GaugeForm form = gauge.kind == GaugeKind::force    ? GaugeForm::force
-                           : gauge.kind == GaugeKind::strain ? GaugeForm::strain
-                           : gauge.points.size() == 2        ? GaugeForm::extension
-                                                             : GaugeForm::displacement;
+    const GaugeForm form = form_of(gauge);
     out.word("kind", name(form));
     if (form == GaugeForm::force) {
         out.word("fixture", gauge.fixture);
         out.raw("direction", direction(gauge.direction));
+    } else if (form == GaugeForm::energy) {
+        out.word("term", name(gauge.term));
+    } else if (form == GaugeForm::hole_stress) {
+        write_circle(out, gauge.region);
+        out.raw("direction", direction((1.0 / gauge.region.radius_m) * (gauge.points.front().at - gauge.region.a)));
+    } else if (form == GaugeForm::mean_stress || form == GaugeForm::mean_strain) {
+        if (gauge.region.radius_m > 0.0) write_circle(out, gauge.region);
+        else out.raw("box", "[" + point(gauge.region.a) + ", " + point(gauge.region.b) + "]");
+        out.raw("direction", direction(gauge.direction));
+        if (gauge.normal != Vec2{}) out.raw("normal", direction(gauge.normal));
     } else if (form == GaugeForm::displacement) {
         out.raw("at", point(gauge.points.front().at));
         out.raw("direction", direction(gauge.points.front().weight));
@@ -327,7 +352,7 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
         std::vector<std::string> pressures{si(test.sigma3_Pa, Dimension::stress)};
         for (const double sigma3_Pa : test.later_sigma3_Pa) pressures.push_back(si(sigma3_Pa, Dimension::stress));
         out.raw("sigma3", list(pressures));
-    } else if (method_of(test).specimen.confined) {
+    } else if (tells_pressure(test)) {
         out.quantity("sigma3", test.sigma3_Pa);
     }
     for (const MethodKey& key : method_of(test).keys) write_method_key(out, test, key);

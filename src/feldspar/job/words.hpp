@@ -67,14 +67,19 @@ inline const char* name(StageForm form) {
 }
 
 /// What a gauge of a custom test reads.
-enum class GaugeForm { extension, strain, displacement, force };
-inline constexpr std::array gauge_forms{GaugeForm::extension, GaugeForm::strain, GaugeForm::displacement, GaugeForm::force};
+enum class GaugeForm { extension, strain, displacement, force, mean_stress, mean_strain, hole_stress, energy };
+inline constexpr std::array gauge_forms{GaugeForm::extension, GaugeForm::strain, GaugeForm::displacement, GaugeForm::force,
+                                        GaugeForm::mean_stress, GaugeForm::mean_strain, GaugeForm::hole_stress, GaugeForm::energy};
 inline const char* name(GaugeForm form) {
     switch (form) {
         case GaugeForm::extension: return "extension";
         case GaugeForm::strain: return "strain";
         case GaugeForm::displacement: return "displacement";
         case GaugeForm::force: return "force";
+        case GaugeForm::mean_stress: return "mean-stress";
+        case GaugeForm::mean_strain: return "mean-strain";
+        case GaugeForm::hole_stress: return "hole-stress";
+        case GaugeForm::energy: return "energy";
     }
     return "?";
 }

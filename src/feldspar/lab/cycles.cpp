@@ -153,7 +153,7 @@ std::vector<CycleProperties> cycles_of(const TestResult& result) {
         if (cycle.unloading) {
             unloaded_from_Pa = of.stress(result.stages[*cycle.unloading].first_row);
             if (std::isfinite(p.permanent_volumetric_strain)) {
-                damage += permanent_before - p.permanent_volumetric_strain;   // (P43): dilation counts
+                damage += permanent_before - p.permanent_volumetric_strain;   // (P54): dilation counts
                 permanent_before = p.permanent_volumetric_strain;
                 p.damage = damage;
             }

@@ -1,4 +1,4 @@
-// Cycles of loading and unloading: moduli, permanent strains and damage (docs/theory/properties.md, (P41)-(P43)).
+// Cycles of loading and unloading: moduli, permanent strains and damage (docs/theory/properties.md, (P52)-(P54)).
 #pragma once
 
 #include <vector>

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/geometry/overlap.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/lab/grain_fields.hpp"
 #include "feldspar/step/step.hpp"
 
 namespace feldspar {
@@ -96,9 +98,53 @@ int grain_of_triangle(const GrainMesh& mesh, int triangle) {
     return static_cast<int>(behind - mesh.triangle_begin.begin()) - 1;
 }
 
+// The region as a polygon: a circle has the area of its polygon, 0.1 % less with as many corners.
+std::vector<Vec2> corners_of(const GaugeRegion& region) {
+    if (region.radius_m == 0.0) {
+        const Box box = bounding_box(std::array{region.a, region.b});
+        return {box.lower, {box.upper.x, box.lower.y}, box.upper, {box.lower.x, box.upper.y}};
+    }
+    constexpr int corners = 96;
+    std::vector<Vec2> circle;
+    for (int k = 0; k < corners; ++k) circle.push_back(region.a + turned({region.radius_m, 0.0}, 2.0 * M_PI * k / corners));
+    return circle;
+}
+
+bool contains(const GaugeRegion& region, Vec2 place) {
+    if (region.radius_m > 0.0) return norm(place - region.a) <= region.radius_m;
+    const Box box = bounding_box(std::array{region.a, region.b});
+    return place.x >= box.lower.x && place.x <= box.upper.x && place.y >= box.lower.y && place.y <= box.upper.y;
+}
+
+std::array<Vec2, 3> corners_of(const GrainMesh& mesh, int triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return {mesh.nodes[a], mesh.nodes[b], mesh.nodes[c]};
+}
+
+// Flexible grains have a stress in every triangle, others one a grain.
+bool has_triangles(const Assembly& assembly) { return !assembly.node_of_mesh.empty(); }
+
+Vec2 normal_of(const GaugeSpec& gauge) { return gauge.normal == Vec2{} ? gauge.direction : gauge.normal; }
+
+double value_of(EnergyTerm term, const EnergyLedger& energy) {
+    switch (term) {
+        case EnergyTerm::supplied: return energy.supplied();
+        case EnergyTerm::elastic: return energy.elastic_grains + energy.elastic_contacts;
+        case EnergyTerm::fracture: return energy.fracture;
+        case EnergyTerm::friction: return energy.friction;
+        case EnergyTerm::damping: return energy.damping;
+        case EnergyTerm::kinetic: return energy.kinetic;
+    }
+    return 0.0;
+}
+
+[[noreturn]] void too_little_rock(const GaugeSpec& gauge, const char* what, const char* allowed) {
+    throw InputError({.key = "gauge"}, fmt::format("the region of the gauge \"{}\" {}", gauge.name, what), allowed);
+}
+
 }  // namespace
 
-Gauges::Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs) : specs_(std::move(specs)) {
+Gauges::Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs) : specs_(std::move(specs)), mesh_(&specimen.mesh) {
     for (const GaugeSpec& gauge : specs_) {
         int fixture = -1;
         if (gauge.kind == GaugeKind::force) {
@@ -107,9 +153,20 @@ Gauges::Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<G
                 throw InputError({.key = "gauge"}, fmt::format("the gauge \"{}\" reads the fixture \"{}\", which the test does not have", gauge.name, gauge.fixture));
             fixture = static_cast<int>(found - assembly.fixtures.begin());
         }
-        for (const GaugePoint& point : gauge.points) add_point(assembly, specimen, gauge, point);
+        switch (gauge.kind) {
+            case GaugeKind::displacement:
+            case GaugeKind::strain:
+                for (const GaugePoint& point : gauge.points) add_point(assembly, specimen, gauge, point);
+                break;
+            case GaugeKind::mean_stress: add_mean_stress(assembly, specimen.mesh, gauge); break;
+            case GaugeKind::mean_strain: add_mean_strain(assembly, gauge); break;
+            case GaugeKind::hole_stress: add_hole_stress(assembly, specimen.mesh, gauge); break;
+            case GaugeKind::force:
+            case GaugeKind::energy: break;
+        }
         fixture_of_.push_back(fixture);
         ends_.push_back(terms_.size());
+        stress_ends_.push_back(stress_terms_.size());
     }
 }
 
@@ -141,16 +198,139 @@ void Gauges::add_point(const Assembly& assembly, const Specimen& specimen, const
     terms_.push_back({rigid.centre_node + 1, {dot(point.weight, rot90(arm)) / rigid.radius_m, 0.0}});
 }
 
-std::vector<double> Gauges::read(const Assembly& assembly) const {
+// (P41): every triangle counts with the part of it that lies in the region.
+void Gauges::add_mean_stress(const Assembly& assembly, const GrainMesh& mesh, const GaugeSpec& gauge) {
+    const std::vector<Vec2> region = corners_of(gauge.region);
+    const Box box = bounding_box(region);
+    std::vector<StressTerm> terms;
+    double area = 0.0;
+    for (int t = 0; t < std::ssize(mesh.triangles); ++t) {
+        const std::array<Vec2, 3> triangle = corners_of(mesh, t);
+        const Box around = bounding_box(triangle);
+        if (around.lower.x > box.upper.x || around.upper.x < box.lower.x || around.lower.y > box.upper.y || around.upper.y < box.lower.y) continue;
+        const double part = overlap_area(triangle, region);
+        if (!(part > 0.0)) continue;
+        area += part;
+        const Vec2 d = gauge.direction, n = normal_of(gauge);
+        const double mixed = 0.5 * part * (d.x * n.y + d.y * n.x);
+        terms.push_back({has_triangles(assembly) ? t : grain_of_triangle(mesh, t), {part * d.x * n.x, mixed, mixed, part * d.y * n.y}});
+    }
+    if (!(area > 0.0)) too_little_rock(gauge, "has no rock in it", "a region that lies in the specimen, at least in part");
+    for (StressTerm& term : terms) term.weight = {term.weight.xx / area, term.weight.xy / area, term.weight.yx / area, term.weight.yy / area};
+    add_stress(assembly, mesh, std::move(terms));
+}
+
+// (P46): of the linear field of displacements that fits the centres of the grains, or inner particles, in the region.
+void Gauges::add_mean_strain(const Assembly& assembly, const GaugeSpec& gauge) {
+    std::vector<int> nodes;
+    std::vector<Vec2> points;
+    for (const Body& body : assembly.bodies) {
+        const Vec2 centre = assembly.nodes.reference[body.centre_node];
+        if (body.kind == BodyKind::plate || !contains(gauge.region, centre)) continue;
+        nodes.push_back(body.centre_node);
+        points.push_back(centre);
+    }
+    constexpr std::size_t least = 3;
+    if (points.size() < least) too_little_rock(gauge, "has fewer than three grains in it", "a region over several grains");
+    const Box box = bounding_box(points);
+    const SlopeWeights slopes = slope_weights(points, norm(box.upper - box.lower));
+    const Vec2 d = gauge.direction, n = normal_of(gauge);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Vec2 slope = {slopes.x[i], slopes.y[i]};
+        terms_.push_back({nodes[i], -0.5 * (dot(slope, n) * d + dot(slope, d) * n)});
+    }
+}
+
+// (P43), (P44): of the elastic fields around the hole that fit the stresses within one radius of its edge.
+void Gauges::add_hole_stress(const Assembly& assembly, const GrainMesh& mesh, const GaugeSpec& gauge) {
+    constexpr double kReach = 2.0;        // of the rock that is looked at, over the radius
+    constexpr std::size_t kEnough = 40;   // grains that determine all fields; the uniform ones alone take fewer
+    const Vec2 centre = gauge.region.a;
+    const double radius = gauge.region.radius_m;
+    std::vector<StressSample> samples;
+    std::size_t grains = 0;
+    for (int g = 0; g < std::ssize(mesh.vertex_count); ++g) {
+        const double distance = norm(mesh.nodes[mesh.centre_node[g]] - centre);
+        if (distance <= 0.9 * radius || distance > kReach * radius) continue;
+        ++grains;
+        for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) {
+            const auto [a, b, c] = corners_of(mesh, t);
+            const double third = cross(b - a, c - a) / 6.0;
+            for (const Vec2 middle : {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
+                Vec2 place = middle - centre;
+                if (norm(place) < radius) place = (radius / norm(place)) * place;   // chords cut into the circle
+                samples.push_back({has_triangles(assembly) ? t : g, third, place});
+            }
+        }
+    }
+    const std::vector<StressField> fields = fields_around_hole(radius, grains < kEnough);
+    std::vector<double> wanted;
+    for (const StressField& field : fields) {
+        double mean = 0.0;
+        for (const GaugePoint& point : gauge.points) {
+            const Vec2 out = (1.0 / norm(point.at - centre)) * (point.at - centre), along = rot90(out);
+            mean += dot(along, field(radius * out) * along) / static_cast<double>(gauge.points.size());
+        }
+        wanted.push_back(mean);
+    }
+    std::vector<StressTerm> terms = fitted_value(samples, fields, wanted);
+    if (terms.empty()) too_little_rock(gauge, "has too few grains around it", "a round hole of the specimen, of several grains' diameter");
+    add_stress(assembly, mesh, std::move(terms));
+}
+
+// Of grains without triangles the terms of a grain are put together, for the sums of (P42).
+void Gauges::add_stress(const Assembly& assembly, const GrainMesh& mesh, std::vector<StressTerm> terms) {
+    if (has_triangles(assembly)) {
+        stress_terms_.insert(stress_terms_.end(), terms.begin(), terms.end());
+        return;
+    }
+    std::size_t first = stress_terms_.size();
+    for (const StressTerm& term : terms) {
+        if (stress_terms_.size() == first || stress_terms_.back().cell != term.cell) stress_terms_.push_back({term.cell, {}});
+        Mat2& sum = stress_terms_.back().weight;
+        sum = {sum.xx + term.weight.xx, sum.xy + term.weight.xy, sum.yx + term.weight.yx, sum.yy + term.weight.yy};
+    }
+    for (; first < stress_terms_.size(); ++first) {
+        StressTerm& term = stress_terms_[first];
+        const std::span corners(mesh.nodes.begin() + mesh.node_begin[term.cell], static_cast<std::size_t>(mesh.vertex_count[term.cell]));
+        const double volume = signed_area(corners) * assembly.thickness_m;
+        term.weight = {term.weight.xx / volume, term.weight.xy / volume, term.weight.yx / volume, term.weight.yy / volume};
+    }
+}
+
+double Gauges::stress_sum(const Assembly& assembly, std::size_t begin, std::size_t end, std::span<const Mat2> of_grains) const {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+        const auto& [cell, w] = stress_terms_[i];
+        const Mat2 s = of_grains.empty() ? cauchy_stress(assembly.elasticity, displacement_gradient(assembly.nodes.displacement, assembly.triangles[cell])) : of_grains[cell];
+        sum += w.xx * s.xx + w.xy * s.xy + w.yx * s.yx + w.yy * s.yy;
+    }
+    return sum;
+}
+
+std::vector<double> Gauges::read(const Assembly& assembly, const EnergyLedger& energy) const {
     std::vector<double> values;
     values.reserve(specs_.size());
-    std::size_t term = 0;
+    std::vector<Mat2> of_grains;
+    if (!stress_terms_.empty() && !has_triangles(assembly)) {
+        of_grains.resize(mesh_->vertex_count.size());
+        sum_grain_moments(assembly, *mesh_, of_grains);
+    }
+    std::size_t term = 0, stress = 0;
     for (std::size_t g = 0; g < specs_.size(); ++g) {
         double sum = fixture_of_[g] >= 0 ? dot(reaction(assembly, assembly.fixtures[fixture_of_[g]]), specs_[g].direction) : 0.0;
         for (; term < ends_[g]; ++term) sum += dot(terms_[term].weight, assembly.nodes.displacement[terms_[term].node]);
+        if (stress < stress_ends_[g]) sum -= stress_sum(assembly, stress, stress_ends_[g], of_grains);   // compression positive
+        stress = stress_ends_[g];
         values.push_back(sum);
     }
+    read_energies(energy, values);
     return values;
+}
+
+void Gauges::read_energies(const EnergyLedger& energy, std::span<double> values) const {
+    for (std::size_t g = 0; g < specs_.size(); ++g)
+        if (specs_[g].kind == GaugeKind::energy) values[g] = value_of(specs_[g].term, energy);
 }
 
 }  // namespace feldspar

@@ -1,5 +1,5 @@
 // Strain gauges away from the platens: the least-squares linear displacement field of the grain centres in a window. And the gauges of a method or a
-// user: displacements of points, strains between them, forces of fixtures.
+// user: displacements of points, strains between them, forces of fixtures, means of stress and strain over a region, energies.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "feldspar/methods/result.hpp"
+#include "feldspar/lab/stress_fields.hpp"
 #include "feldspar/model/assembly.hpp"
 #include "feldspar/model/gauge_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
@@ -45,13 +47,16 @@ private:
 class Gauges {
 public:
     Gauges() = default;
-    /// @throws InputError  if a point lies outside the specimen by more than a grain, or a fixture is not there
+    /// @param specimen  which must outlive the gauges
+    /// @throws InputError  if a point lies outside the specimen by more than a grain, a fixture is not there, or a region has too little rock
     Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs);
 
     const std::vector<GaugeSpec>& specs() const { return specs_; }
     int find(std::string_view name) const { return gauge_number(specs_, name); }
-    /// Of all gauges, SI.
-    std::vector<double> read(const Assembly& assembly) const;
+    /// Of all gauges, SI. @param energy  of the same moment, which gauges of energies read
+    std::vector<double> read(const Assembly& assembly, const EnergyLedger& energy = {}) const;
+    /// Sets the readings of energies alone.
+    void read_energies(const EnergyLedger& energy, std::span<double> values) const;
 
 private:
     struct Term {   // of a gauge's sum: weight . displacement of a node
@@ -59,11 +64,19 @@ private:
         Vec2 weight;
     };
     void add_point(const Assembly& assembly, const Specimen& specimen, const GaugeSpec& gauge, const GaugePoint& point);
+    void add_mean_stress(const Assembly& assembly, const GrainMesh& mesh, const GaugeSpec& gauge);
+    void add_mean_strain(const Assembly& assembly, const GaugeSpec& gauge);
+    void add_hole_stress(const Assembly& assembly, const GrainMesh& mesh, const GaugeSpec& gauge);
+    void add_stress(const Assembly& assembly, const GrainMesh& mesh, std::vector<StressTerm> terms);
+    double stress_sum(const Assembly& assembly, std::size_t begin, std::size_t end, std::span<const Mat2> of_grains) const;
 
     std::vector<GaugeSpec> specs_;
     std::vector<Term> terms_;
-    std::vector<std::size_t> ends_;       // into terms_: behind those of each gauge
-    std::vector<int> fixture_of_;         // force: into Assembly::fixtures; else -1
+    std::vector<StressTerm> stress_terms_;   // of triangles; of other grains than flexible ones, of the sums of (P42)
+    std::vector<std::size_t> ends_;          // into terms_: behind those of each gauge
+    std::vector<std::size_t> stress_ends_;   // likewise into stress_terms_
+    std::vector<int> fixture_of_;            // force: into Assembly::fixtures; else -1
+    const GrainMesh* mesh_ = nullptr;
 };
 
 }  // namespace feldspar

@@ -1,5 +1,7 @@
 #include "feldspar/lab/grain_fields.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Dense>
 
 #include "feldspar/geometry/polygon.hpp"
@@ -68,9 +70,8 @@ std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& s
     return displacements;
 }
 
-std::vector<Mat2> grain_stresses(const Assembly& assembly, const Specimen& specimen) {
-    const GrainMesh& mesh = specimen.mesh;
-    std::vector<Mat2> sums(mesh.vertex_count.size());
+void sum_grain_moments(const Assembly& assembly, const GrainMesh& mesh, std::span<Mat2> sums) {
+    std::ranges::fill(sums, Mat2{});
     const auto add = [&](const ContactSide& side, Vec2 x, Vec2 force) {
         const int grain = assembly.bodies[side.body].grain;
         if (grain < 0) return;
@@ -91,6 +92,13 @@ std::vector<Mat2> grain_stresses(const Assembly& assembly, const Specimen& speci
             add(contact.b, x, on_b);
         }
     }
+    for (Mat2& sum : sums) sum.yx = sum.xy;
+}
+
+std::vector<Mat2> grain_stresses(const Assembly& assembly, const Specimen& specimen) {
+    const GrainMesh& mesh = specimen.mesh;
+    std::vector<Mat2> sums(mesh.vertex_count.size());
+    sum_grain_moments(assembly, mesh, sums);
     for (std::size_t g = 0; g < sums.size(); ++g) {
         std::vector<Vec2> corners(mesh.nodes.begin() + mesh.node_begin[g], mesh.nodes.begin() + mesh.node_begin[g] + mesh.vertex_count[g]);
         const double per_volume = 1.0 / (signed_area(corners) * assembly.thickness_m);

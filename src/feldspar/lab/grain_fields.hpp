@@ -18,4 +18,7 @@ std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& s
 /// sigma = 1/V sum of x (x) F over the contacts with other grains and with plates (Love 1892, Weber 1966).
 std::vector<Mat2> grain_stresses(const Assembly& assembly, const Specimen& specimen);
 
+/// The same sums of x (x) F, not yet divided by the grain's volume, J. @param sums  one a grain; they are set
+void sum_grain_moments(const Assembly& assembly, const GrainMesh& mesh, std::span<Mat2> sums);
+
 }  // namespace feldspar

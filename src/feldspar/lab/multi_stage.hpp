@@ -1,4 +1,4 @@
-// One specimen loaded under rising pressures: a strength envelope from it (docs/theory/properties.md, (P44), (P45)).
+// One specimen loaded under rising pressures: a strength envelope from it (docs/theory/properties.md, (P55), (P56)).
 #pragma once
 
 #include "feldspar/lab/loading_curve.hpp"

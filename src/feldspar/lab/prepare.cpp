@@ -274,10 +274,10 @@ void note_isotropic(Experiment& e) {
     row.stress_bottom_Pa = e.stress(reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
     row.sigma3_Pa = e.assembly.pressure_Pa;
-    row.gauges = e.gauges.read(e.assembly);
     row.energy.elastic_grains = stored.grains_J;
     row.energy.elastic_contacts = stored.contacts_J;
     row.energy.elastic_start = stored.grains_J + stored.contacts_J;
+    row.gauges = e.gauges.read(e.assembly, row.energy);
 }
 
 // Does the isotropic state stay below the first damage?

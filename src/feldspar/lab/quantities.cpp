@@ -60,6 +60,11 @@ QuantityPlace stages_of_one() {
 }
 
 template <auto member>
+QuantityPlace hole() {
+    return at<&R::properties, &P::hole, member>();
+}
+
+template <auto member>
 QuantityPlace evidence() {
     return at<&R::evidence, member>();
 }
@@ -79,11 +84,21 @@ QuantityPlace count() {
     return {QuantityForm::whole, [](const R& r) { return static_cast<double>(std::ranges::count(r.cracks, mode, &Crack::mode)); }};
 }
 
-// Number `i` of those that the method adds.
-QuantityPlace of_method(std::size_t i) {
-    return {QuantityForm::real, [i](const R& r) { return i < r.properties.of_method.size() ? r.properties.of_method[i] : nan; },
-            [i](R& r, double value) {
-                if (r.properties.of_method.size() <= i) r.properties.of_method.resize(i + 1, nan);
+// A number that methods add: each keeps its own in their order.
+QuantityPlace of_method(std::string_view name) {
+    const auto place = [name](const R& r) {
+        const std::span<const MethodProperty> own = method_of(r.test).properties;
+        return static_cast<std::size_t>(std::ranges::find(own, name, &MethodProperty::name) - own.begin());
+    };
+    return {QuantityForm::real,
+            [place](const R& r) {
+                const std::size_t i = place(r);
+                return i < r.properties.of_method.size() ? r.properties.of_method[i] : nan;
+            },
+            [place](R& r, double value) {
+                const std::size_t i = place(r), count = method_of(r.test).properties.size();
+                if (i == count) return;   // not of this method
+                r.properties.of_method.resize(count, nan);
                 r.properties.of_method[i] = value;
             }};
 }
@@ -123,6 +138,7 @@ std::vector<TestQuantity> table() {
     const std::set<MethodId> compressed = those([](const TestMethod& m) { return m.reading == Reading::column && m.loading.widens; });
     const std::set<MethodId> cyclic = those([](const TestMethod& m) { return m.reading == Reading::column && m.build.stages != nullptr; });
     const std::set<MethodId> multi_stage = those([](const TestMethod& m) { return m.reading == Reading::stages; });
+    const std::set<MethodId> holed = those([](const TestMethod& m) { return m.reading == Reading::hole; });
     std::vector<TestQuantity> all;
     const auto add = [&](QuantityGroup group, const std::set<MethodId>& tests, std::vector<TestQuantity> rows) {
         for (TestQuantity& row : rows) {
@@ -194,17 +210,32 @@ std::vector<TestQuantity> table() {
         {"BTS_flat_coefficient", pure, "(P31)", brazilian_failure<&B::flat_coefficient>(), same, "flat_coefficient", "flat_coefficient"},
     });
     for (const MethodId method : test_methods()) {
-        const std::span<const MethodProperty> properties = method_of(method).properties;
-        for (std::size_t i = 0; i < properties.size(); ++i) add(G::of_method, {method}, {{properties[i].name, properties[i].unit, properties[i].definition, of_method(i)}});
+        for (const MethodProperty& p : method_of(method).properties) {
+            const auto known = std::ranges::find(all, p.name, &TestQuantity::name);
+            if (known != all.end()) known->tests.insert(method);
+            else add(G::of_method, {method}, {{p.name, p.unit, p.definition, of_method(p.name)}});
+        }
     }
     add(G::cycles, cyclic, {
         {"cycles", pure, "", {QuantityForm::whole, [](const R& r) { return static_cast<double>(r.properties.cycles.size()); }}, absent, same, absent},
-        {"damage_omega", pure, "(P43)", property<&P::damage_omega>()},
+        {"damage_omega", pure, "(P54)", property<&P::damage_omega>()},
     });
     add(G::multi_stage, multi_stage, {
-        {"peak_over_reversal", pure, "(P44)", stages_of_one<&MultiStageProperties::peak_over_reversal>()},
-        {"multi_stage_cohesion", stress, "(P45)", stages_of_one<&MultiStageProperties::cohesion_Pa>(), same, "cohesion", "cohesion"},
-        {"multi_stage_friction_angle", angle, "(P45)", stages_of_one<&MultiStageProperties::friction_angle_deg>(), same, "friction_angle", "friction_angle"},
+        {"peak_over_reversal", pure, "(P55)", stages_of_one<&MultiStageProperties::peak_over_reversal>()},
+        {"multi_stage_cohesion", stress, "(P56)", stages_of_one<&MultiStageProperties::cohesion_Pa>(), same, "cohesion", "cohesion"},
+        {"multi_stage_friction_angle", angle, "(P56)", stages_of_one<&MultiStageProperties::friction_angle_deg>(), same, "friction_angle", "friction_angle"},
+    });
+    add(G::hole, holed, {
+        {"hole_radius", length, "", hole<&HoleProperties::radius_m>()},
+        {"hole_radius_over_grain", pure, "", hole<&HoleProperties::radius_over_grain>()},
+        {"hole_side_factor", pure, "(P49)", hole<&HoleProperties::side_factor>()},
+        {"hole_pole_factor", pure, "(P49)", hole<&HoleProperties::pole_factor>()},
+        {"hole_pole_crack", stress, "(P50)", hole<&HoleProperties::pole_crack_Pa>()},
+        {"hole_side_crack", stress, "(P50)", hole<&HoleProperties::side_crack_Pa>()},
+        {"hole_breakout", stress, "(P51)", hole<&HoleProperties::breakout_Pa>()},
+        {"hole_breakout_side_stress", stress, "(P51)", hole<&HoleProperties::breakout_side_stress_Pa>()},
+        {"hole_depth_at_peak", length, "(P51)", hole<&HoleProperties::depth_at_peak_m>()},
+        {"hole_depth_at_end", length, "(P51)", hole<&HoleProperties::depth_at_end_m>()},
     });
     add(G::cracks, any, {
         {"cracks_tensile", pure, "", count<CrackMode::tensile>(), same, same, "tensile"},

@@ -17,7 +17,7 @@ namespace feldspar {
 
 /// Files list numbers group by group, each in its own order of groups; within a group the order is the same everywhere.
 enum class QuantityGroup {
-    strength, load, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, of_method, cycles, multi_stage, cracks, pattern, evidence, repeats, balance, energies, steps,
+    strength, load, peak, elastic, first_crack, initiation, damage, post_peak, brazilian, flattened, of_method, hole, cycles, multi_stage, cracks, pattern, evidence, repeats, balance, energies, steps,
     bookkeeping, cost
 };
 

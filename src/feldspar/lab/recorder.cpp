@@ -68,7 +68,6 @@ HistoryRow Recorder::present(Phase phase) {
     row.residual = force > 0.0 ? now_.unbalanced.total_N / force : 0.0;
     row.residual_median = force > 0.0 ? now_.unbalanced.typical_N / force : 0.0;
     row.platen_speed = e_.settings.speed;
-    row.gauges = e_.gauges.read(e_.assembly);
     if (e_.method.reading == Reading::disc) {
         row.contact_arc_top_deg = contact_arc_deg(e_, 0);
         row.contact_arc_bottom_deg = contact_arc_deg(e_, 1);
@@ -87,6 +86,7 @@ HistoryRow Recorder::present(Phase phase) {
     row.energy.friction = stored.friction_J;
     row.energy.damping = stored.damping_J - moving.ahead_damping_J;
     row.energy.kinetic = moving.kinetic_J;
+    row.gauges = e_.gauges.read(e_.assembly, row.energy);
     return row;
 }
 
@@ -107,6 +107,7 @@ void Recorder::elastic_phase(const HistoryRow& from) {
         for (double EnergyLedger::*value : {&EnergyLedger::elastic_grains, &EnergyLedger::elastic_contacts, &EnergyLedger::elastic_start})
             row.energy.*value = from.axial_stress_Pa == 0.0 ? share * share * (to.energy.*value) : mix(from.energy.*value, to.energy.*value, share);
         row.energy.rate_control = row.energy.kinetic = row.kinetic_deviation = row.residual = row.residual_median = row.platen_speed = 0.0;
+        e_.gauges.read_energies(row.energy, row.gauges);
         result_.history.push_back(row);
     }
 }

@@ -80,7 +80,10 @@ std::vector<RockProperty> table() {
         if (!method_of(method).strength.name.empty()) all.push_back(strength(method));
     for (const MethodId method : test_methods())
         for (const MethodProperty& p : method_of(method).properties)
-            if (*p.symbol != 0) all.push_back(read(p.name, method, p.label, p.symbol, p.laboratory));
+            if (*p.symbol != 0) {
+                all.push_back(read(p.name, method, p.label, p.symbol, p.laboratory));
+                if (!p.of_rock.empty()) all.back().name = p.of_rock;
+            }
     const RockProperty further[]{
         in_splitting("BTS_first_dip", "Brazilian test, stress at the first fall of 5 %", "BTS dip", "BTS"),
         in_splitting("BTS_largest", "Brazilian test, largest stress of the record", "BTS largest", "BTS"),
@@ -98,6 +101,12 @@ std::vector<RockProperty> table() {
         {"mohr_coulomb_tension", stress, "Tensile strength, Mohr-Coulomb line", "\u03c3t M-C", "(P19)"},
         fitted("hoek_brown_UCS", stress, "UCS from the Hoek-Brown fit", "\u03c3ci fit", "(P13)", &EnvelopeFit::hoek_brown_UCS_Pa),
         {"hoek_brown_tension", stress, "Tensile strength, Hoek-Brown parabola", "\u03c3t H-B", "(P19)"},
+        read("hole_side_factor", hole_compression, "Stress at the sides of a hole over the axial stress, elastic", "k side"),
+        read("hole_pole_factor", hole_compression, "Stress at the poles of a hole over the axial stress, elastic", "k pole"),
+        read("hole_pole_crack", hole_compression, "Axial stress at the first tensile crack at a pole of a hole", "\u03c3 pole"),
+        read("hole_side_crack", hole_compression, "Axial stress at the first crack at a side of a hole", "\u03c3 side"),
+        read("hole_breakout", hole_compression, "Axial stress at which a breakout begins", "\u03c3 breakout"),
+        read("hole_breakout_side_stress", hole_compression, "Stress at the sides of a hole when a breakout begins", "\u03c3\u03b8 breakout"),
         in_compression("first_crack", "Stress at the first crack", "\u03c31st"),
         in_compression("sigma_ci_crack_count", "Crack initiation stress, crack count", "\u03c3ci"),
         in_compression("sigma_ci_crack_volume", "Crack initiation stress, crack volumetric strain", "\u03c3ci"),

@@ -60,7 +60,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     try {
         prepare(e);
         HistoryRow from;   // where the computed start began: nothing, or the isotropic state
-        if (e.method.specimen.confined) {
+        if (e.confined()) {
             from = e.isotropic;
             from.phase = Phase::consolidation;
             HistoryRow unloaded;

@@ -37,26 +37,27 @@ double mouth_width(const Outline& outline, double x, double bottom) {
     return right - left;
 }
 
-// A notch that rises upright from the lower side in the middle; anything else that is cut out makes the beam another one.
-void look_for_notch(const Outline& outline, Beam& beam) {
-    for (const Cutout& cutout : outline.cutouts) {
-        const Box box = bounding_box(cutout.vertices);
-        constexpr double kClose = 1e-6;   // of the height
-        const double axis = 0.5 * (box.lower.x + box.upper.x), close = kClose * beam.height_m, tall = box.upper.y - box.lower.y;
-        const bool upright = cutout.is_cut() ? box.upper.x - box.lower.x < close : cutout.slit && tall > box.upper.x - box.lower.x;
-        if (beam.notched() || !upright || std::abs(axis - beam.middle_m) > close || box.lower.y > beam.bottom_m + close) {
-            beam.otherwise_cut = true;
-            continue;
-        }
-        beam.notch_m = box.upper.y - beam.bottom_m;
-        beam.notch_width_m = box.upper.x - box.lower.x;
-    }
-    if (beam.notch_m >= beam.height_m) throw InputError({.key = "specimen.notches"}, "the notch goes through the beam", "a notch that leaves a ligament");
-}
-
 std::string mm(double m) { return fmt::format("{:.4g} mm", 1e3 * m); }
 
 }  // namespace
+
+NotchFromBelow notch_from_below(const Outline& outline, double middle_m, double bottom_m, double height_m) {
+    NotchFromBelow notch;
+    for (const Cutout& cutout : outline.cutouts) {
+        const Box box = bounding_box(cutout.vertices);
+        constexpr double kClose = 1e-6;   // of the height
+        const double axis = 0.5 * (box.lower.x + box.upper.x), close = kClose * height_m, tall = box.upper.y - box.lower.y;
+        const bool upright = cutout.is_cut() ? box.upper.x - box.lower.x < close : cutout.slit && tall > box.upper.x - box.lower.x;
+        if (notch.depth_m > 0.0 || !upright || std::abs(axis - middle_m) > close || box.lower.y > bottom_m + close) {
+            notch.otherwise_cut = true;
+            continue;
+        }
+        notch.depth_m = box.upper.y - bottom_m;
+        notch.width_m = box.upper.x - box.lower.x;
+    }
+    if (notch.depth_m >= height_m) throw InputError({.key = "specimen.notches"}, "the notch goes through the specimen", "a notch that leaves a ligament");
+    return notch;
+}
 
 Beam beam_of(const Outline& outline, double thickness_m, const TestSpec& test) {
     if (outline.is_disc) throw InputError({.key = "test.kind"}, "a disc is no beam", "a rectangle that lies along x, or a polygon with a notch in the middle of its lower side");
@@ -85,7 +86,12 @@ Beam beam_of(const Outline& outline, double thickness_m, const TestSpec& test) {
     beam.notch_m = middle.front() - beam.bottom_m;
     if (beam.notch_m <= 1e-9 * beam.height_m) beam.notch_m = 0.0;
     if (beam.notched()) beam.notch_width_m = mouth_width(outline, beam.middle_m, beam.bottom_m + 1e-9 * beam.height_m);
-    look_for_notch(outline, beam);
+    const NotchFromBelow cut = notch_from_below(outline, beam.middle_m, beam.bottom_m, beam.height_m);   // anything else makes the beam another one
+    beam.otherwise_cut = cut.otherwise_cut || (beam.notched() && !outline.cutouts.empty());
+    if (cut.depth_m > 0.0 && !beam.notched()) {
+        beam.notch_m = cut.depth_m;
+        beam.notch_width_m = cut.width_m;
+    }
     return beam;
 }
 

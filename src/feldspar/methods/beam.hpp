@@ -26,6 +26,16 @@ struct Beam {
 /// a height that is not below the span, or a notch that leaves no ligament or does not lie in the middle of the span
 Beam beam_of(const Outline& outline, double thickness_m, const TestSpec& test);
 
+/// What is cut out of a specimen that is bent.
+struct NotchFromBelow {
+    double depth_m = 0.0;         ///< 0: none
+    double width_m = 0.0;
+    bool otherwise_cut = false;   ///< holes, or notches that do not rise upright from the lower side in the middle
+};
+
+/// Looks for a notch that rises from the lower side at x = `middle_m`, y = `bottom_m`. @throws InputError  if it goes through to `height_m` above
+NotchFromBelow notch_from_below(const Outline& outline, double middle_m, double bottom_m, double height_m);
+
 /// Largest stress of a plain beam under a point load over 3PS/(2 t h^2) (P36): the load's own stresses take some of it away.
 /// @param height_over_span  h/S, at most 1/3
 double flexural_factor(double height_over_span);

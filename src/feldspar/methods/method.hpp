@@ -57,6 +57,7 @@ enum class Reading {
     column,   ///< moduli, Poisson's ratio, thresholds and the branch behind the peak of a specimen that is strained evenly
     disc,     ///< how a disc was split
     stages,   ///< the strength at each of the pressures that one specimen went through
+    hole,     ///< stresses, cracks and breakouts at the edge of a round hole
     curve     ///< the largest load alone
 };
 
@@ -91,13 +92,14 @@ struct MethodReading {
 
 /// A number that the method adds to those that every test has.
 struct MethodProperty {
-    std::string_view name;          ///< without unit: "K_Ic"; no two methods give one name to two things
+    std::string_view name;          ///< without unit: "K_Ic"; what two methods give the same name means the same
     QuantityUnit unit;
     std::string_view definition;    ///< "(P38)": where docs/theory/properties.md defines it; empty for what needs no formula
     double (*value)(const MethodReading&) = nullptr;   ///< as it is kept; not-a-number where the record does not define it
     const char* label = "";         ///< "Fracture toughness, notched three-point bending"
     const char* symbol = "";        ///< of a property of the rock, which tables and reports show over the packings; empty: it is none
     std::string_view laboratory{};  ///< the key of a job's [laboratory] that it compares with; empty without one
+    std::string_view of_rock{};     ///< its name as a property of the rock; empty: the same
 };
 
 /// The strength that a method measures, as a property of the rock.
@@ -114,8 +116,9 @@ struct MethodTemplate {
     const char* gives = "";         ///< what stands beside its kind
     const char* keys = "";          ///< lines of its own, behind the kind; those of every test follow
     const char* tables = "";        ///< what stands behind its [[test]]
-    const char* width = "";         ///< the line of the specimen's width, if not that of an upright specimen
-    const char* height = "";        ///< the same of its height
+    const char* shape = "";         ///< the line of the specimen's shape, if not that of an upright specimen
+    const char* width = "";         ///< the same of its width,
+    const char* height = "";        ///< and of its height
     const TestMethod* behind = nullptr;   ///< another test that stands before it
 };
 
@@ -123,6 +126,7 @@ struct MethodTemplate {
 struct MethodSpecimen {
     bool own_disc = false;     ///< a disc that the test cuts itself and presses between two plates; else the job's specimen, between platens at its ends
     bool confined = false;     ///< a pressure sigma3 on the sides (and first on all sides), which the job gives
+    bool stands_free = false;  ///< confined, but a job may leave the pressure out
     bool glued = false;        ///< the ends are glued to the platens; else they may slide and come off
     double plate_mu = 0.0;     ///< friction of plates, unless the job gives another
     bool plates = false;       ///< plates or rollers load it whatever its grains are; else only rigid grains and inner particles
@@ -171,6 +175,7 @@ struct TestMethod {
     MethodStrength strength{};
     const char* properties_table = "";          ///< what summary.json calls the table of these:
     std::span<const MethodProperty> properties{};
+    std::vector<std::string> (*remarks)(const MethodReading&) = nullptr;   ///< sentences that a reader of the numbers must know
     std::span<const MethodKey> keys{};
     MethodTemplate job{};
 
@@ -204,6 +209,9 @@ std::vector<StageGroup> stages_of(const TestSpec& test);
 
 /// Whether a pressure acts on the sides of the specimen.
 inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }
+
+/// Whether names of results and tables tell the pressure: of every test that must have one, and of others that have.
+inline bool tells_pressure(const TestSpec& test) { return method_of(test).specimen.confined && (test.sigma3_Pa > 0.0 || !method_of(test).specimen.stands_free); }
 
 /// What the platens do behind the strength unless the job says otherwise. @param adaptive  the numerics can change the speed at all
 inline LoadControl usual_control(MethodId kind, bool adaptive) { return adaptive ? method_of(kind).loading.control : LoadControl::displacement; }

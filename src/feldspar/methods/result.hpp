@@ -151,19 +151,19 @@ struct StageRecord {
     std::string ended;               ///< why, in words; empty if the test ended before
 };
 
-/// Loading and the unloading behind it, of a test that has such stages (P41)-(P43). Stresses are total ones; not-a-number where the record defines none.
+/// Loading and the unloading behind it, of a test that has such stages (P52)-(P54). Stresses are total ones; not-a-number where the record defines none.
 struct CycleProperties {
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     int first_stage = 0, last_stage = 0;     ///< numbers from 1
     double sigma3_Pa = 0.0;                  ///< at the largest stress
     double peak_stress_Pa = none;            ///< largest stress of its loading
     double peak_strain = none;               ///< axial strain at it
-    double reloading_modulus_Pa = none;      ///< slope of its loading where that begins from a load: (P41); not of the first cycle
-    double unloading_modulus_Pa = none;      ///< (P41); not of a last cycle without unloading
-    double permanent_axial_strain = none;    ///< left when it is unloaded, since the unloaded specimen before the test (P42); lateral: < 0 wider
+    double reloading_modulus_Pa = none;      ///< slope of its loading where that begins from a load: (P52); not of the first cycle
+    double unloading_modulus_Pa = none;      ///< (P52); not of a last cycle without unloading
+    double permanent_axial_strain = none;    ///< left when it is unloaded, since the unloaded specimen before the test (P53); lateral: < 0 wider
     double permanent_lateral_strain = none;
     double permanent_volumetric_strain = none;
-    double damage = none;                    ///< omega (P43): 0 and growing as the specimen dilates
+    double damage = none;                    ///< omega (P54): 0 and growing as the specimen dilates
     double first_crack_Pa = none;            ///< stress at its first crack
     double sigma_ci_Pa = none;               ///< by the crack volumetric strain (P9) of its loading
     double sigma_cd_Pa = none;               ///< reversal of the volumetric strain (P8) in its loading
@@ -172,15 +172,30 @@ struct CycleProperties {
     int cracks = 0;                          ///< in its course
 };
 
-/// A strength envelope from one specimen under rising pressures (P44), (P45). Not-a-number where the test defines none.
+/// A strength envelope from one specimen under rising pressures (P55), (P56). Not-a-number where the test defines none.
 struct MultiStageProperties {
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> sigma3_Pa;           ///< of the stages that loaded, in order
     std::vector<double> reversal_Pa;         ///< sigma1 at which the volumetric strain turned
-    std::vector<double> strength_Pa;         ///< sigma1: of the last stage measured, of the others estimated (P44)
+    std::vector<double> strength_Pa;         ///< sigma1: of the last stage measured, of the others estimated (P55)
     double peak_over_reversal = none;        ///< of the deviator in the last stage
     double cohesion_Pa = none;               ///< (P12) of these strengths
     double friction_angle_deg = none;
+};
+
+/// How a plate with a round hole fails (P49)-(P51). Stresses along the axis are those of the whole plate. Not-a-number where the record shows none.
+struct HoleProperties {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double radius_m = none;
+    double radius_over_grain = none;        ///< over the mean diameter of the grains
+    double side_factor = none;              ///< stress along the edge at the sides over the axial stress, elastic; of a plate with free sides
+    double pole_factor = none;              ///< likewise at the poles
+    double pole_crack_Pa = none;            ///< axial stress at the first tensile crack at a pole
+    double side_crack_Pa = none;            ///< axial stress at the first crack at a side
+    double breakout_Pa = none;              ///< axial stress at which a breakout at a side has become one grain deep
+    double breakout_side_stress_Pa = none;  ///< stress along the edge at the sides then, from the elastic field around the hole
+    double depth_at_peak_m = none;          ///< of the deeper breakout
+    double depth_at_end_m = none;
 };
 
 /// Properties read from one test. Not-a-number where the test does not define one.
@@ -206,8 +221,9 @@ struct TestProperties {
     PostPeak post_peak{};                 ///< not of a Brazilian test; modulus and brittleness not of a test with stages
     std::vector<double> of_method{};      ///< those that the method adds (MethodProperty), in its order
     std::vector<CycleProperties> cycles{};   ///< of a test with stages that unload
-    double damage_omega = std::numeric_limits<double>::quiet_NaN();   ///< (P43) after the last cycle that was unloaded
+    double damage_omega = std::numeric_limits<double>::quiet_NaN();   ///< (P54) after the last cycle that was unloaded
     MultiStageProperties multi_stage{};   ///< of a multi-stage test only
+    HoleProperties hole{};                ///< of a plate with a hole only
 };
 
 struct TestResult {

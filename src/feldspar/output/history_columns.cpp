@@ -62,7 +62,11 @@ GaugeUnit unit_of(const GaugeSpec& gauge) {
     switch (gauge.kind) {
         case GaugeKind::displacement: return {"mm", 1e3};
         case GaugeKind::force: return {"kN", 1e-3};
-        case GaugeKind::strain: break;
+        case GaugeKind::mean_stress:
+        case GaugeKind::hole_stress: return {"MPa", 1e-6};
+        case GaugeKind::energy: return {"J", 1.0};
+        case GaugeKind::strain:
+        case GaugeKind::mean_strain: break;
     }
     return {"1", 1.0};
 }

@@ -19,7 +19,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     std::string text;
     auto line = std::back_inserter(text);
     fmt::format_to(line, "# history of {}, seed {}", test_name(result.test), result.seed);
-    if (method_of(result.test).specimen.confined) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
+    if (tells_pressure(result.test)) fmt::format_to(line, ", sigma3 {:.6g} MPa", result.test.sigma3_Pa * MPa);
     if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", printable(result.variant, LineEnds::escaped));
     fmt::format_to(line, "\n# signs: {}\n", sign_convention);
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
@@ -35,7 +35,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
 
 std::string test_stem(const std::string& variant, const TestSpec& test, std::uint64_t seed) {
     std::string stem = fmt::format("{}-s{}", test_name(test), seed);
-    if (method_of(test).specimen.confined) stem += fmt::format("-p{:.6g}", test.sigma3_Pa * MPa);
+    if (tells_pressure(test)) stem += fmt::format("-p{:.6g}", test.sigma3_Pa * MPa);
     return variant.empty() ? stem : variant_stem(variant) + "-" + stem;
 }
 

@@ -194,6 +194,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["properties"] = properties_json(result);
     if (!result.properties.cycles.empty()) test["cycles"] = cycles_json(result);
     if (reading == Reading::stages) test["multi_stage"] = multi_stage_json(result);
+    if (reading == Reading::hole) add(test["hole"], result, QuantityGroup::hole);
     test["gauges"] = gauges_json(result, tests);
     add(test["post_peak"], result, QuantityGroup::post_peak);
     add(test, result, QuantityGroup::elastic);

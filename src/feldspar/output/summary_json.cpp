@@ -147,6 +147,9 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     } else if (!method_of(result.test).properties.empty()) {
         Json& own = test[method_of(result.test).properties_table] = {{"control", control_of(result.test)}};
         add(own, result, QuantityGroup::of_method);
+    } else if (reading == Reading::hole) {
+        Json& hole = test["hole"] = {{"control", control_of(result.test)}};
+        add(hole, result, QuantityGroup::hole);
     } else if (reading == Reading::curve || reading == Reading::stages) {
         test["control"] = control_of(result.test);
     } else {
@@ -158,7 +161,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     if (reading == Reading::column && method_of(result.test).build.stages != nullptr) add(test, result, QuantityGroup::cycles);
     if (reading == Reading::stages) test["multi_stage"] = multi_stage_json(result);
     if (!result.gauges.empty()) test["gauges"] = gauges_json(result);
-    if (method_of(result.test).start.strained_evenly)   // else there is no such modulus, and no threshold
+    if (method_of(result.test).start.strained_evenly && reading != Reading::hole)   // else there is no such modulus, and no threshold
         for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage}) add(test, result, group);
     for (const QuantityGroup group : {QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
         add(test, result, group);

@@ -57,7 +57,7 @@ std::string packing_stem(const PlannedRun& run) {
 
 std::string title(const TestSpec& test) {
     std::string text = test_name(test);
-    if (method_of(test).specimen.confined) text += fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6);
+    if (tells_pressure(test)) text += fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6);
     return text;
 }
 

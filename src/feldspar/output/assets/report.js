@@ -195,6 +195,17 @@ function gaugeSeries(tests, chosen, g) {
     line(t, {label: "packing " + t.seed, color: "ink", width: 2.2})];
 }
 
+/** What a plate with a hole shows, in words. */
+function addHole(t, add) {
+  const k = t.hole;
+  add("Hole", "radius " + show(k.hole_radius) + " mm, " + show(k.hole_radius_over_grain, 2) + " mean grains");
+  if (k.hole_side_factor !== null) add("Stress at its edge, elastic", show(k.hole_side_factor) + " times the axial stress at the sides, " + show(k.hole_pole_factor) + " at the poles");
+  if (k.hole_pole_crack !== null) add("First tensile crack at a pole", "axial stress " + show(k.hole_pole_crack, 4) + " MPa");
+  if (k.hole_side_crack !== null) add("First crack at a side", "axial stress " + show(k.hole_side_crack, 4) + " MPa");
+  if (k.hole_breakout !== null) add("Breakout, one grain deep", "axial stress " + show(k.hole_breakout, 4) + " MPa, at the sides " + show(k.hole_breakout_side_stress, 4) + " MPa");
+  add("Depth of the breakout", show(k.hole_depth_at_peak, 2) + " mm at the largest stress, " + show(k.hole_depth_at_end, 2) + " mm at the end");
+}
+
 /** The charts and numbers of one kind of test. */
 function writeTest(host, tests) {
   const peaks = tests.map((t) => t.peak).filter((p) => p !== null);
@@ -266,6 +277,7 @@ function testFacts(tests, updates) {
     add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^./, (c) => c.toLowerCase()) : ""));
     for (const p of t.properties) add(p.label, show(p.value, 4) + (p.unit ? " " + unitWords(p.unit) : ""));
     if (t.multi_stage) addMultiStage(t, add);
+    if (t.hole) addHole(t, add);
     for (const gauge of t.gauges) add("Gauge " + gauge.name, gauge.meaning);
     if (t.section_width !== null) add("Section", show(t.section_width) + " mm wide");
     for (const remark of t.remarks) add("Note", remark);
