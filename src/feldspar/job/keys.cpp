@@ -343,7 +343,10 @@ std::vector<JobKey> keys_of_methods() {
     std::vector<JobKey> rows;
     for (const MethodId id : test_methods())
         for (const MethodKey& key : method_of(id).keys) {
-            if (std::ranges::find(rows, key.name, &JobKey::name) != rows.end()) continue;
+            if (const auto known = std::ranges::find(rows, key.name, &JobKey::name); known != rows.end()) {
+                if (*key.usual != 0 && known->usual.words.find(key.usual) == std::string::npos) known->usual.words.append("; ").append(key.usual);
+                continue;
+            }
             const auto has_it = [&](const TestMethod& method) { return std::ranges::find(method.keys, key.name, &MethodKey::name) != method.keys.end(); };
             const KeyDefault without = key.needed ? must : key.value ? usual(*key.value) : words(key.usual);
             rows.push_back({key.name, key.list ? one_or_list_of(value_of(key)) : value_of(key), without, key.meaning, methods_that_are(has_it)});
@@ -424,7 +427,7 @@ std::vector<JobKey> stage_keys() {
                        cycle = with("kind", {StageForm::cycle});
     const KeyValue value = quantity(fraction, any_value);   // the quantity decides
     return {
-        {"kind", choice(stage_forms), needed,
+        {"kind", choice_of(stage_forms), needed,
          "`\"load\"`: the loading motion grows; `\"unload\"`: it goes back; `\"hold\"`: it is at rest; `\"confine\"`: the pressure on the sides changes; `\"cycle\"`: "
          "stages that are repeated"},
         {"until", stage_ends_and_gauges(), words("of the last loading the end of the test; of unloading a stress of 0"),
@@ -437,7 +440,7 @@ std::vector<JobKey> stage_keys() {
         {"beyond", value, words("none"), "... when it is so far beyond where the last loading ended; in the first loading as `by`", moving},
         {"travel_times", number(positive), words("until the specimen is at rest"), "how long, in times in which a wave crosses the specimen", hold},
         {"sigma3", quantity(stress, not_negative), must, "the pressure to which it goes, over 30 travel times if it changes altogether", confine},
-        {"keep", choice(confine_keeps), words("`\"motion\"`"), "`\"motion\"`: the loading motion is at rest; `\"load\"`: it follows, so that the axial stress stays", confine},
+        {"keep", choice_of(confine_keeps), words("`\"motion\"`"), "`\"motion\"`: the loading motion is at rest; `\"load\"`: it follows, so that the axial stress stays", confine},
         {"times", integer(1, 10000), words("until the test ends"), "how often", cycle},
         {"stages", tables("test.stages"), must, "the stages; not a cycle again", cycle},
     };
@@ -486,7 +489,7 @@ std::vector<JobKey> gauge_keys() {
          with("kind", {GaugeForm::displacement, GaugeForm::force, GaugeForm::mean_stress, GaugeForm::mean_strain, GaugeForm::hole_stress})},
         {"normal", direction(), words("`direction`: a normal component"),
          "x and y of the normal of the plane on which the component along `direction` is read; one across `direction` gives a shear stress or strain", means},
-        {"term", choice(energy_terms), must, "a term of the energy balance ([theory](theory/loading.md)); `\"supplied\"`: by the loading, `\"elastic\"`: in grains and contacts",
+        {"term", choice_of(energy_terms), must, "a term of the energy balance ([theory](theory/loading.md)); `\"supplied\"`: by the loading, `\"elastic\"`: in grains and contacts",
          with("kind", {GaugeForm::energy})},
     };
 }

@@ -38,8 +38,9 @@ TEST(Methods, MeasureEachThingOnce) {
         for (const MethodProperty& property : m.properties) {
             properties.insert(property.name);
             for (const MethodId other : test_methods())   // the same name, the same thing
-                for (const MethodProperty& same : method_of(other).properties)
-                    if (same.name == property.name) EXPECT_EQ(same.unit, property.unit) << property.name;
+                for (const MethodProperty& same : method_of(other).properties) {
+                    if (same.name == property.name) { EXPECT_EQ(same.unit, property.unit) << property.name; }
+                }
             EXPECT_NE(property.value, nullptr) << property.name;
             EXPECT_STRNE(property.label, "") << property.name;
         }

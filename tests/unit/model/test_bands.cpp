@@ -8,10 +8,16 @@
 
 using namespace feldspar;
 
+namespace {
+
+const RunControl kOneThread = fixtures::threads(1);
+
+}  // namespace
+
 TEST(Bands, ShareOutAllPacksAndBodiesOnce) {
     for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
         TestSetup s = fixtures::setup(fixtures::rectangle(0.04, 0.08), methods::uniaxial_compression, fixtures::model(grains));
-        const Experiment e(s);
+        const Experiment e(s, kOneThread);
         const std::vector<PackRanges>& bands = e.assembly.packs.bands.ranges;
         ASSERT_FALSE(bands.empty());
         std::size_t contacts = 0, bodies = 0;

@@ -9,9 +9,15 @@
 
 using namespace feldspar;
 
+namespace {
+
+const RunControl kOneThread = fixtures::threads(1);
+
+}  // namespace
+
 TEST(StateHash, TellsWhichPartOfAStateDiffers) {
     const TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.03)), methods::uniaxial_compression);
-    const Experiment e(s);
+    const Experiment e(s, kOneThread);
     const StateHash before = hash_state(e.assembly);
 
     Assembly moved = e.assembly;

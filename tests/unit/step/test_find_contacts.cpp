@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "feldspar/model/assemble.hpp"
 #include "fixtures.hpp"
 
 using namespace feldspar;

@@ -3,13 +3,14 @@
 
 #include <cmath>
 
-#include "feldspar/base/rng.hpp"
 #include "feldspar/model/state_hash.hpp"
 #include "fixtures.hpp"
 
 using namespace feldspar;
 
 namespace {
+
+const RunControl kOneThread = fixtures::threads(1);
 
 struct Sums {
     Vec2 force;
@@ -31,7 +32,7 @@ Sums sums(const Assembly& assembly) {
 // What a contact does to one side it does to the other with the other sign, and stresses of a grain are no force on it.
 TEST(Forces, OfFlexibleGrainsCancelOverTheBody) {
     const TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.03)), methods::uniaxial_compression);
-    Experiment e(s);
+    Experiment e(s, kOneThread);
     for (int n = 0; n < e.assembly.nodes.count(); ++n) {   // strains of about 1e-5, uneven
         const Vec2 x = e.assembly.nodes.reference[n];
         e.assembly.nodes.displacement[n] = 1e-5 * Vec2{0.003 * std::sin(700.0 * x.y) + 0.3 * x.x, 0.002 * std::cos(900.0 * x.x) - x.y};
@@ -45,7 +46,7 @@ TEST(Forces, OfFlexibleGrainsCancelOverTheBody) {
 TEST(Forces, VanishInATranslation) {
     for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
         const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.03), methods::uniaxial_compression, fixtures::model(grains));
-        Experiment e(s);
+        Experiment e(s, kOneThread);
         for (const Body& body : e.assembly.bodies) {
             if (body.kind == BodyKind::rigid) e.assembly.nodes.displacement[body.centre_node] = {1e-5, -2e-5};
             else
@@ -61,7 +62,7 @@ TEST(Steps, InOneBlockOrOneByOneLeaveTheSameBits) {
     for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
         TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.03), methods::uniaxial_compression, fixtures::model(grains));
         s.numerics.kind = NumericsKind::paper;
-        Experiment block(s), single(s);
+        Experiment block(s, kOneThread), single(s, kOneThread);
         for (Experiment* e : {&block, &single}) {
             choose_step(*e);
             prepare(*e);
