@@ -76,23 +76,36 @@ std::optional<Peak> peak_before_a_fall(const TestResult& result, bool first_only
     return peak;
 }
 
-/// The same of a test with stages: it is reached if the stress has fallen while a stage behind it, or its own, loaded.
+/// The same of a test with stages: it is reached if the stress has fallen while a stage behind it, or its own, loaded; or if a later stage loaded the
+/// specimen farther, or made it wider, than it was there and met less stress.
 std::optional<Peak> peak_in_stages(const TestResult& result) {
     const double sign = method_of(result.test).loading.sign, overall = largest_stress(result);
     if (!(overall > 0.0)) return std::nullopt;
     Peak peak;
     double of_stage = 0.0;
     int stage = 0;
+    const HistoryRow* last = nullptr;   // of the stage
+    const auto end_stage = [&] {
+        const HistoryRow& top = result.history[peak.row];
+        if (last == nullptr || last->stage == top.stage || of_stage > drop_fraction * peak.stress_Pa) return;
+        const bool farther = sign * last->axial_strain > sign * top.axial_strain, wider = sign * last->lateral_strain_gauge < sign * top.lateral_strain_gauge;
+        if (farther || wider) peak.reached = true;
+    };
     for (std::size_t i = 0; i < result.history.size(); ++i) {
         const HistoryRow& row = result.history[i];
         if (!is_loading(row) || !is_finite(row) || !of_loading_stage(result, row)) continue;
-        if (row.stage != stage) of_stage = 0.0;
+        if (row.stage != stage) {
+            end_stage();
+            of_stage = 0.0;
+        }
         stage = row.stage;
+        last = &row;
         const double stress = sign * row.axial_stress_Pa;
         of_stage = std::max(of_stage, stress);
         if (stress > peak.stress_Pa) peak = {i, stress, false};
         else if (stress <= drop_fraction * peak.stress_Pa && stress <= fall_in_stage * of_stage && of_stage >= first_peak_floor * overall) peak.reached = true;
     }
+    end_stage();
     return peak;
 }
 

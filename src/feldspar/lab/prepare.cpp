@@ -205,6 +205,13 @@ void elastic_contacts(Experiment& e) {
         go_to(e, superpose(unloaded, reached, 0.9 * first_damage(e.assembly, unloaded, reached)));
         reached = settle();
     }
+    if (!e.stages.empty()) {   // the rounds saw the load of a body that was not yet in balance
+        const double most = factor_at_first_stage(e, 0.0, first_damage(e.assembly, unloaded, reached));
+        if (most < 1.0) {
+            go_to(e, superpose(unloaded, reached, most));
+            reached = settle();
+        }
+    }
     go_to(e, superpose(unloaded, reached, 0.95));
     const BodyState below = settle();
     const double force_below = platen_force(e);

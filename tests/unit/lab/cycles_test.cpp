@@ -108,6 +108,10 @@ TEST(PeakInStages, IsTheLargestStressThatALoadingHasFallenFrom) {
     const auto open = find_peak(record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_}, {StageKind::unload, 0.0, 0.0, 1 * MPa_}, {StageKind::load, 2e-3, -5e-4, 49 * MPa_}}));
     ASSERT_TRUE(open);
     EXPECT_FALSE(open->reached) << "what is unloaded has not failed";
+    // The second loading ends by its widening, without a fall of its own: it is wider than at the peak and bears less.
+    const auto weaker = find_peak(record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_}, {StageKind::unload, 0.0, -1e-4, 1 * MPa_}, {StageKind::load, 2.1e-3, -9e-4, 40 * MPa_}}));
+    ASSERT_TRUE(weaker);
+    EXPECT_TRUE(weaker->reached);
 }
 
 TEST(LoadingCurve, LeavesLoopsOut) {

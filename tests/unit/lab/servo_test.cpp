@@ -44,6 +44,13 @@ TEST(Servo, PlatenRestsWhereTheDissipationIsAtItsLimit) {
     EXPECT_NEAR(after(2.0).speed(kTravel) / kForward, -1.0, 1e-9);
 }
 
+TEST(Servo, ArrestsWhatFailsAlreadyBelowItsLimit) {
+    EXPECT_NEAR(after(0.0).arrest(kTravel), 0.0, 1e-20);
+    EXPECT_NEAR(after(0.25).arrest(kTravel) / kForward, 2.0, 1e-9);
+    EXPECT_NEAR(after(0.5).arrest(kTravel) / kForward, 4.0, 1e-9) << "as fast as it may";
+    EXPECT_NEAR(after(5.0).arrest(kTravel) / kForward, 4.0, 1e-9);
+}
+
 TEST(Servo, GoesBackAtFourTimesItsForwardSpeedAtMost) { EXPECT_NEAR(after(50.0).speed(kTravel) / kForward, -4.0, 1e-9); }
 
 TEST(Servo, HowFarItGoesBackForABurstDoesNotDependOnTheSmoothing) {
