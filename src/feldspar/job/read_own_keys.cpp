@@ -208,6 +208,16 @@ void read_method_key(const JobTable& table, const MethodKey& key, TestSpec& test
     });
 }
 
+// Those that the job gives, and the values that hold without the others.
+void read_method_keys(const JobTable& table, TestSpec& test) {
+    const std::span<const MethodKey> keys = method_of(test).keys;
+    for (const MethodKey& key : keys) read_method_key(table, key, test);
+    for (const MethodKey& key : keys) {
+        const bool replaced = std::ranges::any_of(keys, [&](const MethodKey& other) { return other.in_place_of == key.name && test.own.contains(other.name); });
+        if (key.value && !replaced) test.own.try_emplace(std::string(key.name), 1, *key.value);
+    }
+}
+
 void read_custom(const JobTable& table, TestSpec& test) {
     table.require({"name", "fixture"});
     std::set<std::string> tests, fixtures, gauges;
@@ -274,7 +284,7 @@ bool has_gauge(const TestSpec& test, std::string_view gauge) { return [&] {
 }(); }
 
 void read_own_keys(const JobTable& table, TestSpec& test) {
-    for (const MethodKey& key : method_of(test).keys) read_method_key(table, key, test);
+    read_method_keys(table, test);
     if (method_of(test).specimen.fixtures_of_job) read_custom(table, test);
     if (table.has("until")) read_until(table, test);
 }

@@ -310,12 +310,14 @@ void write_gauge(Lines& out, const GaugeSpec& gauge) {
 void write_method_key(Lines& out, const TestSpec& test, const MethodKey& key) {
     const auto found = test.own.find(key.name);
     if (found == test.own.end()) return;
-    if (key.form == MethodKeyForm::whole) return out.raw(std::string(key.name), std::to_string(static_cast<long long>(found->second.front())));
-    if (key.form != MethodKeyForm::quantity) return out.number(std::string(key.name), found->second.front());
-    if (!key.list) return out.quantity(std::string(key.name), found->second.front());
+    const std::string name(key.name);
+    const double value = found->second.front();
+    if (key.form == MethodKeyForm::whole) return out.raw(name, std::to_string(static_cast<long long>(value)));
+    if (key.form != MethodKeyForm::quantity) return out.number(name, value);
+    if (!key.list) return out.quantity(name, value);
     std::string values;
-    for (const double value : found->second) values += (values.empty() ? "" : ", ") + as_written(job_key("test", key.name).value, value);
-    out.raw(std::string(key.name), "[" + values + "]");
+    for (const double one : found->second) values += (values.empty() ? "" : ", ") + as_written(job_key("test", key.name).value, one);
+    out.raw(name, "[" + values + "]");
 }
 
 std::string stage_in_braces(const TestSpec& test, const StageSpec& stage) {

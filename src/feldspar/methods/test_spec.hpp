@@ -81,7 +81,7 @@ struct TestSpec {
     int membrane_plates = 16;            ///< biaxial, rigid and inner particles: plates of the membrane on each side
     int snapshots = 8;                   ///< fields kept between the first crack and the end, besides start, peak and end
     std::vector<unsigned long long> seeds;  ///< the seeds of this test; empty = those of the run
-    std::map<std::string, std::vector<double>, std::less<>> own;   ///< values of keys that the method adds (MethodKey), SI; only those that the job gives
+    std::map<std::string, std::vector<double>, std::less<>> own;   ///< values of keys that the method adds (MethodKey), SI; a job has those with a default too
     std::string control_gauge;           ///< LoadControl::gauge: the gauge that controls
     std::optional<GaugeStop> stop_gauge; ///< ends the test
     std::optional<SpecimenSpec> specimen;   ///< its own, of the same grains: a disc that the method cuts, or what the job gives; else the job's

@@ -47,7 +47,7 @@ TEST(Methods, MeasureEachThingOnce) {
         EXPECT_EQ(m.properties.empty(), std::string_view(m.properties_table).empty());
         for (const MethodKey& key : m.keys) {
             EXPECT_STRNE(key.meaning, "") << key.name;
-            EXPECT_TRUE(key.needed || *key.usual != 0) << key.name;
+            EXPECT_EQ(key.needed + key.value.has_value() + (*key.usual != 0), 1) << key.name << " says once what holds without it";
         }
         EXPECT_STRNE(m.job.title, "");
         EXPECT_STRNE(m.job.gives, "");
