@@ -316,7 +316,7 @@ std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& speci
     std::set<std::string> taken;  // kind, sigma3 as it stands in file names, seed
     for (const JobTable& table : root.tables("test", "a test")) {
         std::vector<TestSpec> read = read_one(table, specimen, variants, known);
-        check_one_specimen(table, specimen, result, read.front());
+        if (!read.empty()) check_one_specimen(table, specimen, result, read.front());
         for (TestSpec& test : read) {
             std::vector<std::uint64_t> seeds(test.seeds.begin(), test.seeds.end());
             if (seeds.empty()) seeds = run_seeds;
