@@ -68,10 +68,12 @@ TestProperties read_record(const TestResult& result) {
     p.peak_stress_Pa = peak->stress_Pa;
     p.peak_reached = peak->reached;
     const std::span<const MethodProperty> own = method_of(result.test).properties;
-    const MethodReading reading{result, peak->row, peak->stress_Pa, peak->reached};
     p.of_method.assign(own.size(), nan);
-    for (std::size_t i = 0; i < own.size(); ++i) p.of_method[i] = own[i].value(reading);
-    if (method_of(result.test).remarks != nullptr) p.remarks = method_of(result.test).remarks(reading);
+    if (result.specimen) {   // they speak of its measures
+        const MethodReading reading{result, peak->row, peak->stress_Pa, peak->reached};
+        for (std::size_t i = 0; i < own.size(); ++i) p.of_method[i] = own[i].value(reading);
+        if (method_of(result.test).remarks != nullptr) p.remarks = method_of(result.test).remarks(reading);
+    }
     switch (method_of(result.test).reading) {
         case Reading::disc: p.brazilian = brazilian_failure(result, *peak); return p;
         case Reading::stages: p.multi_stage = multi_stage(result, *peak); return p;

@@ -93,7 +93,7 @@ TEST(Units, RefusesWithAReason) {
         {"80 MPa", Dimension::length, "is a stress, not a length", ""},
         {"25 MPa/m", Dimension::stress, "is a stiffness per area, not a stress", ""},
         {"25 GPa", Dimension::stiffness_gradient, "is a stress, not a stiffness per area", ""},
-        {"20 J", Dimension::fracture_energy, "is not a fracture energy", ""},
+        {"20 J", Dimension::fracture_energy, "is an energy, not a fracture energy", ""},
         {"5 Pa-1", Dimension::stress, "is not a stress", ""},  // udunits would take the reciprocal
         {"5 s/m", Dimension::speed, "is not a speed", ""},
         {"5 Hz", Dimension::time, "is not a time", ""},

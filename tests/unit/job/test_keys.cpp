@@ -153,7 +153,7 @@ TEST(Keys, EachIsAsOftenAsItsNameInATableAndSaysWhatItIs) {
 }
 
 TEST(Keys, OfATestSayWhichMethodsTakeThem) {
-    EXPECT_EQ(applies_text(job_key("test", "sigma3")), "with `kind = \"biaxial\"`, `\"hole-compression\"`, `\"multi-stage-biaxial\"`");
+    EXPECT_EQ(applies_text(job_key("test", "sigma3")), "with `kind = \"biaxial\", \"hole-compression\", \"multi-stage-biaxial\"`");
     EXPECT_EQ(applies_text(job_key("test", "flat_angle")), "with `kind = \"brazilian\"`");
     EXPECT_EQ(applies_text(job_key("test", "stop_fraction")), "");
     EXPECT_TRUE(job_key("test", "plate_mu").when.holds("biaxial"));
