@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "feldspar/lab/gauges.hpp"
 #include "feldspar/methods/beam.hpp"
 #include "feldspar/methods/half_disc.hpp"
@@ -113,6 +115,24 @@ BendingProperties half_disc_bending(const TestResult& result, const Peak& peak) 
     p.K_Ic_Pa_sqrt_m = half_disc_factor(disc.beta(), disc.q()) * largest_N * std::sqrt(M_PI * disc.notch_m) / (2.0 * disc.radius_m * disc.thickness_m);
     add_fracture(result, peak, disc.middle + Vec2{0.0, disc.notch_m}, disc.ligament_m(), disc.thickness_m, p);
     return p;
+}
+
+std::vector<std::string> half_disc_remarks(const TestResult& result, const BendingProperties& p) {
+    std::vector<std::string> remarks;
+    if (!result.specimen) return remarks;
+    const HalfDisc disc = half_disc_of(result.specimen->outline, result.specimen->spec.thickness_m, result.test);
+    constexpr double kRounding = 1e-9;
+    const auto outside = [](double x, double least, double most) { return x < least - kRounding || x > most + kRounding; };
+    if (outside(disc.beta(), least_beta, most_beta) || outside(disc.q(), least_q, most_q))
+        remarks.push_back(fmt::format("K_Ic is outside of ISRM's ranges: a/R = {:.3g} ({:g} to {:g}), s/(2R) = {:.3g} ({:g} to {:g}).", disc.beta(), least_beta, most_beta, disc.q(), least_q, most_q));
+    const double least = std::max(least_half_disc_m, least_grains_across * result.specimen->quality.mean_diameter_m);
+    if (2.0 * disc.radius_m < (1.0 - kRounding) * least)
+        remarks.push_back(fmt::format("The half disc of {:.4g} mm is smaller than ISRM's {:.4g} mm (76 mm or ten grains).", 2e3 * disc.radius_m, 1e3 * least));
+    constexpr double kSmall = 0.5;   // of notch and ligament
+    const double shortest = std::min(disc.notch_m, disc.ligament_m());
+    if (p.softening_length_m > kSmall * shortest)
+        remarks.push_back(fmt::format("The softening length of {:.3g} mm is not small beside notch and ligament ({:.3g} mm the shorter): K_Ic grows with the half disc.", 1e3 * p.softening_length_m, 1e3 * shortest));
+    return remarks;
 }
 
 }  // namespace feldspar

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/result.hpp"
@@ -17,5 +19,8 @@ double chain_of_cracks_m(std::span<const Crack> cracks, Vec2 tip, double grain_m
 
 /// Of a notched half disc. @param peak  from find_peak() of the same result
 BendingProperties half_disc_bending(const TestResult& result, const Peak& peak);
+
+/// Sentences on a half disc that is none of ISRM's, or too small for its softening zone (P48). @param p  from half_disc_bending()
+std::vector<std::string> half_disc_remarks(const TestResult& result, const BendingProperties& p);
 
 }  // namespace feldspar

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -123,6 +124,8 @@ void note_arcs(const TestResult& result, TestProperties& p) {
 TestProperties measure(const TestResult& result) {
     TestProperties p = read_record(result);
     note_section(result, p);
+    if (method_of(result.test).reading == Reading::half_disc)
+        for (std::string& remark : half_disc_remarks(result, p.bending)) p.remarks.push_back(std::move(remark));
     note_widening(p);
     note_arcs(result, p);
     return p;
