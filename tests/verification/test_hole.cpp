@@ -19,13 +19,13 @@ SpecimenSpec plate(double radius_in_grains, double radius_over_half_width) {
 }
 
 struct Elastic {
-    double side, pole;   // stress along the edge over the axial stress of the whole plate
+    double side_Pa, pole_Pa, axial_Pa;
+    double side() const { return side_Pa / axial_Pa; }
+    double pole() const { return pole_Pa / axial_Pa; }
 };
 
 Elastic elastic(const SpecimenSpec& spec, const ModelSpec& model = {}, double sigma3_Pa = 0.0, std::uint64_t seed = 1) {
-    TestSetup s = fixtures::setup(fixtures::make(fixtures::filled_for(model, spec), seed), methods::hole_compression);
-    s.model = model;
-    s.contact = fixtures::material(model);
+    TestSetup s = fixtures::setup(spec, methods::hole_compression, model, ContactLaw::bilinear, seed);
     s.test.sigma3_Pa = sigma3_Pa;
     const RunControl control = fixtures::threads(2);
     Experiment e(s, control);
@@ -33,20 +33,50 @@ Elastic elastic(const SpecimenSpec& spec, const ModelSpec& model = {}, double si
     prepare(e);
     evaluate_forces(e.assembly, e.team, Strength::unlimited);
     const std::vector<double> read = e.gauges.read(e.assembly);
-    const double axial = e.stress(reactions(e.assembly).loading);
-    printf("grains %zu nodes steps %lld axial %g\n", s.specimen->cells.cells.size(), e.preparation_steps, axial);
-    return {read[0] / axial, read[1] / axial};
+    return {read[0], read[1], e.stress(reactions(e.assembly).loading)};
 }
 
-TEST(Hole, Explore) {
-    const int threads = 2; (void)threads;
-    for (const auto& [ratio, side, pole] : {std::tuple{0.25, 3.251, -1.189}, {1.0/3, 3.488, -1.327}, {0.5, 4.370, -1.688}})
-        for (const double a : {3.0, 4.5, 6.0})
-            for (int seed = 1; seed <= 2; ++seed) {
-                const Elastic e = elastic(plate(a, ratio), {}, 0.0, seed);
-                printf("a/W %.3f a/d %.1f seed %d side %.3f (%+.1f %%) pole %.3f (%+.1f %%)\n", ratio, a, seed, e.side, 100 * (e.side / side - 1), e.pole, 100 * (e.pole / pole - 1));
-                fflush(stdout);
-            }
+TEST(Hole, StressesAtItsEdgeAreThoseOfFiniteElements) {   // (P49)
+    struct Case {
+        double a_W, a_d, side, pole, tolerance;
+    };
+    // Measured: within 0.8 % up to a third of the width, at 3 to 6 grains in the radius, two packings each. Half of the width: -4 % at the sides
+    // whatever the grains, because the boundary is so near that fields of higher order than (P43) matter.
+    for (const Case& c : {Case{0.25, 3.0, 3.251, -1.189, 0.02}, {1.0 / 3.0, 3.0, 3.488, -1.327, 0.02}, {1.0 / 3.0, 4.5, 3.488, -1.327, 0.015}, {0.5, 4.5, 4.370, -1.688, 0.05}}) {
+        const Elastic e = elastic(plate(c.a_d, c.a_W));
+        EXPECT_NEAR(e.side() / c.side, 1.0, c.tolerance) << c.a_W << " " << c.a_d;
+        EXPECT_NEAR(e.pole() / c.pole, 1.0, c.tolerance) << c.a_W << " " << c.a_d;
+    }
+}
+
+// Rigid grains have one stress each. Means over eight packings, measured: 1.7 to 2.9 % high at the sides and 3.0 to 5.1 % at the poles, at 3 to 6 grains in the
+// radius; single packings scatter by 4 and 8 %.
+TEST(Hole, StressesInRigidGrainsAreNearThoseOfFiniteElements) {
+    constexpr int kPackings = 8;
+    double side = 0.0, pole = 0.0;
+    for (int seed = 1; seed <= kPackings; ++seed) {
+        const Elastic e = elastic(plate(3.0, 1.0 / 3.0), fixtures::model(GrainKind::rigid), 0.0, seed);
+        side += e.side() / 3.488 / kPackings;
+        pole += e.pole() / -1.327 / kPackings;
+    }
+    EXPECT_NEAR(side, 1.0, 0.05);
+    EXPECT_NEAR(pole, 1.0, 0.05);
+}
+
+TEST(Hole, APressureOnThePlatesSidesTakesItsOwnShareOfTheStressAtTheSides) {
+    const double sigma3 = 5e6;
+    const Elastic e = elastic(plate(3.0, 0.25), {}, sigma3);
+    // 3.251 sigma1 - c sigma3: c is 1 in a wide plate (Kirsch), and at a/W = 0.25 between that and the 1.189 of a plate as much narrower along the pressure.
+    const double c = (3.251 * e.axial_Pa - e.side_Pa) / sigma3;
+    EXPECT_GT(c, 0.95);
+    EXPECT_LT(c, 1.2);
+}
+
+TEST(Hole, IsFoundInAPlateAndNowhereElse) {
+    const SpecimenSpec spec = plate(4.0, 0.3);
+    const RoundHole hole = round_hole_of(make_specimen(spec, 1).outline);
+    EXPECT_NEAR(hole.radius_m, 0.012, 1e-6);
+    EXPECT_NEAR(norm(hole.centre - Vec2{0.04, 0.08}), 0.0, 1e-9);
 }
 
 }  // namespace

@@ -91,6 +91,15 @@ std::vector<Cycle> split(const std::vector<StageRecord>& stages) {
     return unloads ? cycles : std::vector<Cycle>{};
 }
 
+// Most cycles are unloaded before their volume turns, and the waves of the motion make a largest value close to the top: it must have fallen from there.
+bool dilates(const LoadingCurve& curve) {
+    constexpr double kFallen = 0.002;   // of the growth, as in (P9)
+    const auto volume = [](const CurvePoint& p) { return p.strain_gauge + p.lateral_gauge; };
+    double largest = 0.0;
+    for (const CurvePoint& p : curve.points) largest = std::max(largest, volume(p));
+    return volume(curve.points.back()) < (1.0 - kFallen) * largest;
+}
+
 double dissipated(const EnergyLedger& energy) { return energy.fracture + energy.friction + energy.damping; }
 
 void read_cracks(const TestResult& result, Rows rows, double sign, CycleProperties& p) {
@@ -131,7 +140,7 @@ CycleProperties read(const Reader& of, const Cycle& cycle, std::size_t origin, s
     if (const LoadingCurve curve = of.curve(loading); curve.points.size() > 2 && curve.peak_Pa() > 0.0) {
         const DamageThresholds thresholds = damage_thresholds(curve, p.first_crack_Pa);
         p.sigma_ci_Pa = thresholds.crack_volume_Pa;
-        p.sigma_cd_Pa = thresholds.reversal_Pa;
+        if (dilates(curve)) p.sigma_cd_Pa = thresholds.reversal_Pa;
     }
     const EnergyLedger &before = result.history[whole.from].energy, &after = result.history[whole.to].energy;
     p.work_J = after.supplied() - before.supplied();

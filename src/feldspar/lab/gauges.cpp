@@ -241,9 +241,9 @@ void Gauges::add_mean_strain(const Assembly& assembly, const GaugeSpec& gauge) {
     }
 }
 
-// (P43), (P44): of the elastic fields around the hole that fit the stresses within one radius of its edge.
+// (P43), (P44): of the elastic fields around the hole that fit the stresses near it.
 void Gauges::add_hole_stress(const Assembly& assembly, const GrainMesh& mesh, const GaugeSpec& gauge) {
-    constexpr double kReach = 2.0;        // of the rock that is looked at, over the radius
+    constexpr double kReach = 1.6;        // of the rock that is looked at, over the radius: farther out near boundaries add fields that grow faster than these
     constexpr std::size_t kEnough = 40;   // grains that determine all fields; the uniform ones alone take fewer
     const Vec2 centre = gauge.region.a;
     const double radius = gauge.region.radius_m;

@@ -55,14 +55,18 @@ private:
     std::vector<double> waiting_;   // cracks that are too deep yet
 };
 
-// The last row before any crack in which the load is largest: the elastic answer.
-const HistoryRow* elastic_row(const TestResult& result) {
+// A row of the elastic answer: the end of the computed start, which lies below the first damage; else where loading has begun, before contacts soften.
+const HistoryRow* elastic_row(const TestResult& result, const Peak& peak) {
+    constexpr double kBegun = 0.02;   // of the largest stress
     const HistoryRow* found = nullptr;
+    for (const HistoryRow& row : result.history)
+        if (row.phase == Phase::elastic) found = &row;
+    if (found != nullptr) return found;
     for (const HistoryRow& row : result.history) {
         if (row.cracks_tensile + row.cracks_shear > 0) break;
-        if (row.phase != Phase::consolidation && (found == nullptr || row.axial_stress_Pa > found->axial_stress_Pa)) found = &row;
+        if (row.phase == Phase::loading && row.axial_stress_Pa >= kBegun * peak.stress_Pa) return &row;
     }
-    return found;
+    return nullptr;
 }
 
 }  // namespace
@@ -76,7 +80,8 @@ HoleProperties hole_failure(const TestResult& result, const Peak& peak) {
     p.radius_m = hole.radius_m;
     p.radius_over_grain = hole.radius_m / grain_m;
     if (side < 0 || pole < 0) return p;
-    if (const HistoryRow* row = elastic_row(result); row != nullptr && row->sigma3_Pa == 0.0 && row->axial_stress_Pa > 0.0) {
+    const bool stress_known = result.model.kind != GrainKind::inner_particles;   // docs/decisions, stress at a hole
+    if (const HistoryRow* row = elastic_row(result, peak); stress_known && row != nullptr && row->sigma3_Pa == 0.0 && row->axial_stress_Pa > 0.0) {
         p.side_factor = row->gauges[side] / row->axial_stress_Pa;
         p.pole_factor = row->gauges[pole] / row->axial_stress_Pa;
     }
@@ -97,6 +102,7 @@ HoleProperties hole_failure(const TestResult& result, const Peak& peak) {
     if (std::isnan(p.depth_at_peak_m)) p.depth_at_peak_m = 0.0;
     if (onset == nullptr) return p;
     p.breakout_Pa = onset->axial_stress_Pa;
+    if (!stress_known) return p;
     const auto then = std::ranges::lower_bound(result.history, onset->step, {}, &HistoryRow::step);   // the row that closes the crack's interval
     p.breakout_side_stress_Pa = (then == result.history.end() ? result.history.back() : *then).gauges[side];
     return p;

@@ -250,7 +250,7 @@ function writeCycles(host, tests, updates) {
     const cycles = tests[i].cycles || [];
     box.replaceChildren(h("h4", {}, "Cycles, packing " + tests[i].seed), table("evidence",
       [th("Cycle", true), th(["Largest", h("br"), "stress, MPa"], true), th(["E loading", h("br"), "GPa"], true, "slope of the reloading in the middle half of its stress"),
-        th(["E unloading", h("br"), "GPa"], true, "slope of the unloading in the middle half of its stress"), th(["Permanent strain, 10\u207b\u00b3:", h("br"), "axial"], true, "left when it is unloaded"), th("lateral", true), th("volumetric", true),
+        th(["E unloading", h("br"), "GPa"], true, "slope of the unloading in the middle half of its stress"), th(["Permanent", h("br"), "axial, 10\u207b\u00b3"], true, "strain left when it is unloaded"), th(["lateral", h("br"), "10\u207b\u00b3"], true), th(["volumetric", h("br"), "10\u207b\u00b3"], true),
         th(["Damage \u03c9", h("br"), "10\u207b\u00b3"], true, "sum of the permanent dilation of all cycles (Martin and Chandler 1994)"), th(["First crack", h("br"), "MPa"], true), th(["\u03c3ci", h("br"), "MPa"], true, "crack volumetric strain of this loading"), th(["\u03c3cd", h("br"), "MPa"], true, "reversal of the volumetric strain in this loading"),
         th(["Work", h("br"), "J"], true), th(["Dissipated", h("br"), "J"], true), th("Cracks", true)],
       cycles.map((c, n) => h("tr", {}, td(String(n + 1), true), cell(c.peak, 4), cell(c.reloading), cell(c.unloading), cell(c.axial), cell(c.lateral), cell(c.volumetric), cell(c.omega), cell(c.first_crack), cell(c.sigma_ci), cell(c.sigma_cd), cell(c.work), cell(c.dissipated), td(String(c.cracks), true)))));
@@ -274,7 +274,7 @@ function testFacts(tests, updates) {
     const add = (name, value) => rows.push(h("dt", {}, name), h("dd", {}, value));
     add("Packing", "seed " + t.seed);
     if (t.peak_load !== null) add("Largest load", show(t.peak_load, 4) + " kN");
-    add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^./, (c) => c.toLowerCase()) : ""));
+    add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^[A-Z](?=[a-z])/, (c) => c.toLowerCase()) : ""));
     for (const p of t.properties) add(p.label, show(p.value, 4) + (p.unit ? " " + unitWords(p.unit) : ""));
     if (t.multi_stage) addMultiStage(t, add);
     if (t.hole) addHole(t, add);
