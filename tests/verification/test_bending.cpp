@@ -57,7 +57,7 @@ TEST(Bending, DeflectionIsThatOfAShortBeam) {   // (P37)
         TestSpec test;
         test.own["span"] = {span};
         const Beam b = beam_of(make_outline(beam(0.0, span).outline), 0.08, test);
-            EXPECT_NEAR(e.load_N / e.deflection_m * deflection_factor(b, 0.23) / 0.08 / E, 1.0, 0.03);
+        EXPECT_NEAR(e.load_N / e.deflection_m * deflection_factor(b, 0.23) / 0.08 / E, 1.0, 0.03);
         EXPECT_NEAR(e.imbalance, 0.0, 1e-3);
     }
 }

@@ -3,7 +3,6 @@
 #include "feldspar/methods/platens.hpp"
 
 namespace feldspar {
-namespace {
 
 FixtureSpec roller(const MethodInput& in, const char* name, Vec2 at, double radius_m, bool loads) {
     FixtureSpec roller;
@@ -21,8 +20,6 @@ FixtureSpec roller(const MethodInput& in, const char* name, Vec2 at, double radi
     if (!loads) roller.contact.mu = 0.0;
     return roller;
 }
-
-}  // namespace
 
 std::vector<FixtureSpec> three_rollers(const MethodInput& in, const RollerPlaces& places) {
     return {roller(in, "loading roller", places.above, places.radius_m, true), roller(in, "left support", places.left, places.radius_m, false),
