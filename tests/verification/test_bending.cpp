@@ -62,6 +62,28 @@ TEST(Bending, DeflectionIsThatOfAShortBeam) {   // (P37)
     }
 }
 
+// The moment between the loading rollers is constant: the lower side is stretched by sigma / E there, and nothing of the load's own stresses is felt.
+TEST(Bending, BetweenFourPointsTheFibreHasTheClosedFormsStrainAndTheBeamItsDeflection) {   // (P57), (P58)
+    const double E = modulus({}, fixtures::table7()), S = 6.0 * kHeight, Si = 0.5 * S, arm = 0.5 * (S - Si), h = kHeight;
+    TestSetup s = fixtures::setup(fixtures::make(beam(0.0, S)), methods::four_point_bend);
+    s.test.own["span"] = {S};
+    const RunControl control = fixtures::threads(2);
+    Experiment e(s, control);
+    choose_step(e);
+    prepare(e);
+    const Reactions r = reactions(e.assembly);
+    EXPECT_NEAR(r.rest / r.loading, 1.0, 1e-3);
+    const double middle = 0.5 * s.specimen->spec.outline.width_m, quarter = 0.25 * Si;
+    GaugeSpec fibre;
+    fibre.name = "fibre";
+    fibre.kind = GaugeKind::strain;
+    fibre.points = {{{middle + quarter, 0.0}, {1.0 / (2.0 * quarter), 0.0}}, {{middle - quarter, 0.0}, {-1.0 / (2.0 * quarter), 0.0}}};
+    const double strain = Gauges(e.assembly, *s.specimen, {fibre}).read(e.assembly, {})[0];
+    EXPECT_NEAR(strain * E / e.stress(r.loading), 1.0, 0.03);   // ten grains between the points
+    const double factor = arm * (3.0 * S * S - 4.0 * arm * arm) / (4.0 * h * h * h) + 1.2 * 1.23 * arm / h;
+    EXPECT_NEAR(r.loading / e.gauges.read(e.assembly, {})[0] * factor / 0.08 / E, 1.0, 0.02);
+}
+
 TEST(Bending, MouthOfANotchOpensAsFiniteElementsSay) {   // (P39)
     const double E = modulus({}, fixtures::table7());
     // A tip among grains of a thirteenth of the height: single packings differ by 2 %. Half a height is then a ligament of seven grains, and a body of few

@@ -79,7 +79,7 @@ const TestMethod custom{
     .verdict = {.error_a = 1e-2, .imbalance_a = 2e-2, .imbalance_b = 4e-2},
     .job = {.title = "A test of your own: here a beam on four rollers.",
             .gives = "a test of your own: curves, cracks, fields, energies, and no property of the rock",
-            .keys = R"(name = "four-point-bend"            # names its results
+            .keys = R"(name = "beam-on-four-rollers"       # names its results
 # length = "50 mm"                  # strain = loading motion / length: the specimen's extent along the loading unless given
 # width = "220 mm"                  # stress = load / (width x thickness): its extent across the loading unless given
 # control = "dissipation"           # behind the peak; also "displacement", or a gauge

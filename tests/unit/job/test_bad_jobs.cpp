@@ -340,7 +340,7 @@ std::vector<BadJob> bad_jobs() {
         {"plates in compression",
          with_test("kind = \"uniaxial-compression\"\nplate_mu = 0.1"),
          33,
-         {"test[1].plate_mu", "of flexible grains", "only with kind = \"brazilian\", \"three-point-bend\", \"semi-circular-bend\", \"custom\", or with rigid grains"}},
+         {"test[1].plate_mu", "of flexible grains", "only with kind = \"brazilian\", \"three-point-bend\", \"four-point-bend\", \"semi-circular-bend\", \"custom\", or with rigid grains"}},
         {"grains larger than the disc",
          with_test("kind = \"brazilian\"\ndiameter = \"5 mm\""),
          33,
