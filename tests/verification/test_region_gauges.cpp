@@ -52,8 +52,8 @@ TEST_P(RegionGauges, ReadTheStressOfTheLoadAndTheStrainOfTheMiddle) {   // (P41)
     // Two boxes that make up the specimen: their means, by their areas, make up the whole's.
     EXPECT_NEAR((0.023 * read[5] + (kHeight - 0.023) * read[6]) / kHeight / read[0], 1.0, 1e-9);
     // Across any section goes the load; a box cuts through grains, and within a cut grain the stress varies.
-    EXPECT_NEAR(read[7] / load, 1.0, 0.02);
-    EXPECT_NEAR(read[8] / load, 1.0, 0.1);   // some 50 grains, whose stresses vary by about 30 %
+    EXPECT_NEAR(read[7] / load, 1.0, 0.005);   // measured: 0.0001 to 0.001 off, by the kind of grain
+    EXPECT_NEAR(read[8] / load, 1.0, 0.02);    // measured: 0.0001 to 0.007
     if (GetParam().kind == GrainKind::inner_particles) {   // the specimen's gauge has another particle's centre for each grain
         EXPECT_NEAR(read[9] / e.gauge.axial(e.assembly), 1.0, 0.03);
     } else {
