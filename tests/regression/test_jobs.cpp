@@ -11,6 +11,7 @@
 #include <xxhash.h>
 
 #include "feldspar/job/job_template.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/study/study.hpp"
 #include "golden.hpp"
 
@@ -91,7 +92,7 @@ TEST(RunIdentities, AreThoseRecorded) {
             for (const TestSpec& test : job.tests) {
                 const std::uint64_t seed = test.seeds.empty() ? job.seeds.front() : test.seeds.front();
                 if (!variant.runs(test, seed)) continue;
-                const std::string of_test = fmt::format("{}{}", feldspar::name(test.kind), test.kind == methods::biaxial ? fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6) : "");
+                const std::string of_test = fmt::format("{}{}", feldspar::name(test.kind), test.kind == methods::biaxial || method_of(test).specimen.sheared ? fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6) : "");
                 expect(fmt::format("{} | {}{}{} | seed {}", name, variant.stem, variant.stem.empty() ? "" : " ", of_test, seed), "1," + make_run(job, variant, test, seed).id);
             }
         expect(name + " | all", all_of(study_of(job, job.name, "results").runs));

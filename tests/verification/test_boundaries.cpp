@@ -28,7 +28,7 @@ TEST(Boundaries, PressureActsNormalToTheInitialFacesOverTheirCurrentLength) {   
     Team team(1);
     evaluate_forces(assembly, team, Strength::unlimited);
     const Array<Vec2> without = assembly.nodes.force;
-    assembly.pressure_Pa = pressure;
+    assembly.dead_loads.front().pressure_Pa = pressure;
     evaluate_forces(assembly, team, Strength::unlimited);
     Vec2 on_left, on_right;
     for (int n = 0; n < assembly.nodes.count(); ++n) (assembly.nodes.reference[n].x < 0.01 ? on_left : on_right) += assembly.nodes.force[n] - without[n];

@@ -147,10 +147,10 @@ TEST_P(PlatesOf, MembranesMoveSidewaysOnlyAndCarryThePressureOverTheWholeHeight)
     for (const double displaced : {0.0, 1e-3}) {   // plates keep their length
         for (int side = 0; side < 2; ++side)
             for (const int b : sides[side]) assembly.nodes.displacement[assembly.bodies[b].centre_node].x = (side == 0 ? -1.0 : 1.0) * displaced;
-        assembly.pressure_Pa = 0.0;
+        for (DeadLoad& load : assembly.dead_loads) load.pressure_Pa = 0.0;
         evaluate_forces(assembly, team, Strength::real);
         const Array<Vec2> without = assembly.nodes.force;
-        assembly.pressure_Pa = 5e6;
+        for (DeadLoad& load : assembly.dead_loads) load.pressure_Pa = 5e6;
         evaluate_forces(assembly, team, Strength::real);
         for (int side = 0; side < 2; ++side) {
             ASSERT_EQ(sides[side].size(), 16U);
@@ -187,9 +187,9 @@ TEST_P(PlatesOf, ConsolidationIsIsotropicBeforeShearing) {
         Experiment e(s, control);
         choose_step(e);
         prepare(e);
-        EXPECT_NEAR(e.isotropic.axial_stress_Pa / 5e6, 1.0, 3e-3) << name(kind);   // the servo's own tolerance is 2e-3
-        EXPECT_EQ(e.isotropic.sigma3_Pa, 5e6);
-        EXPECT_NEAR(e.isotropic.axial_strain_gauge / e.isotropic.lateral_strain_gauge, 1.0, 0.2) << name(kind);   // some ten grains wide
+        EXPECT_NEAR(e.consolidated.axial_stress_Pa / 5e6, 1.0, 3e-3) << name(kind);   // the servo's own tolerance is 2e-3
+        EXPECT_EQ(e.consolidated.sigma3_Pa, 5e6);
+        EXPECT_NEAR(e.consolidated.axial_strain_gauge / e.consolidated.lateral_strain_gauge, 1.0, 0.2) << name(kind);   // some ten grains wide
         // The computed start has gone on to the first damage; the plain one stands at the isotropic state, at rest to a hundredth.
         evaluate_forces(e.assembly, e.team, Strength::unlimited);
         const Reactions reactions = feldspar::reactions(e.assembly);

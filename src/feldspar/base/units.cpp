@@ -25,7 +25,7 @@ struct DimensionEntry {
     const char* example;
 };
 
-constexpr std::array<DimensionEntry, 13> dimension_table{{
+constexpr std::array<DimensionEntry, 14> dimension_table{{
     {Dimension::length, "m", "m", "a length", "80 mm"},
     {Dimension::stress, "Pa", "Pa", "a stress", "25.8 GPa"},
     {Dimension::density, "kg m-3", "kg/m3", "a density", "2650 kg/m3"},
@@ -37,6 +37,7 @@ constexpr std::array<DimensionEntry, 13> dimension_table{{
     {Dimension::angle, "radian", "rad", "an angle", "53 deg"},
     {Dimension::force, "N", "N", "a force", "5 kN"},
     {Dimension::energy, "J", "J", "an energy", "50 mJ"},
+    {Dimension::acceleration, "m s-2", "m/s2", "an acceleration", "9.81 m/s2"},
     {Dimension::toughness, "Pa", "Pa m^0.5", "a fracture toughness", "0.9 MPa m^0.5"},   // the root of the metre is taken off before udunits reads the rest
     {Dimension::fraction, "1", "", "a fraction", "0.5 %"},
 }};

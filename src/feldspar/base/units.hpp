@@ -22,6 +22,7 @@ enum class Dimension {
     angle,               ///< [rad] deg, degree or rad
     force,               ///< [N]
     energy,              ///< [J]
+    acceleration,        ///< [m/s2] "9.81 m/s2"
     toughness,           ///< [Pa sqrt(m)] fracture toughness: "0.9 MPa m^0.5", also "MPa sqrt(m)" and "MPa m1/2"
     fraction,            ///< [1] "0.5 %"; a bare number is taken as it stands
 };

@@ -37,6 +37,7 @@ KernelArrays::KernelArrays(Assembly& s)
       pack_forces(s.packs.forces.data()),
       contact_packs(s.packs.contacts.data()),
       rigid_bodies(s.packs.rigid.data()),
+      weight(pairs(s.weight)),
       reference(pairs(s.nodes.reference)),
       inverse_mass(pairs(s.nodes.inverse_mass)),
       loading_mode(pairs(s.nodes.loading_mode)),

@@ -56,6 +56,7 @@ struct KernelArrays {
     ContactPack* contact_packs = nullptr;
     const RigidBody* rigid_bodies = nullptr;
     std::array<KernelLaw, contact_roles> laws;
+    const double* weight = nullptr;   ///< of the nodes; null without gravity
     const double *reference = nullptr, *inverse_mass = nullptr, *loading_mode = nullptr, *mass = nullptr;
     double *displacement = nullptr, *velocity = nullptr, *force = nullptr;
     double *un = nullptr, *us = nullptr, *Fn = nullptr, *Fs = nullptr, *max_un = nullptr, *max_us = nullptr, *damage = nullptr;

@@ -563,11 +563,12 @@ FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelSte
     GrainLanes g;
     const GrainNodes nodes(pack);
     const int count = pack.nodes(), first = pack.first_node + chunk.begin;
+    const double* from_outside = forces == PackForces::on_top_of_others ? a.force : a.weight;   // pressures come on top of the weight
     for (int i = 0; i < count; ++i) {
         const int node = first + i * pack.lanes;
         g.node[i].X = load_points(a.reference + 2 * node, chunk.count);
         g.node[i].u = load_points(a.displacement + 2 * node, chunk.count);
-        g.node[i].f = forces == PackForces::on_top_of_others ? load_points(a.force + 2 * node, chunk.count) : Real2{};
+        g.node[i].f = from_outside != nullptr ? load_points(from_outside + 2 * node, chunk.count) : Real2{};
     }
 
     const Elastic D(a);
@@ -682,8 +683,9 @@ FELDSPAR_INLINE void rigid_bodies(const KernelArrays& arrays, const KernelStep& 
     const ViscousDamping damping(step);
     for (int i = begin; i < end; ++i) {
         const RigidBody& body = a.rigid_bodies[i];
-        const Quad F = forces_on(a, body);
         const int node = 2 * body.first_node;
+        Quad F = forces_on(a, body);
+        if (a.weight != nullptr) F += load_quad(a.weight + node);
         const Quad inverse_mass = load_quad(a.inverse_mass + node);
         const double m = a.mass[body.first_node], turn_mass = a.mass[body.first_node + 1];
         Quad work;

@@ -20,7 +20,7 @@ const std::map<std::string, std::set<MethodId>, std::less<>>& summary_properties
         std::map<std::string, std::set<MethodId>, std::less<>> map;
         for (const RockProperty& property : rock_properties()) {
             using enum RockProperty::Source;
-            if (property.source == test || property.source == ratio || property.source == envelope) map[property.kept_name()] = property.tests;
+            if (property.source == test || property.source == ratio || property.source == envelope || property.source == shear_envelope) map[property.kept_name()] = property.tests;
         }
         return map;
     }();

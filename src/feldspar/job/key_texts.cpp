@@ -45,6 +45,7 @@ std::string_view unit_of(const KeyValue& value) {
         case angle: return "deg";
         case force: return "kN";
         case energy: return "J";
+        case acceleration: return "m/s2";
         case toughness: return "MPa m^0.5";
         case fraction: break;
     }

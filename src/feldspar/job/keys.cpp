@@ -106,6 +106,7 @@ KeyCondition numerics_that_are(bool (*such)(NumericsKind)) { return where("kind"
 bool uses_specimen(const TestMethod& method) { return !method.specimen.own_disc; }
 bool own_disc(const TestMethod& method) { return method.specimen.own_disc; }
 bool confined(const TestMethod& method) { return method.specimen.confined; }
+bool sheared(const TestMethod& method) { return method.specimen.sheared; }
 bool takes_friction(const TestMethod& method) { return !method.specimen.glued && !method.specimen.fixtures_of_job; }
 bool users_own(const TestMethod& method) { return method.specimen.fixtures_of_job; }
 bool has_gauges(const TestMethod& method) { return method.build.gauges != nullptr; }
@@ -359,6 +360,7 @@ std::vector<JobKey> test_keys() {
     std::vector<JobKey> keys{
         {"kind", choice_of(test_methods()), needed, "the method"},
         {"sigma3", one_or_list_of(quantity(stress, confining)), words("must be given; a plate with a hole has free sides without it"), "pressure on the sides; a list stands for one test each, or for the rising pressures of one multi-stage test", methods_that_are(confined)},
+        {"normal_stress", one_or_list_of(quantity(stress, not_negative)), must, "normal stress on the plane that is sheared; a list stands for one test each", methods_that_are(sheared)},
         {"diameter", quantity(length), words("the specimen's width"), "diameter of the disc", methods_that_are(own_disc)},
         {"specimen", table("test.specimen"), words("the job's"), "a specimen of the test's own, of the same grains and thickness: an outline with holes, notches and labels", methods_that_are(uses_specimen)},
         {"disc", choice_of(disc_forms), usual_word(name(DiscForm::whole)), "`\"flattened\"`: cut by two parallel flats on which flat plates press",
@@ -372,7 +374,7 @@ std::vector<JobKey> test_keys() {
         {"stages", tables("test.stages"), none,
          "what the loading does, one stage after the other; without them it loads until the test ends ([theory](theory/loading.md#7-stages))", methods_that_are(users_own)},
         {"stop_fraction", share_of_one(inside_one), usual(spec.stop_fraction),
-         "the test ends when the stress has fallen to this fraction of the peak; in bending 0.1 unless it is given"},
+         "the test ends when the stress has fallen to this fraction of the peak; in bending 0.1 and in direct shear 0.01 unless it is given"},
         {"control", control_words(), words("`\"dissipation\"` with adaptive numerics, in direct tension and the Brazilian test `\"displacement\"`"),
          "what the platens keep constant behind the peak, with adaptive numerics: `\"displacement\"`; `\"dissipation\"`: the work of fracture and friction in "
          "a travel time of a wave; "
@@ -386,6 +388,8 @@ std::vector<JobKey> test_keys() {
         {"length", quantity(length), words("the specimen's extent along the loading"), "strain is the loading motion over this length", methods_that_are(users_own)},
         {"width", quantity(length), words("the specimen's extent across the loading"), "stress is the load over this width times the thickness",
          methods_that_are(users_own)},
+        {"gravity", quantity(acceleration), words("none"), "acceleration that gives all grains their weight, by `[material.grain] density`", methods_that_are(users_own)},
+        {"gravity_direction", direction(), {.toml = "[0, -1]"}, "x and y of the direction in which they weigh", methods_that_are(users_own)},
         {"snapshots", integer(0, 1000), usual(spec.snapshots), "fields kept between the first crack and the end"},
         {"seeds", list_of(integer(0)), words("those of the run"), "the packings of this test"},
         {"plates", choice_of(plate_shapes), words("`\"curved\"`; of a flattened disc `\"flat\"`"),
@@ -440,6 +444,7 @@ std::vector<JobKey> stage_keys() {
         {"beyond", value, words("none"), "... when it is so far beyond where the last loading ended; in the first loading as `by`", moving},
         {"travel_times", number(positive), words("until the specimen is at rest"), "how long, in times in which a wave crosses the specimen", hold},
         {"sigma3", quantity(stress, not_negative), must, "the pressure to which it goes, over 30 travel times if it changes altogether", confine},
+        {"fixture", text("the name of a fixture"), words("all that press"), "whose pressure changes", confine},
         {"keep", choice_of(confine_keeps), words("`\"motion\"`"), "`\"motion\"`: the loading motion is at rest; `\"load\"`: it follows, so that the axial stress stays", confine},
         {"times", integer(1, 10000), words("until the test ends"), "how often", cycle},
         {"stages", tables("test.stages"), must, "the stages; not a cycle again", cycle},
@@ -449,19 +454,24 @@ std::vector<JobKey> stage_keys() {
 std::vector<JobKey> fixture_keys() {
     const auto forms = [](std::initializer_list<FixtureForm> some) { return with("kind", some); };
     const KeyCondition boundary = forms({FixtureForm::boundary}), plates = forms({FixtureForm::plate, FixtureForm::roller, FixtureForm::jaw}),
-                       curved = forms({FixtureForm::roller, FixtureForm::jaw});
+                       curved = forms({FixtureForm::roller, FixtureForm::jaw}), pressure = forms({FixtureForm::pressure}),
+                       flat = forms({FixtureForm::plate}), pressing = forms({FixtureForm::plate, FixtureForm::pressure}),
+                       moving = forms({FixtureForm::boundary, FixtureForm::plate, FixtureForm::roller, FixtureForm::jaw});
     return {
         {"name", text("1 to 40 letters, digits, blanks, '_' and '-'"), needed, "of messages and of gauges that read its force"},
         {"kind", choice_of(fixture_forms), needed,
-         "`\"boundary\"`: the nodes on a part of the boundary of flexible grains follow it; a rigid plate that the specimen is pressed against: flat, `\"roller\"` or hollow `\"jaw\"`"},
+         "`\"boundary\"`: the nodes on a part of the boundary of flexible grains follow it; a rigid plate that the specimen is pressed against: flat, `\"roller\"` or hollow `\"jaw\"`; `\"pressure\"` on a part of the boundary of flexible grains"},
         {"on", text("the label of an edge"), words("`on` or `at` must be given"), "the part of the boundary with this label"},
         {"at", point(), words("`on` or `at` must be given"), "the part of the boundary near this point; of a roller or jaw the point where its surface touches"},
         {"within", quantity(length), words("of a roller or jaw its radius; else it must be given beside `at`"), "how near"},
-        {"motion", direction(), words("at rest"), "x and y of its way per unit of the loading motion, such as `[0, -1]`"},
+        {"motion", direction(), words("at rest"), "x and y of its way per unit of the loading motion, such as `[0, -1]`", moving},
         {"normal", direction(), must, "x and y of the direction from the specimen into the plate", plates},
         {"radius", quantity(length), must, "radius of its surface", curved},
         {"Kn", quantity(stiffness_gradient), words("`plate_Kn` of the test"), "stiffness per area", plates},
         {"mu", number(not_negative), usual(0.0), "friction", plates},
+        {"pressure", quantity(stress), words("of a plate: it does not give way"), "on the part of the boundary; of a plate, which then is free along its normal: the force on it over the area that it covers", pressing},
+        {"force", quantity(Dimension::force), words("of a plate: it does not give way"), "the force on a plate that is free along its normal, in place of `pressure`", flat},
+        {"spring", quantity(stiffness_gradient, not_negative), words("the pressure stays"), "by how much the pressure on such a plate grows as the specimen pushes it out", flat},
         {"glued", flag(), usual(0.0), "unbreakable along its normal, free along the plate", plates},
         {"holds_x", flag(), usual(1.0), "x follows the fixture; else it is free", boundary},
         {"holds_y", flag(), usual(1.0), "y follows the fixture; else it is free", boundary},
@@ -475,13 +485,13 @@ std::vector<JobKey> gauge_keys() {
     return {
         {"name", text("1 to 40 letters, digits, '_' and '-'"), needed, "its column in the results; `control` and `until` may name it"},
         {"kind", choice_of(gauge_forms), needed,
-         "`\"extension\"`: by how much two points move apart; `\"strain\"`: the same over their distance; `\"displacement\"` of a point; `\"force\"` on a fixture; `\"mean-stress\"` and "
+         "`\"extension\"`: by how much two points move apart; `\"strain\"`: the same over their distance; `\"displacement\"` of a point or a plate; `\"force\"` on a fixture; `\"mean-stress\"` and "
          "`\"mean-strain\"` in a region, and `\"hole-stress\"` along the edge of a round hole, compression positive; `\"energy\"` of the whole test "
          "([definitions](theory/properties.md))"},
         {"from", point(), must, "first point", between},
         {"to", point(), must, "second point", between},
-        {"at", point(), must, "the point", with("kind", {GaugeForm::displacement})},
-        {"fixture", text("the name of a fixture"), must, "the fixture", with("kind", {GaugeForm::force})},
+        {"at", point(), words("`at` or `fixture` must be given"), "the point", with("kind", {GaugeForm::displacement})},
+        {"fixture", text("the name of a fixture"), words("of a force it must be given"), "the fixture; of a displacement in place of `at`: a plate", with("kind", {GaugeForm::force, GaugeForm::displacement})},
         {"box", pairs_of(quantity(length, any_value), quantity(length, any_value)), words("`box`, or `centre` and `radius`, must be given"), "the region: a box, by two opposite corners", means},
         {"centre", point(), words("of a hole it must be given"), "centre of the region, a circle, or of the hole", round},
         {"radius", quantity(length), words("of a hole it must be given"), "radius of the region or of the hole", round},

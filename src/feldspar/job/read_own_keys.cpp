@@ -30,6 +30,27 @@ Vec2 read_direction(const JobTable& table, std::string_view key, bool unit) {
     return direction;
 }
 
+// A plate under a pressure or a force, which gives way along its normal.
+void read_pressing(const JobTable& table, FixtureSpec& fixture) {
+    fixture.pressed = table.has("pressure") || table.has("force");
+    if (table.has("pressure")) fixture.pressure_Pa = table.quantity("pressure");
+    if (table.has("force")) fixture.force_N = table.quantity("force");
+    if (table.has("spring")) fixture.spring_Pa_m = table.quantity("spring");
+    table.check({"pressure", "force", "spring"}, [&] {
+        if (table.has("pressure") && table.has("force")) table.fail("force", "given beside pressure", "one of them");
+        if (table.has("spring") && !fixture.pressed) table.fail("spring", "presses a plate that has no pressure and no force", "pressure or force beside it");
+    });
+    if (!fixture.pressed) return;
+    table.check({"normal"}, [&] {
+        if (std::abs(fixture.normal.x) > 1e-9 && std::abs(fixture.normal.y) > 1e-9) table.fail("normal", "a plate under a pressure gives way along its normal, which must be along x or y", "[0, 1], [0, -1], [1, 0] or [-1, 0]");
+    });
+    table.check({"motion", "normal"}, [&] {
+        if (std::abs(dot(fixture.motion, fixture.normal)) > 1e-9) table.fail("motion", "moves a plate along its normal, where its pressure decides how it moves", "a motion along the plate, or no pressure");
+    });
+    fixture.contact.glued = false;
+    if (table.flag("glued")) table.check({"glued"}, [&] { table.fail("glued", "a plate under a pressure is not glued", "leave it out"); });
+}
+
 FixtureSpec read_fixture(const JobTable& table) {
     FixtureSpec fixture;
     table.require({"name", "kind"});
@@ -47,6 +68,14 @@ FixtureSpec read_fixture(const JobTable& table) {
     }
     if (!table.has("on") && !table.has("at")) table.check({}, [&] { table.fail("on", "the fixture has no place", "on = the label of an edge, or at = a point"); });
     if (table.has("motion")) fixture.motion = read_direction(table, "motion", false);
+    if (form == FixtureForm::pressure) {
+        fixture.kind = FixtureKind::pressure;
+        fixture.axis.reset();
+        if (table.has("at")) fixture.part.reach_m = table.quantity("within");
+        table.require({"pressure"});
+        fixture.pressure_Pa = table.quantity("pressure");
+        return fixture;
+    }
     if (form == FixtureForm::boundary) {
         fixture.kind = FixtureKind::nodes;
         fixture.imposes_x = table.flag("holds_x");
@@ -63,6 +92,7 @@ FixtureSpec read_fixture(const JobTable& table) {
     fixture.contact.glued = table.flag("glued");
     if (form == FixtureForm::plate) {
         if (table.has("at")) fixture.part.reach_m = table.quantity("within");
+        read_pressing(table, fixture);
         return fixture;
     }
     table.require({"at"});
@@ -97,6 +127,16 @@ GaugeRegion read_region(const JobTable& table) {
         region.b = corners[1];
     });
     return region;
+}
+
+void read_fixture_of(const JobTable& table, const TestSpec& test, GaugeSpec& gauge) {
+    gauge.fixture = table.text("fixture");
+    table.check({"fixture"}, [&] {
+        std::vector<std::string_view> known;
+        for (const FixtureSpec& fixture : test.custom.fixtures) known.push_back(fixture.name);
+        if (std::ranges::find(known, gauge.fixture) == known.end())
+            table.fail("fixture", fmt::format("'{}' is not a fixture of the test", gauge.fixture), listed(known), did_you_mean(gauge.fixture, known));
+    });
 }
 
 GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
@@ -155,20 +195,26 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
             break;
         }
         case GaugeForm::displacement:
-            gauge.points = {{table.point("at"), read_direction(table, "direction", true)}};
-            gauge.meaning = "displacement of a point along a direction";
+            gauge.meaning = table.has("fixture") ? "displacement of a fixture along a direction" : "displacement of a point along a direction";
+            gauge.direction = read_direction(table, "direction", true);
+            if (table.has("at") == table.has("fixture"))
+                table.check({"at", "fixture"}, [&] {
+                    if (table.has("at")) table.fail("fixture", "given beside at", "one of them");
+                    table.fail("at", "missing key: at (or fixture: what the gauge reads)", "at = a point, or fixture = the name of a plate");
+                });
+            if (!table.has("fixture")) {
+                gauge.points = {{table.has("at") ? table.point("at") : Vec2{}, gauge.direction}};
+                gauge.direction = {};
+                break;
+            }
+            read_fixture_of(table, test, gauge);
             break;
         case GaugeForm::force: {
             gauge.kind = GaugeKind::force;
-            gauge.fixture = table.text("fixture");
             gauge.meaning = "force of the specimen on a fixture along a direction";
             gauge.direction = read_direction(table, "direction", true);
-            table.check({"fixture"}, [&] {
-                std::vector<std::string_view> known;
-                for (const FixtureSpec& fixture : test.custom.fixtures) known.push_back(fixture.name);
-                if (std::ranges::find(known, gauge.fixture) == known.end())
-                    table.fail("fixture", fmt::format("'{}' is not a fixture of the test", gauge.fixture), listed(known), did_you_mean(gauge.fixture, known));
-            });
+            table.require({"fixture"});
+            if (table.has("fixture")) read_fixture_of(table, test, gauge);
             break;
         }
     }
@@ -228,6 +274,8 @@ void read_custom(const JobTable& table, TestSpec& test) {
     });
     if (table.has("length")) test.custom.length_m = table.quantity("length");
     if (table.has("width")) test.custom.width_m = table.quantity("width");
+    if (table.has("gravity")) test.custom.gravity_m_s2 = table.quantity("gravity") * (table.has("gravity_direction") ? read_direction(table, "gravity_direction", true) : Vec2{0.0, -1.0});
+    else table.refuse({"gravity_direction"}, "no gravity", "gravity = \"9.81 m/s2\" beside it");
     if (table.has("fixture"))
         for (const JobTable& one : table.tables("fixture", "a fixture")) {
             test.custom.fixtures.push_back(read_fixture(one));

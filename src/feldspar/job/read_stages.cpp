@@ -88,10 +88,15 @@ StageSpec read_stage(const JobTable& table, const TestSpec& test, StageForm form
         }
         case StageForm::confine: {
             StageSpec stage{.kind = StageKind::confine, .sigma3_Pa = table.quantity("sigma3")};
+            if (table.has("fixture")) stage.fixture = table.text("fixture");
             if (table.has("keep")) stage.keep = table.choice("keep", confine_keeps);
-            table.check({"kind"}, [&] {
-                const bool pressed = std::ranges::any_of(test.custom.fixtures, [](const FixtureSpec& f) { return f.kind == FixtureKind::pressure || f.kind == FixtureKind::membrane; });
-                if (!pressed) table.fail("kind", "nothing presses on the sides of this test, so their pressure cannot change", "\"load\", \"unload\", \"hold\" and \"cycle\"");
+            std::vector<std::string_view> pressing;
+            for (const FixtureSpec& f : test.custom.fixtures)
+                if (f.kind == FixtureKind::pressure || f.kind == FixtureKind::membrane || f.pressed) pressing.push_back(f.name);
+            table.check({"kind", "fixture"}, [&] {
+                if (pressing.empty()) table.fail("kind", "no fixture of this test presses with a pressure that could change", "a fixture with a pressure; or \"load\", \"unload\", \"hold\" and \"cycle\"");
+                if (!stage.fixture.empty() && std::ranges::find(pressing, stage.fixture) == pressing.end())
+                    table.fail("fixture", fmt::format("'{}' is no fixture with a pressure", stage.fixture), listed(pressing), did_you_mean(stage.fixture, pressing));
             });
             return stage;
         }

@@ -95,12 +95,13 @@ double read_flats(const JobTable& table, bool flattened, const SpecimenSpec& spe
     return angle_rad;
 }
 
-std::vector<double> confining_stresses(const JobTable& table) {
-    const toml::array* list = table.find("sigma3") == nullptr ? nullptr : table.find("sigma3")->as_array();
-    if (list == nullptr) return {table.quantity("sigma3")};
-    if (list->empty()) table.check({}, [&] { table.fail("sigma3", "the list is empty", "one stress or more"); });
+// One or a list: sigma3, or the normal stresses of a shear test.
+std::vector<double> given_stresses(const JobTable& table, const char* key) {
+    const toml::array* list = table.find(key) == nullptr ? nullptr : table.find(key)->as_array();
+    if (list == nullptr) return {table.quantity(key)};
+    if (list->empty()) table.check({}, [&] { table.fail(key, "the list is empty", "one stress or more"); });
     std::vector<double> values;
-    for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, "sigma3")); });
+    for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, key)); });
     return values;
 }
 
@@ -160,18 +161,21 @@ void check_by_method(const JobTable& table, const TestSpec& test, const Specimen
     });
 }
 
-// Keys of plates where none load the specimen. Those that are another method's are refused already.
+// Keys of plates where none load the specimen. Those that are another method's are refused already. The ends of flexible grains are pressed by plates
+// where these have friction, which makes plates of what otherwise are rows of nodes.
 void refuse_plates(const JobTable& table, const TestMethod& method) {
-    for (const JobKey& key : table.rows().keys)
-        if (key.of_plates && (key.when.key.empty() || key.when.holds(method.name)))
-            table.refuse({key.name}, "kind = \"" + std::string(method.name) + "\" of flexible grains",
-                         "only with " + plated_methods() + ", or with rigid grains or inner particles, which are loaded by plates");
+    const bool rubs = !method.specimen.glued && table.has("plate_mu");
+    for (const JobKey& key : table.rows().keys) {
+        if (!key.of_plates || (!key.when.key.empty() && !key.when.holds(method.name)) || (rubs && key.when.key.empty()) || key.name == "plate_mu") continue;
+        table.refuse({key.name}, "kind = \"" + std::string(method.name) + "\" of flexible grains" + (method.specimen.glued || key.name == "membrane_plates" ? "" : " without plate_mu"),
+                     "with plate_mu, the friction of the end plates, beside it; with " + plated_methods() + ", or with rigid grains or inner particles, which are loaded by plates");
+    }
 }
 
 // Plates load every Brazilian disc, and all specimens of rigid grains and inner particles.
 void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     const MethodSpecimen& method = method_of(test).specimen;
-    if (!method.plates && !particles) return;
+    if (!method.plates && !particles && !table.has("plate_mu")) return;
     const PlateShape usual = test.plates;
     if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
     if (table.has("jaw_radius")) {
@@ -248,7 +252,8 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
     if (!kind_known) {
         table.quantity("diameter", 0.0);
         table.quantity("plate_Kn", 0.0);
-        if (table.has("sigma3")) (void)confining_stresses(table);
+        for (const char* key : {"sigma3", "normal_stress"})
+            if (table.has(key)) (void)given_stresses(table, key);
         return {};
     }
     read_plates(table, has_particles(test.kind, variants), test);
@@ -258,17 +263,19 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
         test.specimen = disc_of(of_job, diameter_m, flat_angle_rad);
     }
     if (method.reading == Reading::stages) {
-        read_pressures(table, confining_stresses(table), test);
+        read_pressures(table, given_stresses(table, "sigma3"), test);
         return {test};
     }
-    if (!method.specimen.confined || (method.specimen.stands_free && !table.has("sigma3"))) return {test};
+    const MethodSpecimen& needs = method.specimen;
+    if ((!needs.confined && !needs.sheared) || (needs.stands_free && !table.has("sigma3"))) return {test};
     std::vector<TestSpec> tests;
-    table.require({"sigma3"});
-    if (!table.has("sigma3")) return tests;
-    for (double sigma3 : confining_stresses(table)) {
-        test.sigma3_Pa = sigma3;
-        table.check({"maximum_stress", "sigma3"}, [&] {
-            if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= sigma3)
+    const char* key = pressure_key(method);
+    table.require({key});
+    if (!table.has(key)) return tests;
+    for (double stress : given_stresses(table, key)) {
+        test.sigma3_Pa = stress;
+        if (needs.confined) table.check({"maximum_stress", "sigma3"}, [&] {
+            if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= stress)
                 table.fail("maximum_stress", "is there before the specimen is loaded", "a sigma1 above sigma3");
         });
         tests.push_back(test);
@@ -325,11 +332,12 @@ std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& speci
                 const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
                 const std::string key =
                     test_name(test) +
-                    (tells_pressure(test) ? " at sigma3 = " + format_exact(sigma3_MPa) + " MPa" : "");
+                    (tells_pressure(test) ? fmt::format(" at {} = {} MPa", pressure_key(method_of(test)), format_exact(sigma3_MPa)) : "");
                 const bool again = !taken.insert(key + " s" + std::to_string(seed)).second;
                 if (again && root.sound({"run"}))
-                    table.check({"kind", "sigma3", "seeds"}, [&] {
-                        table.fail(table.has("sigma3") ? "sigma3" : "kind",
+                    table.check({"kind", "sigma3", "normal_stress", "seeds"}, [&] {
+                        const char* of_pressure = pressure_key(method_of(test));
+                        table.fail(table.has(of_pressure) ? of_pressure : "kind",
                                    key + " with seed " + std::to_string(seed) + " is asked for twice",
                                    "each test once for each seed");
                     });

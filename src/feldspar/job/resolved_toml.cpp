@@ -217,13 +217,13 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
     const bool particles = std::any_of(job.variants.begin(), job.variants.end(), [&](const Variant& variant) {
         return variant.runs(test.kind) && variant.model.kind != GrainKind::flexible;
     });
-    if (!particles && !method_of(test).specimen.plates) return;
+    if (!particles && !method_of(test).specimen.plates && !(test.plate_mu.value_or(0.0) > 0.0)) return;
     if (method_of(test).specimen.own_disc) out.word("plates", name(test.plates));
     if (test.plates == PlateShape::curved) out.number("jaw_radius", test.jaw_radius);
     if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m);
     else out.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (test.plate_mu) out.number("plate_mu", *test.plate_mu);
-    if (method_of(test).specimen.confined) out.raw("membrane_plates", std::to_string(test.membrane_plates));
+    if (particles && method_of(test).specimen.confined) out.raw("membrane_plates", std::to_string(test.membrane_plates));
 }
 
 std::string direction(Vec2 d) { return fmt::format("[{}, {}]", format_exact(d.x), format_exact(d.y)); }
@@ -235,7 +235,8 @@ void write_until(Lines& out, const TestSpec& test) {
 }
 
 void write_fixture(Lines& out, const FixtureSpec& fixture) {
-    const FixtureForm form = fixture.kind == FixtureKind::nodes ? FixtureForm::boundary
+    const FixtureForm form = fixture.kind == FixtureKind::nodes      ? FixtureForm::boundary
+                             : fixture.kind == FixtureKind::pressure ? FixtureForm::pressure
                              : fixture.radius_m == 0.0          ? FixtureForm::plate
                              : fixture.radius_m > 0.0           ? FixtureForm::jaw
                                                                 : FixtureForm::roller;
@@ -249,6 +250,7 @@ void write_fixture(Lines& out, const FixtureSpec& fixture) {
         out.quantity("within", fixture.part.reach_m);
     }
     if (fixture.moves()) out.raw("motion", direction(fixture.motion));
+    if (form == FixtureForm::pressure) return out.quantity("pressure", fixture.pressure_Pa);
     if (form == FixtureForm::boundary) {
         flag("holds_x", fixture.imposes_x);
         flag("holds_y", fixture.imposes_y);
@@ -259,6 +261,12 @@ void write_fixture(Lines& out, const FixtureSpec& fixture) {
     if (fixture.radius_m != 0.0) out.quantity("radius", std::abs(fixture.radius_m));
     if (fixture.contact.Kn_Pa_m > 0.0) out.quantity("Kn", fixture.contact.Kn_Pa_m);
     out.number("mu", fixture.contact.mu);
+    if (fixture.pressed) {
+        if (fixture.force_N != 0.0) out.quantity("force", fixture.force_N, Dimension::force);
+        else out.quantity("pressure", fixture.pressure_Pa);
+        if (fixture.spring_Pa_m != 0.0) out.quantity("spring", fixture.spring_Pa_m);
+        return;
+    }
     flag("glued", fixture.contact.glued);
 }
 
@@ -298,6 +306,9 @@ void write_gauge(Lines& out, const GaugeSpec& gauge) {
         else out.raw("box", "[" + point(gauge.region.a) + ", " + point(gauge.region.b) + "]");
         out.raw("direction", direction(gauge.direction));
         if (gauge.normal != Vec2{}) out.raw("normal", direction(gauge.normal));
+    } else if (form == GaugeForm::displacement && gauge.points.empty()) {
+        out.word("fixture", gauge.fixture);
+        out.raw("direction", direction(gauge.direction));
     } else if (form == GaugeForm::displacement) {
         out.raw("at", point(gauge.points.front().at));
         out.raw("direction", direction(gauge.points.front().weight));
@@ -323,7 +334,7 @@ void write_method_key(Lines& out, const TestSpec& test, const MethodKey& key) {
 std::string stage_in_braces(const TestSpec& test, const StageSpec& stage) {
     std::string text = fmt::format("kind = {}", quote(name(stage.kind)));
     if (stage.kind == StageKind::hold) return stage.travel_times ? text + fmt::format(", travel_times = {}", format_exact(*stage.travel_times)) : text;
-    if (stage.kind == StageKind::confine) return text + fmt::format(", sigma3 = {}, keep = {}", si(stage.sigma3_Pa, Dimension::stress), quote(name(stage.keep)));
+    if (stage.kind == StageKind::confine) return text + fmt::format(", sigma3 = {}{}, keep = {}", si(stage.sigma3_Pa, Dimension::stress), stage.fixture.empty() ? "" : ", fixture = " + quote(stage.fixture), quote(name(stage.keep)));
     if (stage.end == StageEnd::test) return text;
     text += fmt::format(", until = {}", quote(stage.end == StageEnd::gauge ? stage.gauge : name(stage.end)));
     if (stage.end == StageEnd::reversal) return text;
@@ -355,7 +366,7 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
         for (const double sigma3_Pa : test.later_sigma3_Pa) pressures.push_back(si(sigma3_Pa, Dimension::stress));
         out.raw("sigma3", list(pressures));
     } else if (tells_pressure(test)) {
-        out.quantity("sigma3", test.sigma3_Pa);
+        out.quantity(pressure_key(method_of(test)), test.sigma3_Pa);
     }
     for (const MethodKey& key : method_of(test).keys) write_method_key(out, test, key);
     if (!test.stages.empty()) out.raw("stages", stages(test));
@@ -372,6 +383,10 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
     write_plates(out, test, job);
     if (test.custom.length_m) out.quantity("length", *test.custom.length_m);
     if (test.custom.width_m) out.quantity("width", *test.custom.width_m);
+    if (const Vec2 g = test.custom.gravity_m_s2; g != Vec2{}) {
+        out.quantity("gravity", norm(g), Dimension::acceleration);
+        out.raw("gravity_direction", direction((1.0 / norm(g)) * g));
+    }
     out.raw("snapshots", std::to_string(test.snapshots));
     if (!test.seeds.empty()) out.raw("seeds", list(test.seeds));
     if (test.stop_gauge) write_until(out, test);

@@ -40,14 +40,15 @@ inline constexpr std::array disc_forms{DiscForm::whole, DiscForm::flattened};
 inline const char* name(DiscForm form) { return form == DiscForm::whole ? "whole" : "flattened"; }
 
 /// What a fixture of a custom test is.
-enum class FixtureForm { boundary, plate, roller, jaw };
-inline constexpr std::array fixture_forms{FixtureForm::boundary, FixtureForm::plate, FixtureForm::roller, FixtureForm::jaw};
+enum class FixtureForm { boundary, plate, roller, jaw, pressure };
+inline constexpr std::array fixture_forms{FixtureForm::boundary, FixtureForm::plate, FixtureForm::roller, FixtureForm::jaw, FixtureForm::pressure};
 inline const char* name(FixtureForm form) {
     switch (form) {
         case FixtureForm::boundary: return "boundary";
         case FixtureForm::plate: return "plate";
         case FixtureForm::roller: return "roller";
         case FixtureForm::jaw: return "jaw";
+        case FixtureForm::pressure: return "pressure";
     }
     return "?";
 }

@@ -39,7 +39,7 @@ double pressure_power(const Assembly& assembly) {
     for (const PressureEdge& edge : assembly.pressure_edges) {
         const Nodes& nodes = assembly.nodes;
         const double length = edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(nodes.position(edge.node_b) - nodes.position(edge.node_a));
-        power -= 0.5 * assembly.pressure_Pa * length * assembly.thickness_m * dot(edge.outward, nodes.velocity[edge.node_a] + nodes.velocity[edge.node_b]);
+        power -= 0.5 * assembly.pressure_Pa(assembly.dead_loads[edge.load]) * length * assembly.thickness_m * dot(edge.outward, nodes.velocity[edge.node_a] + nodes.velocity[edge.node_b]);
     }
     return power;
 }

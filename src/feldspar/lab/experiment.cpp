@@ -62,8 +62,9 @@ void require_stages(const Experiment& e) {
     for (const StageGroup& group : e.stages)
         for (const StageSpec& stage : group.stages) {
             if (stage.end == StageEnd::gauge) require_gauge(e.gauges, stage.gauge, "test.stages");
-            if (stage.kind == StageKind::confine && e.assembly.pressure_edges.empty())
-                throw InputError({.key = "test.stages"}, "a stage changes the pressure on the sides, and nothing presses on them", "stages without \"confine\", or a test with a confining pressure");
+            if (stage.kind != StageKind::confine) continue;
+            if (e.assembly.dead_loads.empty())
+                throw InputError({.key = "test.stages"}, "a stage changes the pressure on the specimen, and nothing presses on it", "stages without \"confine\", or a test with a pressure");
         }
 }
 
@@ -100,6 +101,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     require_stages(*this);
     stage = stages.empty() ? 0 : 1;
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
+    if (s.test.custom.gravity_m_s2 != Vec2{}) full_weight = weights(assembly, s.grain.density_kg_m3, s.test.custom.gravity_m_s2);
     impose_motion();
 }
 
@@ -110,6 +112,22 @@ void Experiment::impose_motion() {
             if (fixture.imposed.x != 0.0) B.x = fixture.motion.x;
             if (fixture.imposed.y != 0.0) B.y = fixture.motion.y;
         }
+}
+
+bool Experiment::has_dead_loads() const {
+    return !full_weight.empty() || std::any_of(assembly.dead_loads.begin(), assembly.dead_loads.end(), [](const DeadLoad& load) { return load.given_Pa != 0.0 || load.stiffness_Pa_m > 0.0; });
+}
+
+void Experiment::set_dead_loads(double share) {
+    for (DeadLoad& load : assembly.dead_loads) load.pressure_Pa = share * load.given_Pa;
+    assembly.weight = full_weight;
+    for (Vec2& weight : assembly.weight) weight = share * weight;
+}
+
+double Experiment::weight_work(double since) const {
+    double work = 0.0;
+    for (std::size_t n = 0; n < assembly.weight.size(); ++n) work += dot(assembly.weight[n], assembly.nodes.displacement[n] - since * assembly.nodes.velocity[n]);
+    return work;
 }
 
 void Experiment::run(int count) {

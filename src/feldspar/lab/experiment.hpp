@@ -54,10 +54,19 @@ struct Experiment {
     double elastic_start_J = 0.0;
     double rate_control_J = 0.0;
     bool computed_start = false;  ///< the elastic phase was passed over in closed form
-    HistoryRow isotropic;         ///< biaxial: the state when shearing starts
+    Array<Vec2> full_weight;      ///< of each node, N; empty without gravity
+    double weight_start_J = 0.0;  ///< work of gravity before the account of the energy begins
+    HistoryRow consolidated;      ///< the state under dead loads, when the loading starts
 
     bool stopped() const { return control.stop != nullptr && control.stop->load(); }
-    bool confined() const { return is_confined(setup.test); }   ///< a pressure acts on the sides
+    bool confined() const { return is_confined(setup.test); }   ///< a pressure acts on the sides, and first on all
+    bool has_dead_loads() const;  ///< pressures or gravity act before the loading starts
+    /// Pressure on the sides of a confined specimen, Pa; 0 of others.
+    double confining_Pa() const { return method.specimen.confined && !assembly.dead_loads.empty() ? assembly.dead_loads.front().pressure_Pa : 0.0; }
+    /// Lets all dead loads act with a share of what is given.
+    void set_dead_loads(double share);
+    /// Work of gravity since the body was unloaded, J. @param since  at the displacements of so long ago, by the present velocities
+    double weight_work(double since = 0.0) const;
     /// Compression positive. @param load_N  positive where the specimen resists the loading
     double stress(double load_N) const { return direction * load_N / section_m2 + 0.0; }   // no minus zero
 

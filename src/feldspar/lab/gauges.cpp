@@ -147,11 +147,15 @@ double value_of(EnergyTerm term, const EnergyLedger& energy) {
 Gauges::Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs) : specs_(std::move(specs)), mesh_(&specimen.mesh) {
     for (const GaugeSpec& gauge : specs_) {
         int fixture = -1;
-        if (gauge.kind == GaugeKind::force) {
+        const bool of_fixture = gauge.kind == GaugeKind::displacement && gauge.points.empty();
+        if (gauge.kind == GaugeKind::force || of_fixture) {
             const auto found = std::find_if(assembly.fixtures.begin(), assembly.fixtures.end(), [&](const Fixture& f) { return f.name == gauge.fixture; });
             if (found == assembly.fixtures.end())
                 throw InputError({.key = "gauge"}, fmt::format("the gauge \"{}\" reads the fixture \"{}\", which the test does not have", gauge.name, gauge.fixture));
-            fixture = static_cast<int>(found - assembly.fixtures.begin());
+            if (of_fixture && found->plate < 0)
+                throw InputError({.key = "gauge"}, fmt::format("the gauge \"{}\" reads the way of the fixture \"{}\", which is no plate", gauge.name, gauge.fixture), "a plate, roller or jaw; or a point of the specimen");
+            if (of_fixture) terms_.push_back({found->nodes.front(), gauge.direction});
+            else fixture = static_cast<int>(found - assembly.fixtures.begin());
         }
         switch (gauge.kind) {
             case GaugeKind::displacement:
@@ -318,7 +322,7 @@ std::vector<double> Gauges::read(const Assembly& assembly, const EnergyLedger& e
     }
     std::size_t term = 0, stress = 0;
     for (std::size_t g = 0; g < specs_.size(); ++g) {
-        double sum = fixture_of_[g] >= 0 ? dot(reaction(assembly, assembly.fixtures[fixture_of_[g]]), specs_[g].direction) : 0.0;
+        double sum = fixture_of_[g] >= 0 ? dot(felt_by(assembly, assembly.fixtures[fixture_of_[g]]), specs_[g].direction) : 0.0;
         for (; term < ends_[g]; ++term) sum += dot(terms_[term].weight, assembly.nodes.displacement[terms_[term].node]);
         if (stress < stress_ends_[g]) sum -= stress_sum(assembly, stress, stress_ends_[g], of_grains);   // compression positive
         stress = stress_ends_[g];

@@ -343,9 +343,10 @@ private:
     // A part of the change of pressure, unless the body is out of balance. @return the speed with which the loading motion follows
     double confine(const HistoryRow& row, int block) {
         const StageSpec& stage = stages_.now();
-        double& pressure = e_.assembly.pressure_Pa;
-        const double change = stage.sigma3_Pa - stages_.begun_sigma3_Pa(), whole = std::max(stage.sigma3_Pa, stages_.begun_sigma3_Pa());
-        if (change != 0.0) {
+        for (std::size_t i = 0; i < e_.assembly.dead_loads.size(); ++i) {
+            double& pressure = e_.assembly.dead_loads[i].pressure_Pa;
+            const double change = stage.sigma3_Pa - stages_.begun_Pa(i), whole = std::max(stage.sigma3_Pa, stages_.begun_Pa(i));
+            if (change == 0.0 || !stages_.changes(i)) continue;
             const double times = std::max(kLeastConfining, kConfining * std::abs(change) / whole);
             const double share = control_.balanced() ? 1.0 : unrest() > kRunOut ? kGrowthFailing : 0.0;
             const double next = pressure + share * change * block * e_.settings.dt / (times * e_.travel_time);

@@ -181,24 +181,50 @@ void balance(Experiment& e) {
     }
 }
 
-// Where contacts close on the way the answer is not linear, so scale and relax several times; B from the last two states.
+// What the dead loads press with in all, N.
+double dead_load_N(const Experiment& e) {
+    double sum = 0.0;
+    for (const PressureEdge& edge : e.assembly.pressure_edges) {
+        const Array<Vec2>& X = e.assembly.nodes.reference;
+        const double length = edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(X[edge.node_b] - X[edge.node_a]);
+        sum += e.assembly.dead_loads[edge.load].given_Pa * length * e.assembly.thickness_m;
+    }
+    Vec2 weight;
+    for (const Vec2 w : e.full_weight) weight += w;
+    return sum + norm(weight);
+}
+
+// Where contacts close on the way the answer is not linear, so scale and relax several times; B from the last two states. Beside dead loads the first
+// motion is small against them: a specimen that they alone hold may slide.
 void elastic_contacts(Experiment& e) {
-    const BodyState unloaded = capture(e.assembly, 0.0);
+    constexpr double kLargestScale = 20.0, kHolds = 0.8;   // of a round; share of the load that a linear body would have gained
+    constexpr double kFirstStrain = 2e-5, kFirstLoad = 0.02;   // the first motion; load that it brings about, over the dead loads
+    const BodyState unloaded = capture(e.assembly, e.platen_travel_m);
+    const double force_unloaded = platen_force(e), quantity_unloaded = quantity_at_base(e);
     const auto settle = [&](double tolerance = kTolerance) {
         relax_or_throw(e, tolerance);
         if (e.method.start.time_of_mode && tolerance == kTolerance) balance(e);
         return capture(e.assembly, e.platen_travel_m);
     };
-    if (e.method.start.strained_evenly) add_affine(e, 2e-5 * e.length_m);
-    else move_fixtures(e, 2e-5 * e.length_m);
+    double first_m = kFirstStrain * e.length_m;
+    if (e.has_dead_loads()) first_m = std::min(first_m, kFirstLoad * dead_load_N(e) / e.axial_stiffness);
+    if (e.method.start.strained_evenly) add_affine(e, first_m);
+    else move_fixtures(e, first_m);
     BodyState reached = settle(kOnTheWay);
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded: its fixtures do not strain it");
-        const double most = std::min(factor_at_maximum(e, 0.0, platen_force(e)), factor_at_first_stage(e, 0.0, factor));
+        const double most = std::min(factor_at_maximum(e, force_unloaded, platen_force(e)), factor_at_first_stage(e, quantity_unloaded, factor));
         if (round > 0 && is_end_of_elastic_phase(factor, 1.04, most)) break;
-        go_to(e, superpose(unloaded, reached, std::min({kBelowDamage * factor, most, 20.0})));
+        const double scale = std::min({kBelowDamage * factor, most, kLargestScale}), gained = platen_force(e) - force_unloaded;
+        const BodyState before = reached;
+        go_to(e, superpose(unloaded, reached, scale));
         reached = settle(kOnTheWay);
+        if (e.has_dead_loads() && platen_force(e) - force_unloaded < kHolds * scale * gained) {   // it slides: more motion brings no more load
+            go_to(e, before);
+            reached = before;
+            break;
+        }
     }
     reached = settle();
     if (first_damage(e.assembly, unloaded, reached) <= 1.0) {   // the rounds did not settle below the first damage
@@ -206,7 +232,7 @@ void elastic_contacts(Experiment& e) {
         reached = settle();
     }
     if (!e.stages.empty()) {   // the rounds saw the load of a body that was not yet in balance
-        const double most = factor_at_first_stage(e, 0.0, first_damage(e.assembly, unloaded, reached));
+        const double most = factor_at_first_stage(e, quantity_unloaded, first_damage(e.assembly, unloaded, reached));
         if (most < 1.0) {
             go_to(e, superpose(unloaded, reached, most));
             reached = settle();
@@ -224,7 +250,7 @@ void elastic_contacts(Experiment& e) {
 // Isotropic stress by superposition: lateral pressure, and platen travel until the platens carry the same stress.
 void consolidate_elastically(Experiment& e) {
     const double target = e.setup.test.sigma3_Pa * e.section_m2;
-    e.assembly.pressure_Pa = e.setup.test.sigma3_Pa;
+    e.set_dead_loads(1.0);
     double tolerance = kOnTheWay;   // until the platens are right; a loose state moves on when it is relaxed in full, so both are asked then
     relax_or_throw(e, tolerance);
     for (int round = 0; round < 12; ++round) {
@@ -243,17 +269,17 @@ void consolidate_elastically(Experiment& e) {
     relax_or_throw(e);
 }
 
-// Isotropic stress with the real law: pressure and platen servo follow a ramp of many travel times, then wait for rest.
-void consolidate_by_ramp(Experiment& e) {
-    const double sigma3 = e.setup.test.sigma3_Pa, target = sigma3 * e.section_m2;
+// Dead loads with the real law: they follow a ramp of many travel times, then wait for rest. Of a confined specimen the platens follow by a servo, so
+// that the stress is isotropic; else the fixtures rest. @param already  share that acts already
+void consolidate_by_ramp(Experiment& e, double already = 0.0) {
+    const double target = e.confined() ? e.setup.test.sigma3_Pa * e.section_m2 : dead_load_N(e);
     const double period = e.travel_time / e.settings.dt;                    // in steps
     const long long ramp = std::llround(30.0 * period), most = 40 * ramp;
-    const double already = e.assembly.pressure_Pa / sigma3;
     for (long long k = 0;; k += 10) {
         const double share = std::min(1.0, already + (1.0 - already) * static_cast<double>(k) / static_cast<double>(ramp));
-        e.assembly.pressure_Pa = share * sigma3;
+        e.set_dead_loads(share);
         const double force = platen_force(e);
-        e.change_speed((share * target - force) / e.axial_stiffness / (2.0 * e.travel_time));
+        if (e.confined()) e.change_speed((share * target - force) / e.axial_stiffness / (2.0 * e.travel_time));
         e.run(10);
         e.preparation_steps += 10;
         if (e.stopped()) throw Interrupted();
@@ -261,17 +287,20 @@ void consolidate_by_ramp(Experiment& e) {
         if (e.control.progress && k % 500 == 0) e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
         const auto [loading, rest] = reactions(e.assembly);
         const double mean = 0.5 * (loading + rest);   // which is reported
-        if (share == 1.0 && std::abs(mean - target) < 2e-3 * target && unbalanced_force(e.assembly) < 0.01 * target) break;
-        if (k > most) throw NumericalError("the specimen does not come to rest under the isotropic stress: it fails before it is sheared");
+        const bool there = !e.confined() || std::abs(mean - target) < 2e-3 * target;
+        if (share == 1.0 && there && unbalanced_force(e.assembly) < 0.01 * target) break;
+        if (k > most)
+            throw NumericalError(e.confined() ? "the specimen does not come to rest under the isotropic stress: it fails before it is sheared"
+                                              : "the specimen does not come to rest under its pressures and its weight: it fails before it is loaded");
     }
     e.change_speed(0.0);
 }
 
-// The state when shearing starts, for the history.
-void note_isotropic(Experiment& e) {
+// The state when the loading starts, for the history.
+void note_consolidated(Experiment& e) {
     const Reactions reactions = feldspar::reactions(e.assembly);
     const StoredEnergy stored = stored_energy(e.assembly, 0.0);
-    HistoryRow& row = e.isotropic;
+    HistoryRow& row = e.consolidated;
     row.step = e.step;
     row.platen_displacement_m = e.direction * e.platen_travel_m;
     row.axial_strain = row.platen_displacement_m / e.length_m;
@@ -280,15 +309,15 @@ void note_isotropic(Experiment& e) {
     row.stress_top_Pa = e.stress(reactions.loading);
     row.stress_bottom_Pa = e.stress(reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
-    row.sigma3_Pa = e.assembly.pressure_Pa;
+    row.sigma3_Pa = e.confining_Pa();
     row.energy.elastic_grains = stored.grains_J;
     row.energy.elastic_contacts = stored.contacts_J;
     row.energy.elastic_start = stored.grains_J + stored.contacts_J;
     row.gauges = e.gauges.read(e.assembly, row.energy);
 }
 
-// Does the isotropic state stay below the first damage?
-bool isotropic_is_elastic(const Experiment& e, const BodyState& unloaded) {
+// Does the state under dead loads stay below the first damage?
+bool consolidated_is_elastic(const Experiment& e, const BodyState& unloaded) {
     return first_damage(e.assembly, unloaded, capture(e.assembly, e.platen_travel_m)) > 1.0;
 }
 
@@ -297,34 +326,74 @@ void forget_relaxation_work(Experiment& e) {
     for (auto* energy : {&e.assembly.bonds.fracture_J, &e.assembly.bonds.friction_J}) std::fill(energy->begin(), energy->end(), 0.0);
     e.platen_work = {};
     e.rate_control_J = 0.0;
+    e.weight_start_J = e.weight_work();
+}
+
+// Springs rest where the plates have come to.
+void hold_springs(Experiment& e) {
+    for (DeadLoad& load : e.assembly.dead_loads) {
+        load.springs = load.stiffness_Pa_m > 0.0;
+        if (load.springs) load.rest_m = dot(e.assembly.nodes.displacement[load.plate_node], load.outward);
+    }
+}
+
+// Dead loads on a body of unlimited strength, while the fixtures rest.
+void press_elastically(Experiment& e) {
+    if (!e.has_dead_loads()) return;
+    e.set_dead_loads(1.0);
+    relax_or_throw(e);
+    hold_springs(e);
+}
+
+// From the unloaded body, with the real law.
+void press_by_ramp(Experiment& e) {
+    for (DeadLoad& load : e.assembly.dead_loads) load.springs = false;
+    e.set_dead_loads(0.0);
+    evaluate_forces(e.assembly, e.team, Strength::real);
+    forget_relaxation_work(e);
+    if (!e.has_dead_loads()) return;
+    consolidate_by_ramp(e);
+    hold_springs(e);
+    note_consolidated(e);
 }
 
 void prepare_adaptive(Experiment& e) {
     if (!e.method.start.stays_in_touch) {
+        const BodyState unloaded = capture(e.assembly, 0.0);
+        press_elastically(e);
+        const bool elastic = !e.has_dead_loads() || consolidated_is_elastic(e, unloaded);
+        forget_relaxation_work(e);
+        if (e.has_dead_loads() && elastic) note_consolidated(e);
         elastic_contacts(e);
+        if (!elastic) {   // the mode is that of the whole body; the loading begins where the dead loads have left it
+            go_to(e, unloaded);
+            return press_by_ramp(e);
+        }
     } else {
         const BodyState unloaded = capture(e.assembly, 0.0);
         bool elastic = true;
+        double consolidated = 1.0;   // share of the dead loads that the elastic body bears
         if (e.confined()) {
             consolidate_elastically(e);
-            elastic = isotropic_is_elastic(e, unloaded);
+            elastic = consolidated_is_elastic(e, unloaded);
             if (!elastic) {   // go as far as it is elastic, then ramp with the real law
                 const BodyState full = capture(e.assembly, e.platen_travel_m);
                 const double share = 0.9 * first_damage(e.assembly, unloaded, full);
                 go_to(e, superpose(unloaded, full, share));
-                e.assembly.pressure_Pa = share * e.setup.test.sigma3_Pa;
+                e.set_dead_loads(share);
                 relax_or_throw(e);
+                consolidated = share;
             }
         }
         forget_relaxation_work(e);
         if (elastic) {
-            note_isotropic(e);
+            note_consolidated(e);
             elastic_loading(e, capture(e.assembly, e.platen_travel_m));
         } else {
             const StoredEnergy before = stored_energy(e.assembly, 0.0);
             e.elastic_start_J = before.grains_J + before.contacts_J;
-            consolidate_by_ramp(e);
-            note_isotropic(e);
+            consolidate_by_ramp(e, consolidated);
+            note_consolidated(e);
             const double travel = e.platen_travel_m;   // B from an affine guess on the damaged body
             add_affine(e, 1e-9 * e.length_m);
             const BodyState moved = capture(e.assembly, e.platen_travel_m);
@@ -349,20 +418,20 @@ void forget_mode(Experiment& e) {
 // A specimen that is not strained evenly begins with the velocities of its elastic answer: pushed at one place only, it would swing.
 void begin_in_mode(Experiment& e, double speed) {
     const BodyState unloaded = capture(e.assembly, 0.0);
+    press_elastically(e);
     elastic_contacts(e);
     go_to(e, unloaded);
-    evaluate_forces(e.assembly, e.team, Strength::real);
-    forget_relaxation_work(e);
+    press_by_ramp(e);
     e.change_speed(speed);
     forget_mode(e);
 }
 
 // The paper's own way, and that of real masses: no computed start; rows of nodes begin with an affine velocity field.
 void prepare_plainly(Experiment& e) {
-    if (e.confined()) consolidate_by_ramp(e);
-    note_isotropic(e);
     const double speed = e.setup.numerics.speed_m.value_or(kPaperSpeed);
     if (!e.method.start.strained_evenly) return begin_in_mode(e, speed);
+    if (e.confined()) consolidate_by_ramp(e);
+    note_consolidated(e);
     if (!e.method.start.stays_in_touch) {
         e.change_speed(speed);
         return;

@@ -50,11 +50,20 @@ struct EnvelopeFit {
     std::vector<double> sigma1_Pa;
 };
 
+/// The strengths of a packing along a plane, and the straight lines through them.
+struct ShearFit {
+    std::uint64_t seed = 0;
+    std::vector<double> normal_Pa, peak_Pa, residual_Pa;   ///< of each test: at the peak; residual not-a-number where a test did not go so far
+    double cohesion_Pa = 0.0, friction_angle_deg = 0.0;    ///< of the peaks
+    double residual_cohesion_Pa = 0.0, residual_friction_angle_deg = 0.0;   ///< of the residual strengths; not-a-number with fewer than two
+};
+
 /// Properties of the rock: a name (as in summary.json: "E_Pa", "nu", "UCS_Pa", "DTS_Pa", "BTS_Pa", "cohesion_Pa",
 /// "friction_angle_deg", "hoek_brown_mi", ...) to its statistics.
 struct PropertySummary {
     std::map<std::string, PropertyStatistics> values;
     std::vector<EnvelopeFit> fits;
+    std::vector<ShearFit> shear_fits;
     std::string envelope_method;   ///< one sentence: which tests, which sigma_3 range, how fitted; empty without a fit
 };
 

@@ -59,7 +59,7 @@ HistoryRow Recorder::present(Phase phase) {
     row.stress_top_Pa = e_.stress(reactions.loading);
     row.stress_bottom_Pa = e_.stress(reactions.rest);
     row.axial_stress_Pa = 0.5 * (row.stress_top_Pa + row.stress_bottom_Pa);
-    row.sigma3_Pa = e_.assembly.pressure_Pa;
+    row.sigma3_Pa = e_.confining_Pa();
     row.stage = e_.stage;
     row.cracks_tensile = now_.tensile;
     row.cracks_shear = now_.shear;
@@ -78,6 +78,7 @@ HistoryRow Recorder::present(Phase phase) {
     const Motion moving = motion(e_.assembly, last);
     row.kinetic_deviation = moving.deviation_J;   // local damping: the loading mode is zero, and this is all motion
     row.energy.external = e_.platen_work.loading + stored.pressure_J - moving.ahead_external_J;
+    if (!e_.full_weight.empty()) row.energy.external += e_.weight_work(last.dt) - e_.weight_start_J;
     row.energy.elastic_start = e_.elastic_start_J;
     row.energy.rate_control = e_.rate_control_J;
     row.energy.elastic_grains = stored.grains_J;

@@ -70,6 +70,15 @@ RockProperty fitted(std::string_view name, QuantityUnit unit, const char* label,
     return p;
 }
 
+RockProperty sheared(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, double ShearFit::* fit, std::string_view laboratory) {
+    RockProperty p{name, unit, label, symbol, "(P63)", Source::shear_envelope, {}};
+    for (const MethodId method : test_methods())
+        if (method_of(method).specimen.sheared) p.tests.insert(method);
+    p.shear_fit = fit;
+    p.laboratory = laboratory;
+    return p;
+}
+
 std::vector<RockProperty> table() {
     using namespace units;
     std::vector<RockProperty> all{
@@ -92,6 +101,10 @@ std::vector<RockProperty> table() {
         fitted("hoek_brown_mi", pure, "Hoek-Brown constant, intact rock", "mi", "(P13)", &EnvelopeFit::hoek_brown_mi, "hoek_brown_mi"),
         read("multi_stage_cohesion", method_that_reads(Reading::stages), "Cohesion, one specimen under rising pressures", "c multi-stage", "cohesion"),
         read("multi_stage_friction_angle", method_that_reads(Reading::stages), "Friction angle, one specimen under rising pressures", "\u03c6 multi-stage", "friction_angle"),
+        sheared("shear_cohesion", stress, "Cohesion, direct shear", "c shear", &ShearFit::cohesion_Pa, "cohesion"),
+        sheared("shear_friction_angle", angle, "Friction angle, direct shear", "\u03c6 shear", &ShearFit::friction_angle_deg, "friction_angle"),
+        sheared("residual_cohesion", stress, "Residual cohesion, direct shear", "c residual", &ShearFit::residual_cohesion_Pa, "residual_cohesion"),
+        sheared("residual_friction_angle", angle, "Residual friction angle, direct shear", "\u03c6 residual", &ShearFit::residual_friction_angle_deg, "residual_friction_angle"),
         ratio("UCS_over_BTS", "UCS", "BTS"),
         ratio("UCS_over_DTS", "UCS", "DTS"),
         ratio("BTS_over_DTS", "BTS", "DTS"),

@@ -17,7 +17,7 @@ namespace feldspar {
 
 struct RockProperty {
     /// Where a packing's value comes from. A formed one stands here for its words alone: what forms it are the studies of envelopes.
-    enum class Source { test, ratio, envelope, confined_strength, formed };
+    enum class Source { test, ratio, envelope, shear_envelope, confined_strength, formed };
 
     std::string_view name;      ///< without unit: "E", "UCS", "cohesion"
     QuantityUnit unit;
@@ -30,6 +30,7 @@ struct RockProperty {
     bool of_broken_only = false;               ///< of source test: a strength, which a test has whose peak was reached
     std::string_view above{}, below{};         ///< of source ratio: names of properties
     double EnvelopeFit::* fit = nullptr;       ///< of source envelope
+    double ShearFit::* shear_fit = nullptr;    ///< of source shear_envelope
     std::string_view laboratory{};             ///< the key of a job's [laboratory] that it compares with; empty without one
 
     /// In PropertySummary: "E_Pa".

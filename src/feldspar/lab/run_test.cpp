@@ -59,9 +59,9 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     Recorder recorder(e, result);
     try {
         prepare(e);
-        HistoryRow from;   // where the computed start began: nothing, or the isotropic state
-        if (e.confined()) {
-            from = e.isotropic;
+        HistoryRow from;   // where the computed start began: nothing, or the state under dead loads
+        if (e.has_dead_loads()) {
+            from = e.consolidated;
             from.phase = Phase::consolidation;
             HistoryRow unloaded;
             unloaded.phase = Phase::consolidation;

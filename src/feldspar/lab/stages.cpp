@@ -70,9 +70,12 @@ void StageCursor::begin(const HistoryRow& row) {
     slope_ = 0.0;
     largest_volume_ = volume(row);
     if (group_ == 0 && pass_ == 0 && stage_ == 0) first_volume_ = largest_volume_;
-    begun_sigma3_Pa_ = e_->assembly.pressure_Pa;
+    begun_Pa_.clear();
+    for (const DeadLoad& load : e_->assembly.dead_loads) begun_Pa_.push_back(load.pressure_Pa);
     begun_load_Pa_ = e_->direction * row.axial_stress_Pa;
 }
+
+bool StageCursor::changes(std::size_t load) const { return now().fixture.empty() || now().fixture == e_->assembly.dead_loads[load].name; }
 
 double StageCursor::time_since_begun() const { return static_cast<double>(e_->step - begun_step_) * e_->settings.dt / e_->travel_time; }
 
@@ -98,8 +101,12 @@ std::optional<std::string> StageCursor::ended(const HistoryRow& row, double larg
         if (stage.travel_times) return waited >= *stage.travel_times ? std::optional(fmt::format("held for {:g} travel times", *stage.travel_times)) : std::nullopt;
         return waited >= kLeastWait && residual <= kQuiet ? std::optional<std::string>("the specimen is at rest") : std::nullopt;
     }
-    if (stage.kind == StageKind::confine)
-        return e_->assembly.pressure_Pa == stage.sigma3_Pa && residual <= 1.0 ? std::optional(fmt::format("the pressure is {:.4g} MPa", stage.sigma3_Pa / 1e6)) : std::nullopt;
+    if (stage.kind == StageKind::confine) {
+        const std::vector<DeadLoad>& loads = e_->assembly.dead_loads;
+        for (std::size_t i = 0; i < loads.size(); ++i)
+            if (changes(i) && loads[i].pressure_Pa != stage.sigma3_Pa) return std::nullopt;
+        return residual <= 1.0 ? std::optional(fmt::format("the pressure is {:.4g} MPa", stage.sigma3_Pa / 1e6)) : std::nullopt;
+    }
     switch (stage.end) {
         case StageEnd::test: return std::nullopt;
         case StageEnd::share_of_peak: {

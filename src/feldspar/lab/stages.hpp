@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "feldspar/lab/experiment.hpp"
 
@@ -49,8 +50,9 @@ public:
     /// @param largest_load_Pa  of the test so far
     double approach_m(double largest_load_Pa) const;
 
-    /// Pressure at which a stage of confining began.
-    double begun_sigma3_Pa() const { return begun_sigma3_Pa_; }
+    /// Pressure of a dead load (Assembly::dead_loads) when the stage began, and whether a stage of confining changes it.
+    double begun_Pa(std::size_t load) const { return begun_Pa_[load]; }
+    bool changes(std::size_t load) const;
     /// Stress at which the stage began, positive in the sense of the loading.
     double begun_load_Pa() const { return begun_load_Pa_; }
 
@@ -63,7 +65,8 @@ private:
     int group_ = 0, pass_ = 0;
     std::size_t stage_ = 0;
     long long begun_step_ = 0;
-    double begun_value_ = 0.0, begun_sigma3_Pa_ = 0.0, begun_load_Pa_ = 0.0;
+    double begun_value_ = 0.0, begun_load_Pa_ = 0.0;
+    std::vector<double> begun_Pa_;          // of the dead loads
     double value_ = 0.0, travel_m_ = 0.0;   // in the last row
     double slope_ = 0.0;                    // change of the value per loading motion between the last two rows, magnitude
     HistoryRow top_;                        // at the end of the last loading, if there was one

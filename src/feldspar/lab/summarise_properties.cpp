@@ -6,8 +6,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "feldspar/base/angle.hpp"
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/median.hpp"
+#include "feldspar/lab/regression.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 #include "feldspar/methods/method.hpp"
@@ -114,6 +116,42 @@ void add_envelopes(PropertySummary& summary, std::span<const TestResult> results
     summary.envelope_method = method(summary.fits);
 }
 
+// (P63) of each packing sheared under two normal stresses or more.
+void add_shear_envelopes(PropertySummary& summary, std::span<const TestResult> results) {
+    std::map<std::uint64_t, std::map<double, const TestResult*>> found;
+    for (const TestResult& r : results)
+        if (method_of(r.test).specimen.sheared && r.properties.peak_reached) found[r.seed].emplace(r.test.sigma3_Pa, &r);
+    const auto value = [](const TestResult& r, std::string_view name) { return test_quantity(name).value(r); };
+    for (const auto& [seed, tests] : found) {
+        ShearFit fit;
+        fit.seed = seed;
+        std::vector<double> normal, residual;
+        for (const auto& [stress, result] : tests) {
+            fit.normal_Pa.push_back(value(*result, "shear_normal_stress"));
+            fit.peak_Pa.push_back(value(*result, "shear_strength"));
+            fit.residual_Pa.push_back(value(*result, "shear_strength_residual"));
+            if (!std::isfinite(fit.residual_Pa.back())) continue;
+            normal.push_back(value(*result, "shear_normal_stress_residual"));
+            residual.push_back(fit.residual_Pa.back());
+        }
+        if (tests.size() < 2) continue;
+        const auto degrees = [](double slope) { return in_degrees(std::atan(slope)); };
+        const Line peak = regression_line(fit.normal_Pa, fit.peak_Pa), end = regression_line(normal, residual);
+        fit.cohesion_Pa = peak.intercept;
+        fit.friction_angle_deg = degrees(peak.slope);
+        fit.residual_cohesion_Pa = end.intercept;
+        fit.residual_friction_angle_deg = degrees(end.slope);
+        summary.shear_fits.push_back(std::move(fit));
+    }
+    for (const RockProperty& property : rock_properties()) {
+        if (property.source != RockProperty::Source::shear_envelope) continue;
+        BySeed values;
+        for (const ShearFit& fit : summary.shear_fits)
+            if (std::isfinite(fit.*property.shear_fit)) values[fit.seed] = fit.*property.shear_fit;
+        add(summary, property.kept_name(), values);
+    }
+}
+
 }  // namespace
 
 PropertySummary summarise(std::span<const TestResult> results) {
@@ -124,6 +162,7 @@ PropertySummary summarise(std::span<const TestResult> results) {
             add(summary, property.kept_name(), ratio(collect(results, *rock_property(property.above)), collect(results, *rock_property(property.below))));
     }
     add_envelopes(summary, results);
+    add_shear_envelopes(summary, results);
     return summary;
 }
 

@@ -52,7 +52,8 @@ void check(const Outline& outline, double, const TestSpec& test) {
             throw InputError({.key = "test.fixture"}, fmt::format("the fixture \"{}\" is on \"{}\", which no edge of the outline is called", fixture.name, label), known);
         }
         moves = moves || fixture.moves();
-        if (fixture.kind == FixtureKind::plate) held += Vec2{std::abs(fixture.normal.x), std::abs(fixture.normal.y)} + (fixture.contact.mu > 0.0 ? Vec2{std::abs(fixture.normal.y), std::abs(fixture.normal.x)} : Vec2{});
+        if (fixture.kind == FixtureKind::plate)
+            held += (fixture.pressed ? Vec2{} : Vec2{std::abs(fixture.normal.x), std::abs(fixture.normal.y)}) + (fixture.contact.mu > 0.0 ? Vec2{std::abs(fixture.normal.y), std::abs(fixture.normal.x)} : Vec2{});
         if (fixture.kind == FixtureKind::nodes) held += Vec2{fixture.imposes_x || fixture.pins_middle ? 1.0 : 0.0, fixture.imposes_y || fixture.pins_middle ? 1.0 : 0.0};
     }
     if (!moves) throw InputError({.key = "test.fixture"}, "no fixture moves, so nothing loads the specimen", "motion = [0, -1] of one fixture at least");

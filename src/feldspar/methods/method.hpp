@@ -126,6 +126,7 @@ struct MethodTemplate {
 struct MethodSpecimen {
     bool own_disc = false;     ///< a disc that the test cuts itself and presses between two plates; else the job's specimen, between platens at its ends
     bool confined = false;     ///< a pressure sigma3 on the sides (and first on all sides), which the job gives
+    bool sheared = false;      ///< along a plane, under a normal stress that the job gives
     bool stands_free = false;  ///< confined, but a job may leave the pressure out
     bool glued = false;        ///< the ends are glued to the platens; else they may slide and come off
     double plate_mu = 0.0;     ///< friction of plates, unless the job gives another
@@ -211,7 +212,16 @@ std::vector<StageGroup> stages_of(const TestSpec& test);
 inline bool is_confined(const TestSpec& test) { return method_of(test).specimen.confined && test.sigma3_Pa > 0.0; }
 
 /// Whether names of results and tables tell the pressure: of every test that must have one, and of others that have.
-inline bool tells_pressure(const TestSpec& test) { return method_of(test).specimen.confined && (test.sigma3_Pa > 0.0 || !method_of(test).specimen.stands_free); }
+inline bool tells_pressure(const TestSpec& test) {
+    const MethodSpecimen& specimen = method_of(test).specimen;
+    return specimen.sheared || (specimen.confined && (test.sigma3_Pa > 0.0 || !specimen.stands_free));
+}
+
+/// The key of [[test]] that gives this pressure, of a method that has one.
+inline const char* pressure_key(const TestMethod& method) { return method.specimen.sheared ? "normal_stress" : "sigma3"; }
+
+/// The same as people write it.
+inline const char* pressure_symbol(const TestMethod& method) { return method.specimen.sheared ? "\u03c3n" : method.specimen.confined ? "\u03c3\u2083" : ""; }
 
 /// What the platens do behind the strength unless the job says otherwise. @param adaptive  the numerics can change the speed at all
 inline LoadControl usual_control(MethodId kind, bool adaptive) { return adaptive ? method_of(kind).loading.control : LoadControl::displacement; }

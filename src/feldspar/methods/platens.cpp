@@ -13,7 +13,7 @@ FixtureSpec platen(const MethodInput& in, bool top) {
     FixtureSpec platen;
     platen.name = platen.part.label = top ? top_label : bottom_label;
     platen.motion = {0.0, top ? -method_of(in.test).loading.sign : 0.0};
-    if (in.model.kind == GrainKind::flexible) {
+    if (in.model.kind == GrainKind::flexible && !(in.test.plate_mu.value_or(0.0) > 0.0)) {   // without friction a row of nodes is such a plate
         platen.kind = FixtureKind::nodes;
         platen.imposes_y = true;
         platen.pins_middle = !top;
@@ -35,6 +35,7 @@ FixtureSpec membrane(const MethodInput& in, bool left) {
     side.part.remaining = true;
     side.contact = {in.contact.Kn_Pa_m, in.contact.eta, 0.0, false};
     side.plates = in.test.membrane_plates;
+    side.pressure_Pa = in.test.sigma3_Pa;
     return side;
 }
 
@@ -58,6 +59,7 @@ std::vector<FixtureSpec> between_platens(const MethodInput& in) {
         sides.name = "sides";
         sides.kind = FixtureKind::pressure;
         sides.part.remaining = true;
+        sides.pressure_Pa = in.test.sigma3_Pa;
         fixtures.push_back(sides);
     } else {
         fixtures.push_back(membrane(in, true));

@@ -31,6 +31,7 @@ struct CustomTest {
     std::vector<GaugeSpec> gauges;
     std::optional<double> length_m;        ///< strain = loading motion / length; default: the extent of the specimen along the loading
     std::optional<double> width_m;         ///< stress = load / (width x thickness); default: its extent across
+    Vec2 gravity_m_s2{};                   ///< acceleration of all grains before and during the loading
 };
 
 /// Ends a test when a gauge has reached a value, upwards or downwards.
@@ -68,7 +69,7 @@ namespace methods {
 
 struct TestSpec {
     MethodId kind = methods::uniaxial_compression;
-    double sigma3_Pa = 0.0;              ///< biaxial only
+    double sigma3_Pa = 0.0;              ///< pressure on the sides; direct shear: the normal stress
     double stop_fraction = 0.8;          ///< the test ends when the stress has fallen to this fraction of the peak
     LoadControl control = LoadControl::displacement;   ///< behind the strength; jobs: that of the method unless said; lateral strain: compression only
     double maximum_strain = 0.05;        ///< ... or at this axial strain (Brazilian: platen displacement / diameter)

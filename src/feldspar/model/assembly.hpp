@@ -6,6 +6,7 @@
 // with equally many points, stand side by side in packs (model/packs.hpp), so that vector instructions can take a pack at a time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -188,17 +189,31 @@ struct Fixture {
     bool moves() const { return motion != Vec2{}; }
 };
 
-/// A boundary edge under pressure, or a plate of a membrane.
+/// A pressure that is given and does not follow the loading motion: on a part of the boundary, on the plates of a membrane, or on one plate.
+struct DeadLoad {
+    std::string name;                          ///< of its fixture
+    double given_Pa = 0.0;                     ///< with which the test begins; compression positive
+    double pressure_Pa = 0.0;                  ///< at present; of one plate: where its spring has its rest
+    double stiffness_Pa_m = 0.0;               ///< of the spring that presses one plate; 0: the pressure stays whatever the plate does
+    std::int32_t plate_node = -1;              ///< of one plate with a spring
+    bool springs = false;                      ///< the spring acts: the plate has come to `rest_m`
+    double rest_m = 0.0;                       ///< displacement of the plate along `outward` at which the pressure is pressure_Pa
+    Vec2 outward{};                            ///< of one plate: from the specimen into it
+    Vec2 resultant_m2{};                       ///< force on specimen and plates for a pressure of one, undeformed
+};
+
+/// A boundary edge under pressure, or a plate under one.
 struct PressureEdge {
     std::int32_t node_a = 0, node_b = 0;       ///< a plate's node twice
     Vec2 outward;                              ///< unit normal of the undeformed edge
     double plate_length_m = 0.0;               ///< of a plate; 0: the pressure acts over the current distance of the nodes
+    std::int32_t load = 0;                     ///< into Assembly::dead_loads
 };
 
 /// Work done on a body, accumulated every step (J).
 struct BodyWork {
     double damping = 0.0;    ///< taken out by damping
-    double pressure = 0.0;   ///< put in by the lateral pressure
+    double pressure = 0.0;   ///< put in by pressures
 };
 
 /// Materials of contacts, by Contact::material. Plates that touch alike share one; others have those from `at_more_plates` on.
@@ -225,13 +240,23 @@ struct Assembly {
     std::vector<PressureEdge> pressure_edges;  ///< contiguous by body
     std::vector<BodyWork> body_work;
     std::vector<Fixture> fixtures;             ///< those whose reaction is felt: not membranes
-    double pressure_Pa = 0.0;                  ///< on the pressure edges, compression positive
+    std::vector<DeadLoad> dead_loads;          ///< on the pressure edges
+    Array<Vec2> weight;                        ///< N, of each node: what gravity does; empty without gravity
     Packs packs;
 
     Vec2 centre(int body) const { return nodes.position(bodies[body].centre_node); }
     /// Rotation of a rigid body, rad.
     double rotation(const Body& body) const { return nodes.displacement[body.centre_node + 1].x / body.radius_m; }
     double rotation(int body) const { return rotation(bodies[body]); }
+    /// Whether any pressure acts.
+    bool is_pressed() const {
+        return std::any_of(dead_loads.begin(), dead_loads.end(), [](const DeadLoad& load) { return load.pressure_Pa != 0.0 || load.springs; });
+    }
+    /// Pressure of a load at present, or where its plate was at a displacement of `back` before. A spring does not pull.
+    double pressure_Pa(const DeadLoad& load, Vec2 back = {}) const {
+        if (!load.springs) return load.pressure_Pa;
+        return std::max(0.0, load.pressure_Pa + load.stiffness_Pa_m * (dot(nodes.displacement[load.plate_node] - back, load.outward) - load.rest_m));
+    }
     BondState bond(int point) const { return bonds.at(static_cast<std::size_t>(points[point].state)); }
     void set_bond(int point, const BondState& bond) { bonds.set(static_cast<std::size_t>(points[point].state), bond); }
     /// Adds a contact point. @return its number

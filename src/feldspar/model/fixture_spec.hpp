@@ -2,6 +2,7 @@
 // sides. A test lists its fixtures; attach() (model/fixtures.hpp) puts any list to any specimen and knows no test.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -33,6 +34,7 @@ struct BoundaryPart {
     double least_cosine = 0.5;      ///< ... this: 60 degrees, beyond which no plate ever reaches an edge
     std::optional<Vec2> at;         ///< m; the edge comes within `reach_m` of this point ...
     double reach_m = 0.0;           ///< ... m
+    std::optional<std::array<Vec2, 2>> inside{};   ///< m; the middle of the edge lies in the box with these opposite corners
     bool remaining = false;         ///< of what no nodes or plates before it in the list have taken
 };
 
@@ -61,6 +63,12 @@ struct FixtureSpec {
     double radius_m = 0.0;        ///< of the plate's surface: 0 flat, > 0 hollow as curved jaws, < 0 round as a roller
     std::optional<Vec2> axis;     ///< through which the normal of a curved surface goes, m
     std::string flat_label;       ///< under_circle: edges with this label are touched in their middle instead, with their own length
+
+    // pressure, membrane; plate
+    double pressure_Pa = 0.0;     ///< with which the test begins, compression positive
+    bool pressed = false;         ///< a plate that is free along its normal, which must be along x or y, under a pressure or a force
+    double force_N = 0.0;         ///< on a pressed plate, in place of the pressure
+    double spring_Pa_m = 0.0;     ///< by which the pressure on a pressed plate grows as the specimen pushes it out
 
     // membrane
     int plates = 0;               ///< side by side; at least 1

@@ -144,6 +144,27 @@ public:
         }
     }
 
+    /// After the last fixture: pressures, body by body.
+    void finish() {
+        std::stable_sort(pressed_.begin(), pressed_.end(), [](const Pressed& l, const Pressed& r) { return l.body < r.body; });
+        std::vector<double> areas(assembly_.dead_loads.size(), 0.0);
+        for (const auto& [number, edge] : pressed_) {
+            Body& body = assembly_.bodies[number];
+            const auto here = static_cast<std::int32_t>(assembly_.pressure_edges.size());
+            if (body.pressure_end == 0) body.pressure_begin = here;
+            body.pressure_end = here + 1;
+            assembly_.pressure_edges.push_back(edge);
+            const Array<Vec2>& X = assembly_.nodes.reference;
+            const double area = (edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(X[edge.node_b] - X[edge.node_a])) * assembly_.thickness_m;
+            assembly_.dead_loads[edge.load].resultant_m2 += -area * edge.outward;
+            areas[edge.load] += area;
+        }
+        constexpr double kRounding = 1e-9;   // opposite sides cancel but for their rounding
+        for (std::size_t i = 0; i < areas.size(); ++i)
+            for (double Vec2::*c : {&Vec2::x, &Vec2::y})
+                if (std::abs(assembly_.dead_loads[i].resultant_m2.*c) < kRounding * areas[i]) assembly_.dead_loads[i].resultant_m2.*c = 0.0;
+    }
+
 private:
     struct TouchedSite {
         OutlineSite site;
@@ -156,6 +177,10 @@ private:
     bool belongs(const OutlineSite& site, const BoundaryPart& part) const {
         if (!part.label.empty() && label_of(site) != part.label) return false;
         if (part.facing != Vec2{} && dot(site.outward(), part.facing) < part.least_cosine) return false;
+        if (part.inside) {
+            const Vec2 middle = 0.5 * (site.from + site.to), a = (*part.inside)[0], b = (*part.inside)[1];
+            if (middle.x < std::min(a.x, b.x) || middle.x > std::max(a.x, b.x) || middle.y < std::min(a.y, b.y) || middle.y > std::max(a.y, b.y)) return false;
+        }
         return !part.at || distance_to_segment(*part.at, site.from, site.to) <= part.reach_m;
     }
 
@@ -219,15 +244,25 @@ private:
 
     void attach_pressure(const FixtureSpec& spec) {
         require_flexible(spec);
-        int begun = -1;   // sites come grain by grain
+        const std::int32_t load = add_load(spec);
         for (const std::size_t s : sites_of(spec, false)) {
             const OutlineSite& site = sites_[s];
-            Body& grain = assembly_.bodies[site.body];
-            if (begun != site.body) grain.pressure_begin = static_cast<std::int32_t>(assembly_.pressure_edges.size());
-            begun = site.body;
-            assembly_.pressure_edges.push_back({site.node[0], site.node[1], site.outward(), 0.0});
-            grain.pressure_end = static_cast<std::int32_t>(assembly_.pressure_edges.size());
+            pressed_.push_back({site.body, {site.node[0], site.node[1], site.outward(), 0.0, load}});
         }
+    }
+
+    std::int32_t add_load(const FixtureSpec& spec) {
+        assembly_.dead_loads.push_back({.name = spec.name, .given_Pa = spec.pressure_Pa, .stiffness_Pa_m = spec.spring_Pa_m, .outward = spec.normal});
+        return static_cast<std::int32_t>(assembly_.dead_loads.size()) - 1;
+    }
+
+    void press_plate(const FixtureSpec& spec, int plate, double length_m) {
+        const std::int32_t load = add_load(spec);
+        const int node = assembly_.bodies[plate].centre_node;
+        DeadLoad& added = assembly_.dead_loads.back();
+        if (spec.force_N != 0.0) added.given_Pa = spec.force_N / (length_m * assembly_.thickness_m);
+        added.plate_node = node;
+        pressed_.push_back({plate, {node, node, spec.normal, length_m, load}});
     }
 
     // How far a curved surface has come towards the specimen (hollow) or gone back from it (round), at `c` along the plate; none where a round one ends.
@@ -301,14 +336,24 @@ private:
         }
         require(any, spec);
         const std::int32_t material = law_of(spec);
-        const int plate = add_plate(assembly_, level * spec.normal + 0.5 * (extent.lower + extent.upper) * along.direction, spec.normal, {0.0, 0.0});
+        const Vec2 free = spec.pressed ? Vec2{std::abs(spec.normal.x), std::abs(spec.normal.y)} : Vec2{};
+        const int plate = add_plate(assembly_, level * spec.normal + 0.5 * (extent.lower + extent.upper) * along.direction, spec.normal, free);
         for (const TouchedSite& touch : touches)
             if (const auto out = bend(spec, along, along(touch.place)))
                 add_plate_contact(assembly_, touch.site, plate, touch.place, touch.area_m2, level - *out - dot(spec.normal, touch.place), material, spec.contact.glued);
+        if (spec.pressed) press_plate(spec, plate, whole_length(touches, along));
         Fixture& fixture = add_fixture(spec);
-        fixture.imposed = {1.0, 1.0};
+        fixture.imposed = Vec2{1.0, 1.0} - free;
         fixture.nodes = {assembly_.bodies[plate].centre_node};
         fixture.plate = plate;
+    }
+
+    // Over which a pressed plate covers the specimen, along itself.
+    static double whole_length(const std::vector<TouchedSite>& touches, const Along& along) {
+        Extent extent;
+        for (const TouchedSite& touch : touches)
+            for (const Vec2 end : {touch.site.from, touch.site.to}) extent.include(along(end));
+        return extent.upper - extent.lower;
     }
 
     bool each_plate_has_a_body(const std::vector<std::size_t>& side, const Along& along, const Extent& extent, int plates) const {
@@ -339,15 +384,14 @@ private:
                                  "a rectangle, or flexible grains");
         }
         require_a_body_behind_each_plate(side, along, extent, spec.plates);
+        const std::int32_t load = add_load(spec);
         const double length = (extent.upper - extent.lower) / spec.plates, level = dot(sites_[side.front()].from, spec.normal);
         const int first = static_cast<int>(assembly_.bodies.size());
         for (int i = 0; i < spec.plates; ++i) {
             const Vec2 place = level * spec.normal + (extent.lower + (i + 0.5) * length) * along.direction;
             const int plate = add_plate(assembly_, place, spec.normal, {std::abs(spec.normal.x), std::abs(spec.normal.y)});
-            Body& body = assembly_.bodies[plate];
-            body.pressure_begin = static_cast<std::int32_t>(assembly_.pressure_edges.size());
-            assembly_.pressure_edges.push_back({body.centre_node, body.centre_node, spec.normal, length});
-            body.pressure_end = body.pressure_begin + 1;
+            const int node = assembly_.bodies[plate].centre_node;
+            pressed_.push_back({plate, {node, node, spec.normal, length, load}});
         }
         for (const std::size_t s : side) {
             const OutlineSite& site = sites_[s];
@@ -362,6 +406,11 @@ private:
     std::vector<OutlineSite> sites_;
     std::vector<bool> taken_;
     std::vector<PlateContact> laws_;
+    struct Pressed {
+        int body;
+        PressureEdge edge;
+    };
+    std::vector<Pressed> pressed_;
 };
 
 }  // namespace
@@ -369,6 +418,7 @@ private:
 void attach(Assembly& assembly, const Specimen& specimen, std::span<const FixtureSpec> fixtures) {
     Attaching attach_one(assembly, specimen);
     for (const FixtureSpec& fixture : fixtures) attach_one(fixture);
+    attach_one.finish();
     index_bodies(assembly);
     index_contacts(assembly);
 }

@@ -45,8 +45,8 @@ struct GaugeSpec {
     std::string meaning;               ///< one sentence for the reader of a record
     GaugeKind kind = GaugeKind::displacement;
     std::vector<GaugePoint> points;    ///< displacement, strain: the value is the sum of weight . displacement; hole stress: where on the edge, the mean of all, weights do not count
-    std::string fixture;               ///< force: the fixture's name
-    Vec2 direction{};                  ///< force, mean stress and strain: unit vector
+    std::string fixture;               ///< force: the fixture's name; displacement without points: that of this fixture, a plate
+    Vec2 direction{};                  ///< force, displacement of a fixture, mean stress and strain: unit vector
     Vec2 normal{};                     ///< mean stress and strain: unit normal of the plane on which the component along `direction` is read; zero: `direction`
     GaugeRegion region{};              ///< mean stress and strain; hole stress: the hole, a circle
     EnergyTerm term = EnergyTerm::elastic;   ///< energy

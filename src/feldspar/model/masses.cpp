@@ -139,6 +139,13 @@ void set_mass(Nodes& nodes, int node, double mass) {
     if (inverse.y != 0.0) inverse.y = 1.0 / mass;
 }
 
+// Springs that press plates: visit(node, stiffness, direction).
+template <class Visit>
+void add_springs(const Assembly& assembly, Visit visit) {
+    for (const PressureEdge& edge : assembly.pressure_edges)
+        if (const double k = assembly.dead_loads[edge.load].stiffness_Pa_m; k > 0.0) visit(edge.node_a, k * edge.plate_length_m * assembly.thickness_m, edge.outward);
+}
+
 // Paper, equations (20)-(21).
 void set_masses_by_rows(Assembly& assembly, double factor) {
     const std::vector<Vec2> rows = finite_element_row_sums(assembly);
@@ -161,6 +168,7 @@ void set_masses_by_rows(Assembly& assembly, double factor) {
             K[assembly.bodies[b].centre_node + 1] = turn;
         }
     }
+    add_springs(assembly, [&](int node, double k, Vec2) { K[node] += k; });
     for (int i = 0; i < assembly.nodes.count(); ++i) set_mass(assembly.nodes, i, 0.25 * factor * K[i]);
 }
 
@@ -188,6 +196,7 @@ void set_masses_by_tensors(Assembly& assembly, double factor) {
                 add(contact.b, Nb, S * k, d);
             }
         });
+    add_springs(assembly, [&](int node, double k, Vec2 n) { T[node].add(k, n); });
     for (int i = 0; i < assembly.nodes.count(); ++i) set_mass(assembly.nodes, i, 0.25 * factor * T[i].largest_eigenvalue());
     for (std::size_t b = 0; b < assembly.bodies.size(); ++b) {
         const Body& body = assembly.bodies[b];
@@ -219,7 +228,10 @@ void set_scaled_masses(Assembly& assembly, MassBound bound, double factor) {
     }
 }
 
-void set_real_masses(Assembly& assembly, double density_kg_m3) {
+namespace {
+
+// Of the nodes of grains and particles, kg; of a turn the moment of inertia over the radius squared.
+std::vector<double> real_masses(const Assembly& assembly, double density_kg_m3) {
     std::vector<double> mass(assembly.nodes.reference.size(), 0.0);
     for (const Triangle& triangle : assembly.triangles)
         for (const int node : triangle.node) mass[node] += density_kg_m3 * triangle.volume_m3 / 3.0;
@@ -228,6 +240,22 @@ void set_real_masses(Assembly& assembly, double density_kg_m3) {
         mass[body.centre_node] = density_kg_m3 * body.volume_m3;
         mass[body.centre_node + 1] = density_kg_m3 * body.volume_m3 * body.gyration_m2 / (body.radius_m * body.radius_m);
     }
+    return mass;
+}
+
+}  // namespace
+
+Array<Vec2> weights(const Assembly& assembly, double density_kg_m3, Vec2 gravity_m_s2) {
+    std::vector<double> mass = real_masses(assembly, density_kg_m3);
+    for (const Body& body : assembly.bodies)
+        if (body.kind == BodyKind::rigid) mass[body.centre_node + 1] = 0.0;   // gravity turns nothing
+    Array<Vec2> weight(mass.size());
+    for (std::size_t n = 0; n < mass.size(); ++n) weight[n] = mass[n] * gravity_m_s2;
+    return weight;
+}
+
+void set_real_masses(Assembly& assembly, double density_kg_m3) {
+    std::vector<double> mass = real_masses(assembly, density_kg_m3);
     for (const PressureEdge& edge : assembly.pressure_edges)
         if (edge.plate_length_m > 0.0)
             mass[edge.node_a] = density_kg_m3 * edge.plate_length_m * assembly.thickness_m * mean_grain_radius(assembly);

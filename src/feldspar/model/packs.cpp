@@ -330,7 +330,7 @@ void sort_out_packs(Assembly& assembly) {
     for (const Fixture& fixture : assembly.fixtures)
         for (const int node : fixture.nodes)
             if (const int pack = pack_of_node(packs, node); pack >= 0) packs.forces[pack] = PackForces::kept;
-    if (assembly.pressure_Pa != 0.0)
+    if (assembly.is_pressed())
         for (std::size_t b = 0; b < assembly.bodies.size(); ++b)
             if (packs.pack_of_body[b] >= 0 && assembly.bodies[b].pressure_begin < assembly.bodies[b].pressure_end)
                 packs.forces[packs.pack_of_body[b]] = PackForces::on_top_of_others;

@@ -42,7 +42,7 @@ inline constexpr int kAtOnce = 5;          ///< contacts as side A, and as many 
 enum class PackForces : std::uint8_t {
     own,              ///< nothing: only contacts and triangles act on it, and nobody reads its node forces
     kept,             ///< its node forces are read by others: a platen's reaction
-    on_top_of_others  ///< node forces already hold what acts from outside, the lateral pressure, and are kept
+    on_top_of_others  ///< node forces already hold what acts from outside, pressures, and are kept
 };
 
 /// Grains of one topology.

@@ -13,7 +13,7 @@ enum class StageKind {
     load,      ///< the loading motion grows
     unload,    ///< the loading motion goes back
     hold,      ///< the loading motion is at rest
-    confine    ///< the pressure on the sides goes to another value
+    confine    ///< pressures go to another value
 };
 
 /// What ends a stage of loading or unloading.
@@ -50,6 +50,7 @@ struct StageSpec {
     std::string gauge{};                   ///< StageEnd::gauge
     std::optional<double> travel_times{};  ///< hold: how long, in travel times of a wave; none: until the specimen is quiet
     double sigma3_Pa = 0.0;                ///< confine: the pressure at the end, 0 or more
+    std::string fixture{};                 ///< confine: whose pressure; empty: all of the test
     ConfineKeep keep = ConfineKeep::motion;   ///< confine
 
     bool operator==(const StageSpec&) const = default;

@@ -179,7 +179,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["stem"] = test_stem(result);
     test["kind"] = name(result.test.kind);
     test["title"] = title_of(result.test);
-    test["confined"] = method_of(result.test).specimen.confined && method_of(result.test).reading != Reading::stages;
+    test["pressure"] = method_of(result.test).reading != Reading::stages ? pressure_symbol(method_of(result.test)) : "";
     test["axes"] = axes_json(result);
     test["seed"] = result.seed;
     test["sigma3"] = rounded(result.test.sigma3_Pa * MPa);
@@ -270,6 +270,22 @@ Json envelope_json(const PropertySummary& properties) {
                         {"points", points}});
     }
     return {{"method", properties.envelope_method}, {"fits", fits}};
+}
+
+Json shear_envelope_json(const PropertySummary& properties) {
+    Json fits = Json::array();
+    for (const ShearFit& fit : properties.shear_fits) {
+        Json points = Json::array();
+        for (std::size_t i = 0; i < fit.normal_Pa.size(); ++i)
+            points.push_back({rounded(fit.normal_Pa[i] * MPa), rounded(fit.peak_Pa[i] * MPa), rounded(fit.residual_Pa[i] * MPa)});
+        fits.push_back({{"seed", fit.seed},
+                        {"cohesion", rounded(fit.cohesion_Pa * MPa)},
+                        {"friction_angle", rounded(fit.friction_angle_deg)},
+                        {"residual_cohesion", rounded(fit.residual_cohesion_Pa * MPa)},
+                        {"residual_friction_angle", rounded(fit.residual_friction_angle_deg)},
+                        {"points", points}});
+    }
+    return fits;
 }
 
 Json specimens_json(std::span<const TestResult> results) {
@@ -367,12 +383,13 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     data["laboratory"] = Json::object();
     for (const auto& [property, value] : laboratory(job)) data["laboratory"][user_quantity(property).name] = rounded(value);
     data["envelope"] = envelope_json(job.has_variants() ? PropertySummary{} : properties);
+    data["shear_envelope"] = job.has_variants() ? Json::array() : shear_envelope_json(properties);
     data["tests"] = Json::array();
     for (const TestResult& result : results) data["tests"].push_back(test_json(result, results.size()));
     data["failed"] = Json::array();
     for (const FailedTest& test : failed)
         data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"title", title_of(test.test)},
-                                  {"confined", method_of(test.test).specimen.confined}, {"seed", test.seed},
+                                  {"pressure", pressure_symbol(method_of(test.test))}, {"seed", test.seed},
                                   {"sigma3", rounded(test.test.sigma3_Pa * MPa)}, {"reason", test.reason}});
     data["provenance"] = provenance_json(provenance);
     return data;

@@ -133,7 +133,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["numerics"] = name(result.numerics.kind);
     test["plane"] = name(result.model.plane);
     test["seed"] = result.seed;
-    test["sigma3_MPa"] = in_MPa(result.test.sigma3_Pa);
+    test[pressure_key(method_of(result.test)) + std::string("_MPa")] = in_MPa(result.test.sigma3_Pa);
     add(test, result, QuantityGroup::strength);
     if (method_of(result.test).build.gauges != nullptr) add(test, result, QuantityGroup::load);
     test["remarks"] = result.properties.remarks;
@@ -182,7 +182,7 @@ Json failed_json(const FailedTest& failed) {
     test["name"] = test_stem(failed.variant, failed.test, failed.seed);
     test["kind"] = name(failed.test.kind);
     test["seed"] = failed.seed;
-    if (method_of(failed.test).specimen.confined) test["sigma3_MPa"] = in_MPa(failed.test.sigma3_Pa);
+    if (const TestMethod& method = method_of(failed.test); *pressure_symbol(method) != 0) test[pressure_key(method) + std::string("_MPa")] = in_MPa(failed.test.sigma3_Pa);
     test["reason"] = failed.reason;
     return test;
 }
@@ -259,6 +259,20 @@ Json list_in_MPa(const std::vector<double>& values_Pa) {
     return list;
 }
 
+Json shear_envelope_json(const PropertySummary& properties) {
+    Json fits = Json::array();
+    for (const ShearFit& fit : properties.shear_fits)
+        fits.push_back({{"seed", fit.seed},
+                        {"cohesion_MPa", in_MPa(fit.cohesion_Pa)},
+                        {"friction_angle_deg", number(fit.friction_angle_deg)},
+                        {"residual_cohesion_MPa", in_MPa(fit.residual_cohesion_Pa)},
+                        {"residual_friction_angle_deg", number(fit.residual_friction_angle_deg)},
+                        {"normal_stress_MPa", list_in_MPa(fit.normal_Pa)},
+                        {"shear_strength_MPa", list_in_MPa(fit.peak_Pa)},
+                        {"shear_strength_residual_MPa", list_in_MPa(fit.residual_Pa)}});
+    return fits;
+}
+
 Json envelope_json(const PropertySummary& properties) {
     Json fits = Json::array();
     for (const EnvelopeFit& fit : properties.fits) {
@@ -289,6 +303,7 @@ Json variants_json(const Job& job, std::span<const TestResult> results) {
                         {"properties", properties_json(summary.properties)},
                         {"envelope", envelope_json(summary.properties)},
                         {"ms_per_step", costs}});
+        if (!summary.properties.shear_fits.empty()) list.back()["shear_envelope"] = shear_envelope_json(summary.properties);
     }
     return list;
 }
@@ -323,6 +338,7 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
     summary["properties"] = properties_json(whole);
     summary["laboratory"] = laboratory_json(job);
     summary["envelope"] = envelope_json(whole);
+    if (!whole.shear_fits.empty()) summary["shear_envelope"] = shear_envelope_json(whole);
     summary["job"] = {{"name", job.name}, {"file", job.file.string()}, {"resolved", resolved_toml(job)}};
     summary["provenance"] = provenance_json(provenance);
     // a name that is not valid UTF-8 must not lose the run's numbers

@@ -33,7 +33,7 @@ void sum_shared_edges(Assembly& assembly, IndexRange share) {
 
 template <class Visit>
 void for_each_pressed_grain(Assembly& assembly, IndexRange packs, Visit visit) {
-    if (assembly.pressure_Pa == 0.0) return;
+    if (!assembly.is_pressed()) return;
     for (int p = packs.begin; p < packs.end; ++p) {
         if (assembly.packs.forces[p] != PackForces::on_top_of_others) continue;
         const GrainPack& pack = assembly.packs.grains[p];
@@ -44,7 +44,7 @@ void for_each_pressed_grain(Assembly& assembly, IndexRange packs, Visit visit) {
 void grains_of_packs(Assembly& assembly, const KernelArrays& arrays, const KernelStep& step, const StepSettings& settings, IndexRange packs) {
     sum_shared_edges(assembly, packs);
     for_each_pressed_grain(assembly, packs, [&](const Body& grain, BodyWork& work) {
-        for (const int n : grain.nodes()) assembly.nodes.force[n] = {};
+        weigh(assembly, grain);
         add_pressure(assembly, grain, work, settings.dt);
     });
     settings.kernels->grains(arrays, step, packs.begin, packs.end);

@@ -5,10 +5,15 @@
 #include "feldspar/step/step.hpp"
 
 namespace feldspar {
+
+void weigh(Assembly& assembly, const Body& body) {
+    for (const int n : body.nodes()) assembly.nodes.force[n] = assembly.weight.empty() ? Vec2{} : assembly.weight[n];
+}
+
 namespace {
 
 void gather_contacts(Assembly& assembly, const Body& body) {
-    for (const int n : body.nodes()) assembly.nodes.force[n] = {};
+    weigh(assembly, body);
     const Vec2 centre = assembly.nodes.position(body.centre_node);
     for (int i = body.slot_begin; i < body.slot_end; ++i) {
         const int slot = assembly.slots_of_bodies[i];
@@ -28,6 +33,7 @@ void gather_at_centre(Assembly& assembly, const Body& body) {
         force += slot.force;
         moment += turning_moment(slot);
     }
+    if (!assembly.weight.empty()) force += assembly.weight[body.centre_node];
     assembly.nodes.force[body.centre_node] = force;
     if (body.kind == BodyKind::rigid) assembly.nodes.force[body.centre_node + 1] = {moment / body.radius_m, 0.0};
 }
@@ -49,14 +55,14 @@ double pressed_length(const PressureEdge& edge, Vec2 from, Vec2 to) { return edg
 
 }  // namespace
 
-// The pressure keeps the direction of the undeformed face and acts over its current length. Its work is counted with the
+// A pressure keeps the direction of the undeformed face and acts over its current length. Its work is counted with the
 // mean of the velocities before and after (docs/theory/loading.md), the later one in integrate().
 void add_pressure(Assembly& assembly, const Body& body, BodyWork& work, double dt) {
-    if (assembly.pressure_Pa == 0.0) return;
+    if (!assembly.is_pressed()) return;
     for (int e = body.pressure_begin; e < body.pressure_end; ++e) {
         const PressureEdge& edge = assembly.pressure_edges[e];
         const double length = pressed_length(edge, assembly.nodes.position(edge.node_a), assembly.nodes.position(edge.node_b));
-        const Vec2 half = (-0.5 * assembly.pressure_Pa * length * assembly.thickness_m) * edge.outward;
+        const Vec2 half = (-0.5 * assembly.pressure_Pa(assembly.dead_loads[edge.load]) * length * assembly.thickness_m) * edge.outward;
         assembly.nodes.force[edge.node_a] += half;
         assembly.nodes.force[edge.node_b] += half;
         work.pressure += 0.5 * dt * dot(half, assembly.nodes.velocity[edge.node_a] + assembly.nodes.velocity[edge.node_b]);
@@ -114,12 +120,13 @@ void integrate(Assembly& assembly, const Body& body, const StepSettings& setting
 
 // The second half of the pressure's work: the same forces with the new velocities.
 void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, double dt) {
-    if (assembly.pressure_Pa == 0.0) return;
+    if (!assembly.is_pressed()) return;
     for (int e = body.pressure_begin; e < body.pressure_end; ++e) {
         const PressureEdge& edge = assembly.pressure_edges[e];
         const Vec2 va = assembly.nodes.velocity[edge.node_a], vb = assembly.nodes.velocity[edge.node_b];
         const Vec2 before_a = assembly.nodes.position(edge.node_a) - dt * va, before_b = assembly.nodes.position(edge.node_b) - dt * vb;
-        const Vec2 half = (-0.5 * assembly.pressure_Pa * pressed_length(edge, before_a, before_b) * assembly.thickness_m) * edge.outward;
+        const double pressure_Pa = assembly.pressure_Pa(assembly.dead_loads[edge.load], dt * va);
+        const Vec2 half = (-0.5 * pressure_Pa * pressed_length(edge, before_a, before_b) * assembly.thickness_m) * edge.outward;
         work.pressure += 0.5 * dt * dot(half, va + vb);
     }
 }

@@ -48,7 +48,7 @@ struct PlatenWork {
 /// What the body opposes to the loading, N: positive where it resists.
 struct Reactions {
     double loading = 0.0;   ///< of the fixtures that move, along their motions: the power that they give is this times the speed
-    double rest = 0.0;      ///< of those at rest, along the sum of these motions: the same in equilibrium
+    double rest = 0.0;      ///< of those at rest, along the sum of these motions, without their part of dead loads: the same in equilibrium
 };
 
 /// Stage 1: relative velocity, law, forces of the contacts [begin, end). `step` is written into points that break.
@@ -57,7 +57,10 @@ void contact_forces(Assembly& assembly, IndexRange contacts, const StepSettings&
 /// Stage 2: gather, triangles, pressure, damping, velocity and displacement of the bodies [begin, end).
 void body_forces(Assembly& assembly, IndexRange bodies, const StepSettings& settings);
 
-/// The lateral pressure's forces on a body, before it moves, with the first half of their work; and after it has moved the second half.
+/// Leaves in the node forces of a body what gravity does, or nothing.
+void weigh(Assembly& assembly, const Body& body);
+
+/// The pressures' forces on a body, before it moves, with the first half of their work; and after it has moved the second half.
 void add_pressure(Assembly& assembly, const Body& body, BodyWork& work, double dt);
 void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, double dt);
 
@@ -65,8 +68,14 @@ void finish_pressure_work(Assembly& assembly, const Body& body, BodyWork& work, 
 Reactions reactions(const Assembly& assembly);
 double loading_reaction(const Assembly& assembly);
 
-/// Force of the body on one fixture, N.
+/// Force of the body on one fixture, N, in the components that the fixture imposes.
 Vec2 reaction(const Assembly& assembly, const Fixture& fixture);
+
+/// The same, and of a plate that is free along its normal what presses it there.
+Vec2 felt_by(const Assembly& assembly, const Fixture& fixture);
+
+/// Sum of the pressures and the weight, N.
+Vec2 dead_resultant(const Assembly& assembly);
 
 /// Steps in several calls, between which nobody else changes nodes, bonds, contacts, platens or pressure: what a block of steps has to look
 /// up before its first one is looked up once.

@@ -187,7 +187,7 @@ TEST_P(OneStep, IsThatOfTheReadableStages) {
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
     choose_step(e);
-    if (GetParam().test == methods::biaxial) e.assembly.pressure_Pa = setup.test.sigma3_Pa;
+    if (GetParam().test == methods::biaxial) e.set_dead_loads(1.0);
     stir(e.assembly);
     mix_contacts(e.assembly);
     for (const Damping damping : {Damping::viscous, Damping::local})

@@ -66,6 +66,48 @@ from = ["40 mm", "70 mm"]
 to = ["40 mm", "90 mm"]
 )";
 
+/// A test of a user's own under dead loads of every kind: pressures, plates under a force and behind a spring, weight.
+inline const std::string pressed_test = R"(kind = "custom"
+name = "press"
+gravity = "9.81 m/s2"
+stages = [{ kind = "load", until = "stress", at = "5 MPa" }, { kind = "confine", fixture = "lid", sigma3 = "2 MPa", keep = "load" }, { kind = "load" }]
+[[test.fixture]]
+name = "floor"
+kind = "plate"
+on = "bottom"
+normal = [0, -1]
+mu = 0.3
+[[test.fixture]]
+name = "lid"
+kind = "plate"
+on = "top"
+normal = [0, 1]
+pressure = "1 MPa"
+spring = "2 GPa/m"
+[[test.fixture]]
+name = "ram"
+kind = "plate"
+on = "left"
+normal = [-1, 0]
+motion = [1, 0]
+[[test.fixture]]
+name = "wall"
+kind = "plate"
+on = "right"
+normal = [1, 0]
+force = "12 kN"
+[[test.fixture]]
+name = "water"
+kind = "pressure"
+on = "right"
+pressure = "0.5 MPa"
+[[test.gauge]]
+name = "lift"
+kind = "displacement"
+fixture = "lid"
+direction = [0, 1]
+)";
+
 /// Stages of every kind that such a test can take.
 inline const std::string stages = R"(stages = [
   { kind = "load", until = "stress", at = "2 MPa" },

@@ -412,6 +412,9 @@ TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {
     expect_round_trip(variant_job);
     expect_round_trip(edited("normal = \"edge\"", "normal = \"centres\"", variant_job));
     expect_round_trip(edited("maximum = \"4 mm\" }", "maximum = \"4 mm\" }\nparticles_per_grain = 13.7", variant_job));
+    expect_round_trip(edited("kind = \"uniaxial-compression\"", pressed_test));
+    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"direct-shear\"\nnormal_stress = [\"2 MPa\", \"5 MPa\"]\nnormal_stiffness = \"3 GPa/m\"\ngap = \"4 mm\""));
+    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nplate_mu = 0.2\nplate_Kn = \"50 GPa/m\""));
     expect_round_trip(edited("membrane_plates = 12", "plate_stiffness_factor = 0.3\nplate_mu = 0.1", variant_job));
     expect_round_trip(edited("[[test]]", "[[variant]]\nname = \"alone\"\n[[test]]"));
     expect_round_trip(edited("[material.grain]\nE = \"25.8 GPa\"\nnu = 0.23\n", "[material.grain]\n",

@@ -68,6 +68,7 @@ const std::vector<std::string>& bases() {
             plates,
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\" }"),
             replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test_in_stages),
+            replaced(sample_job, "kind = \"uniaxial-compression\"\n", pressed_test),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"cyclic-compression\""),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
         };

@@ -101,6 +101,7 @@ TEST(RockProperties, ComeFromWhatExists) {
                 break;
             }
             case envelope: EXPECT_NE(p.fit, nullptr) << p.name; break;
+            case shear_envelope: EXPECT_NE(p.shear_fit, nullptr) << p.name; break;
             case confined_strength:
             case formed: break;
         }

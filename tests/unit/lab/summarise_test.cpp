@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "feldspar/lab/quantities.hpp"
 #include "feldspar/lab/regression.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 #include "synthetic_records.hpp"
@@ -118,6 +120,58 @@ TEST(Summarise, StrengthsOfUnfinishedTestsAreLeftOut) {
     EXPECT_EQ(s.values.count("UCS_Pa"), 0u);
     ASSERT_EQ(s.values.count("E_Pa"), 1u);
     EXPECT_EQ(s.values.at("E_Pa").seeds, (std::vector<std::uint64_t>{1}));
+}
+
+namespace {
+
+// A plane of 0.1 m x 0.05 m that is sheared: elastic to 0.2 mm, down to the residual strength at 0.3 mm, on to 2 mm; it dilates with a slope of 0.2 from
+// 0.15 to 0.3 mm. Stresses on what is left of the plane are c + sigma tan(phi), and 2 MPa + sigma tan(30 degrees) at last.
+TestResult sheared(double sigma_Pa, double cohesion_Pa, double phi) {
+    constexpr double L = 0.1, t = 0.05, peak_m = 0.2e-3, fallen_m = 0.3e-3, end_m = 2e-3;
+    TestResult r = record(methods::direct_shear);
+    r.test.sigma3_Pa = sigma_Pa;
+    r.specimen = std::make_shared<Specimen>();
+    r.length_m = L;
+    r.section_m2 = L * t;
+    r.gauges.resize(2);
+    r.gauges[0].name = "dilation";
+    r.gauges[1].name = "normal-force";
+    const double strength_Pa = cohesion_Pa + sigma_Pa * std::tan(phi), residual_Pa = 2e6 + sigma_Pa * std::tan(std::numbers::pi / 6.0);
+    for (int i = -1; i <= 400; ++i) {
+        const double u = std::max(0, i) * end_m / 400.0, left = (L - u) / L;
+        const double tau = u <= peak_m ? strength_Pa * u / peak_m : u <= fallen_m ? strength_Pa + (residual_Pa - strength_Pa) * (u - peak_m) / (fallen_m - peak_m) : residual_Pa;
+        HistoryRow h = row(i < 0 ? Phase::consolidation : Phase::loading, i, u / L, left * tau);
+        h.platen_displacement_m = u;
+        h.gauges = {0.2 * std::clamp(u - 0.15e-3, 0.0, 0.15e-3), left * sigma_Pa * L * t};
+        r.history.push_back(h);
+    }
+    r.properties = measure(r);
+    return r;
+}
+
+}  // namespace
+
+TEST(Summarise, DirectShearGivesBackItsLinesAndItsDilation) {   // (P59)-(P63)
+    const double phi = std::atan(0.8);
+    const std::vector<TestResult> results{sheared(2e6, 5e6, phi), sheared(6e6, 5e6, phi), sheared(10e6, 5e6, phi)};
+    for (const TestResult& r : results) {
+        EXPECT_NEAR(test_quantity("shear_strength").value(r), 5e6 + 0.8 * r.test.sigma3_Pa, 1.0);
+        EXPECT_NEAR(test_quantity("shear_normal_stress").value(r), r.test.sigma3_Pa, 1.0);
+        EXPECT_NEAR(test_quantity("shear_strength_residual").value(r), 2e6 + r.test.sigma3_Pa / std::sqrt(3.0), 1.0);
+        EXPECT_NEAR(test_quantity("dilation_angle").value(r), std::atan(0.2) * 180.0 / std::numbers::pi, 1e-6);
+        EXPECT_NEAR(test_quantity("shear_stiffness").value(r) / ((5e6 + 0.8 * r.test.sigma3_Pa) / 0.2e-3), 1.0, 1e-9);
+    }
+    const PropertySummary s = summarise(results);
+    ASSERT_EQ(s.shear_fits.size(), 1U);
+    EXPECT_NEAR(s.values.at("shear_cohesion_Pa").median, 5e6, 10.0);
+    EXPECT_NEAR(s.values.at("shear_friction_angle_deg").median, phi * 180.0 / std::numbers::pi, 1e-4);
+    EXPECT_NEAR(s.values.at("residual_cohesion_Pa").median, 2e6, 10.0);
+    EXPECT_NEAR(s.values.at("residual_friction_angle_deg").median, 30.0, 1e-4);
+    EXPECT_TRUE(summarise({results.data(), 1}).shear_fits.empty());   // a line needs two points
+    TestResult short_of_it = results[0];   // the record ends before three times the way of the peak
+    short_of_it.history.resize(102);
+    short_of_it.properties = measure(short_of_it);
+    EXPECT_TRUE(std::isnan(test_quantity("shear_strength_residual").value(short_of_it)));
 }
 
 TEST(Summarise, NothingGivesNothing) {

@@ -77,11 +77,11 @@ function gradesText(grades) {
   return some.length ? h("span", {class: "marks"}, some.flatMap(([grade, count]) => [gradeMark(grade), " " + count + " "])) : "\u2013";
 }
 /** What is known of a test method, by its name in files. */
-function methodOf(kind) { return data.methods[kind] || {title: kind, sign: 1, strength: "", on_envelope: false, confined: false}; }
+function methodOf(kind) { return data.methods[kind] || {title: kind, sign: 1, strength: "", on_envelope: false, confined: false, pressure: ""}; }
 /** The name of the method that measures a strength: "UCS". */
 function methodOfStrength(strength) { return Object.keys(data.methods).find((kind) => data.methods[kind].strength === strength); }
 function kindText(test, sigma3) {
-  return methodOf(test).title + (methodOf(test).confined && sigma3 !== null ? " at " + Number(sigma3.toPrecision(4)) + " MPa" : "");
+  return methodOf(test).title + (methodOf(test).pressure && sigma3 !== null ? " at " + Number(sigma3.toPrecision(4)) + " MPa" : "");
 }
 
 /** Says that runs are missing, and lists those that failed with their reasons. */

@@ -5,7 +5,7 @@ const kindNames = Object.fromEntries(Object.entries(data.methods).map(([kind, me
 data.tests.forEach((test, index) => { test.index = index; });
 
 function titleOf(test) {
-  return test.title + (test.confined ? " at \u03c3\u2083 = " + Number(test.sigma3.toPrecision(4)) + " MPa" : "");
+  return test.title + (test.pressure ? " at " + test.pressure + " = " + Number(test.sigma3.toPrecision(4)) + " MPa" : "");
 }
 
 /** The title with the variant before it, if the job has variants. */
@@ -352,6 +352,28 @@ function writeEnvelope() {
     h("p", {class: "soft small"}, "Mohr-Coulomb: \u03c3\u2081 = 2c\u221aN + N\u03c3\u2083 with N = (1 + sin \u03c6)/(1 \u2212 sin \u03c6). Hoek-Brown, intact rock: \u03c3\u2081 = \u03c3\u2083 + \u03c3ci (mi \u03c3\u2083/\u03c3ci + 1)^\u00bd."));
 }
 
+/** Shear strengths over normal stresses, with the lines through their medians. */
+function writeShearEnvelope() {
+  const fits = data.shear_envelope;
+  if (!fits.length) return;
+  const points = fits.flatMap((f) => f.points), reach = 1.12 * Math.max(...points.map((p) => p[0])), series = [];
+  const line = (label, c, phi, color) => {
+    if (c !== null && phi !== null) series.push({label: label + " c = " + show(c) + " MPa, \u03c6 = " + show(phi) + "\u00b0", x: [0, reach], y: [c, c + reach * Math.tan((phi * Math.PI) / 180)], color, width: 2});
+  };
+  line("strengths, medians", median(fits.map((f) => f.cohesion)), median(fits.map((f) => f.friction_angle)), "ink");
+  line("residual, medians", median(fits.map((f) => f.residual_cohesion)), median(fits.map((f) => f.residual_friction_angle)), "shear");
+  series.push({label: "shear strengths", x: points.map((p) => p[0]), y: points.map((p) => p[1]), color: "ink", mark: "dot", size: 4});
+  const residual = points.filter((p) => p[2] !== null);
+  if (residual.length) series.push({label: "residual strengths", x: residual.map((p) => p[0]), y: residual.map((p) => p[2]), color: "shear", mark: "ring", size: 4});
+  page.append(h("h2", {}, "Shear strength envelope"), h("p", {class: "soft"}, "Direct shear: stresses on the plane that is left, straight lines by least squares on the tests of each packing (P63)."));
+  const grid = h("div", {class: "grid", style: "align-items:start"}), chart = card("Strength of each test"), table_of_fits = card("Fits, one for each packing");
+  page.append(grid);
+  grid.append(chart, table_of_fits);
+  new XYChart(chart, {x: "Normal stress (MPa)", y: "Shear stress (MPa)", height: 340, series});
+  table_of_fits.append(table("evidence", [th("Seed", true), th(["c", h("br"), "MPa"], true), th(["\u03c6", h("br"), "\u00b0"], true), th(["c residual", h("br"), "MPa"], true), th(["\u03c6 residual", h("br"), "\u00b0"], true)],
+    fits.map((f) => h("tr", {}, td(String(f.seed), true), td(show(f.cohesion), true), td(show(f.friction_angle), true), td(show(f.residual_cohesion), true), td(show(f.residual_friction_angle), true)))));
+}
+
 function writePattern() {
   if (!data.fields.length) return;
   page.append(h("h2", {}, "Failure pattern"), h("p", {class: "soft"},
@@ -509,6 +531,7 @@ else writeProperties();
 writeTests();
 writePattern();
 if (!data.variants) writeEnvelope();
+writeShearEnvelope();
 writeEvidence();
 writeProvenance();
 followTheme();
