@@ -160,6 +160,22 @@ TEST(DirectShear, HasItsNormalStressAndItsShearForceInBalance) {
     }
 }
 
+TEST(DirectShear, UnderANormalStressThatDamagesTheRockBeginsWithoutAComputedStart) {
+    const RunControl control = fixtures::threads(1);
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.04, 0.02), methods::direct_shear, ModelSpec{});
+    s.test = usual_test(methods::direct_shear);
+    s.test.sigma3_Pa = 60e6;   // half of the strength in compression
+    s.test.maximum_stress_Pa = 20e6;
+    const TestResult r = run_test(s, control);
+    EXPECT_TRUE(std::none_of(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::elastic; }));
+    EXPECT_EQ(r.stop_reason, "the stress has reached its maximum of 20 MPa");
+    for (const HistoryRow& row : r.history)
+        if (row.phase == Phase::loading) {
+            EXPECT_NEAR(row.gauges[1] / (60e6 * r.section_m2), 1.0, 0.02);   // the ramp comes to rest within a hundredth
+        }
+    EXPECT_LT(r.energy_residual, 2e-3);
+}
+
 TEST(EndPlates, WithFrictionHoldTheEndsOfASquatSpecimen) {
     const RunControl control = fixtures::threads(1);
     std::array<double, 2> strength{};

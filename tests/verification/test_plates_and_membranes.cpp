@@ -241,5 +241,28 @@ TEST_P(PlatesOf, SlantedSidesAreRefusedUnderAMembrane) {
     EXPECT_NO_THROW(Experiment(s, control));   // and flexible grains are pressed directly
 }
 
+// The pressure on the sides is given, and exact. The platens follow it by a servo.
+TEST(Consolidation, ComesToItsPressureWithoutOvershoot) {
+    for (const ModelSpec& model : {ModelSpec{}, fixtures::model(GrainKind::rigid)}) {
+        TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::biaxial, model);
+        s.test.sigma3_Pa = 10e6;
+        s.test.membrane_plates = 4;
+        s.test.maximum_strain = 1e-4;
+        s.numerics.kind = NumericsKind::paper;   // whose consolidation is always the ramp
+        double largest_Pa = 0.0;
+        RunControl control = fixtures::threads(1);
+        control.progress = [&](const TestProgress& p) {
+            if (p.stage == "consolidation") largest_Pa = std::max(largest_Pa, p.axial_stress_Pa);
+        };
+        Experiment e(s, control);
+        choose_step(e);
+        prepare(e);
+        EXPECT_GT(largest_Pa, 9.9e6) << name(model.kind);
+        EXPECT_LT(largest_Pa, 1.005 * 10e6) << name(model.kind);
+        EXPECT_EQ(e.consolidated.sigma3_Pa, 10e6);
+        EXPECT_NEAR(e.consolidated.axial_stress_Pa, 10e6, 0.005 * 10e6) << name(model.kind);
+    }
+}
+
 }  // namespace
 }  // namespace feldspar

@@ -45,6 +45,19 @@ ElasticGuess guess(const TestSetup& setup, const Assembly& assembly) {
 
 MethodInput input_of(const TestSetup& setup) { return {*setup.specimen, setup.model, setup.grain, setup.contact, setup.test}; }
 
+// Of the pressures that are given, and the weight, N.
+double total_of_dead_loads(const Assembly& assembly, const Array<Vec2>& weights) {
+    double sum = 0.0;
+    for (const PressureEdge& edge : assembly.pressure_edges) {
+        const Array<Vec2>& X = assembly.nodes.reference;
+        const double length = edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(X[edge.node_b] - X[edge.node_a]);
+        sum += assembly.dead_loads[edge.load].given_Pa * length * assembly.thickness_m;
+    }
+    Vec2 weight;
+    for (const Vec2 w : weights) weight += w;
+    return sum + norm(weight);
+}
+
 // A method may have a gauge on some specimens only: CMOD on beams with a notch.
 void require_gauge(const Gauges& gauges, const std::string& name, const char* key) {
     if (gauges.find(name) >= 0) return;
@@ -102,6 +115,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     stage = stages.empty() ? 0 : 1;
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
     if (s.test.custom.gravity_m_s2 != Vec2{}) full_weight = weights(assembly, s.grain.density_kg_m3, s.test.custom.gravity_m_s2);
+    if (!confined()) dead_load_N = total_of_dead_loads(assembly, full_weight);
     impose_motion();
 }
 

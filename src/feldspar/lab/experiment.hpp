@@ -55,6 +55,7 @@ struct Experiment {
     double rate_control_J = 0.0;
     bool computed_start = false;  ///< the elastic phase was passed over in closed form
     Array<Vec2> full_weight;      ///< of each node, N; empty without gravity
+    double dead_load_N = 0.0;     ///< what presses and weighs in all, beside the loading; 0 of a confined specimen, whose platens bear the pressure too
     double weight_start_J = 0.0;  ///< work of gravity before the account of the energy begins
     HistoryRow consolidated;      ///< the state under dead loads, when the loading starts
 

@@ -198,7 +198,7 @@ public:
                 if (!go_on_in_stages(row, block, known)) break;
                 continue;
             }
-            double speed = control_.next(std::max(0.0, e_.settings.speed), recorder_.unbalanced(), std::abs(row.axial_stress_Pa) * e_.section_m2,
+            double speed = control_.next(std::max(0.0, e_.settings.speed), recorder_.unbalanced(), force_scale(row),
                                          e_.platen_travel_m, slowest_growth());
             if (known && servo_.on()) {   // in balance the body takes what the rate control gives; out of balance it fails, and the servo leads
                 const double allowed = servo_.speed(e_.platen_travel_m);
@@ -244,6 +244,9 @@ private:
         if (e_.confined() && e_.method.rate.residual_share * control_.residual() < kAim * wanted_) return slow;
         return control_.residual() > kFailsByItself && unrest() > kRunOut ? slow * std::max(1.0, unrest() / kPatience) : 0.0;
     }
+
+    // Beside which unbalanced forces are small, N. What the dead loads leave out of balance says nothing while the load is small beside them.
+    double force_scale(const HistoryRow& row) const { return std::max(std::abs(row.axial_stress_Pa) * e_.section_m2, 0.5 * e_.dead_load_N); }
 
     // How long the typical body has been out of balance, in travel times of a wave.
     double unrest() const { return static_cast<double>(e_.step - balanced_step_) / e_.travel_time; }
@@ -299,7 +302,7 @@ private:
     bool go_on_in_stages(const HistoryRow& row, int block, bool known) {
         const double load = e_.direction * row.axial_stress_Pa;
         largest_travel_m_ = std::max(largest_travel_m_, e_.platen_travel_m);
-        double pace = control_.next(std::max(0.0, stages_.sense() * e_.settings.speed), recorder_.unbalanced(), std::abs(row.axial_stress_Pa) * e_.section_m2,
+        double pace = control_.next(std::max(0.0, stages_.sense() * e_.settings.speed), recorder_.unbalanced(), force_scale(row),
                                     largest_travel_m_, slowest_growth());
         if (control_.balanced()) balanced_step_ = e_.step;
         const bool past_peak = stages_.loads() && stop_.past_peak(load);

@@ -181,19 +181,6 @@ void balance(Experiment& e) {
     }
 }
 
-// What the dead loads press with in all, N.
-double dead_load_N(const Experiment& e) {
-    double sum = 0.0;
-    for (const PressureEdge& edge : e.assembly.pressure_edges) {
-        const Array<Vec2>& X = e.assembly.nodes.reference;
-        const double length = edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(X[edge.node_b] - X[edge.node_a]);
-        sum += e.assembly.dead_loads[edge.load].given_Pa * length * e.assembly.thickness_m;
-    }
-    Vec2 weight;
-    for (const Vec2 w : e.full_weight) weight += w;
-    return sum + norm(weight);
-}
-
 // Where contacts close on the way the answer is not linear, so scale and relax several times; B from the last two states. Beside dead loads the first
 // motion is small against them: a specimen that they alone hold may slide.
 void elastic_contacts(Experiment& e) {
@@ -207,7 +194,7 @@ void elastic_contacts(Experiment& e) {
         return capture(e.assembly, e.platen_travel_m);
     };
     double first_m = kFirstStrain * e.length_m;
-    if (e.has_dead_loads()) first_m = std::min(first_m, kFirstLoad * dead_load_N(e) / e.axial_stiffness);
+    if (e.has_dead_loads()) first_m = std::min(first_m, kFirstLoad * e.dead_load_N / e.axial_stiffness);
     if (e.method.start.strained_evenly) add_affine(e, first_m);
     else move_fixtures(e, first_m);
     BodyState reached = settle(kOnTheWay);
@@ -272,7 +259,7 @@ void consolidate_elastically(Experiment& e) {
 // Dead loads with the real law: they follow a ramp of many travel times, then wait for rest. Of a confined specimen the platens follow by a servo, so
 // that the stress is isotropic; else the fixtures rest. @param already  share that acts already
 void consolidate_by_ramp(Experiment& e, double already = 0.0) {
-    const double target = e.confined() ? e.setup.test.sigma3_Pa * e.section_m2 : dead_load_N(e);
+    const double target = e.confined() ? e.setup.test.sigma3_Pa * e.section_m2 : e.dead_load_N;
     const double period = e.travel_time / e.settings.dt;                    // in steps
     const long long ramp = std::llround(30.0 * period), most = 40 * ramp;
     for (long long k = 0;; k += 10) {
@@ -284,7 +271,7 @@ void consolidate_by_ramp(Experiment& e, double already = 0.0) {
         e.preparation_steps += 10;
         if (e.stopped()) throw Interrupted();
         if (!std::isfinite(force)) throw NumericalError("a force is not a number during the consolidation");
-        if (e.control.progress && k % 500 == 0) e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
+        if (e.control.progress && k % 100 == 0) e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
         const auto [loading, rest] = reactions(e.assembly);
         const double mean = 0.5 * (loading + rest);   // which is reported
         const bool there = !e.confined() || std::abs(mean - target) < 2e-3 * target;
@@ -345,6 +332,17 @@ void press_elastically(Experiment& e) {
     hold_springs(e);
 }
 
+// With that share of the dead loads that the elastic body bears, after all of them.
+void press_below_damage(Experiment& e, const BodyState& unloaded) {
+    const BodyState full = capture(e.assembly, e.platen_travel_m);
+    const double share = 0.9 * first_damage(e.assembly, unloaded, full);
+    for (DeadLoad& load : e.assembly.dead_loads) load.springs = false;
+    go_to(e, superpose(unloaded, full, share));
+    e.set_dead_loads(share);
+    relax_or_throw(e);
+    hold_springs(e);
+}
+
 // From the unloaded body, with the real law.
 void press_by_ramp(Experiment& e) {
     for (DeadLoad& load : e.assembly.dead_loads) load.springs = false;
@@ -357,17 +355,30 @@ void press_by_ramp(Experiment& e) {
     note_consolidated(e);
 }
 
+// A first motion along the mode: rates are shares of the motion so far. @param elastic_m  motion at the first damage of the elastic body
+void set_out(Experiment& e, double elastic_m) {
+    constexpr double kShare = 0.01;
+    const double travel_m = kShare * elastic_m;
+    Nodes& nodes = e.assembly.nodes;
+    move_by(e, travel_m, [&] {
+        for (int n = 0; n < nodes.count(); ++n) nodes.velocity[n] = travel_m * nodes.loading_mode[n];
+    });
+}
+
 void prepare_adaptive(Experiment& e) {
     if (!e.method.start.stays_in_touch) {
         const BodyState unloaded = capture(e.assembly, 0.0);
         press_elastically(e);
         const bool elastic = !e.has_dead_loads() || consolidated_is_elastic(e, unloaded);
+        if (!elastic) press_below_damage(e, unloaded);
         forget_relaxation_work(e);
         if (e.has_dead_loads() && elastic) note_consolidated(e);
         elastic_contacts(e);
         if (!elastic) {   // the mode is that of the whole body; the loading begins where the dead loads have left it
+            const double travel_m = e.platen_travel_m;
             go_to(e, unloaded);
-            return press_by_ramp(e);
+            press_by_ramp(e);
+            return set_out(e, travel_m);
         }
     } else {
         const BodyState unloaded = capture(e.assembly, 0.0);
@@ -419,6 +430,7 @@ void forget_mode(Experiment& e) {
 void begin_in_mode(Experiment& e, double speed) {
     const BodyState unloaded = capture(e.assembly, 0.0);
     press_elastically(e);
+    if (e.has_dead_loads() && !consolidated_is_elastic(e, unloaded)) press_below_damage(e, unloaded);
     elastic_contacts(e);
     go_to(e, unloaded);
     press_by_ramp(e);

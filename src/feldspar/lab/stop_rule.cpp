@@ -11,6 +11,7 @@ namespace {
 constexpr double kPastPeak = 0.98;        // share of the peak below which it is one
 constexpr double kPressedOn = 2.0;        // a disc that was not split by then, or does not let go, is pressed no farther
 constexpr long long kStepsAfterPeak = 100;
+constexpr double kOfDeadLoads = 0.01;     // a largest load of less is what they leave out of balance, and no strength
 
 }  // namespace
 
@@ -19,7 +20,11 @@ StopRule::StopRule(const Experiment& experiment, const TestResult& result) : e_(
     if (const auto& stop = experiment.setup.test.stop_gauge) gauge_ = experiment.gauges.find(stop->gauge);
 }
 
-bool StopRule::past_peak(double load_Pa) const { return load_Pa < kPastPeak * (e_->stages.empty() ? peak_Pa_ : stage_peak_Pa_) && (!splitting_ || split()); }
+bool StopRule::past_peak(double load_Pa) const {
+    return load_Pa < kPastPeak * (e_->stages.empty() ? peak_Pa_ : stage_peak_Pa_) && (!splitting_ || split()) && peak_counts();
+}
+
+bool StopRule::peak_counts() const { return peak_Pa_ * e_->section_m2 >= kOfDeadLoads * e_->dead_load_N; }
 
 bool StopRule::steps_are_spent() const {
     const auto& most = e_->setup.numerics.maximum_steps;
@@ -40,7 +45,7 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bo
     if (splitting_ && after >= kStepsAfterPeak && row.axial_strain >= kPressedOn * peak_strain_)
         return fmt::format("the plates have approached {:g} times as far as at the {}", kPressedOn,
                            split() ? "strength of the disc" : "largest stress, and the disc is not split");
-    const bool falls = loads && (e_->stages.empty() || past_peak(load));
+    const bool falls = loads && peak_counts() && (e_->stages.empty() || past_peak(load));
     if (falls && after >= kStepsAfterPeak && load <= test.stop_fraction * peak_Pa_ && !unloading && (!splitting_ || split()))
         return fallen();
     if (std::abs(row.axial_strain) >= test.maximum_strain)

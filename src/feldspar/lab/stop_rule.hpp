@@ -47,6 +47,7 @@ public:
 
 private:
     bool split() const { return splitting_ && splitting_->split(); }
+    bool peak_counts() const;
     void look_for_split();
 
     const Experiment* e_;

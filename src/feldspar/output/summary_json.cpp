@@ -28,6 +28,7 @@ Json in_MPa(double value_Pa) { return number(value_Pa * MPa); }
 void add(Json& json, const TestResult& result, QuantityGroup group) {
     for (const TestQuantity& quantity : test_quantities()) {
         if (quantity.group != group || quantity.summary == TestQuantity::absent) continue;
+        if (group == QuantityGroup::of_method && !quantity.tests.contains(result.test.kind)) continue;   // another method's
         const double value = quantity.value(result);
         Json& entry = json[quantity.summary_name()];
         switch (quantity.place.form) {

@@ -67,7 +67,7 @@ function pageHead(maker, title, facts) {
 /** "12.3 \u2013 14.1", or a dash where one packing gives no interval. */
 function intervalText(row) { return row.low === null || row.low === undefined ? "\u2013" : show(row.low) + " \u2013 " + show(row.high); }
 /** A unit as it is printed. */
-function unitWords(unit) { return unit.replace("deg", "\u00b0").replace("MPa_sqrt_m", "MPa\u00a0m\u00bd").replace("J_m2", "J/m\u00b2"); }
+function unitWords(unit) { return unit.replace("deg", "\u00b0").replace("MPa_sqrt_m", "MPa\u00a0m\u00bd").replace("J_m2", "J/m\u00b2").replace("GPa_m", "GPa/m"); }
 
 function unitText(unit) { return unit ? h("span", {class: "unit"}, " " + unitWords(unit)) : ""; }
 function gradeMark(grade) { return h("span", {class: "grade " + grade}, grade); }
