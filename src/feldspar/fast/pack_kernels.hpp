@@ -134,7 +134,7 @@ FELDSPAR_INLINE Mask update_damaged(const KernelLaw& law, Real area, Real dun, R
     return broken & ~broken_before;
 }
 
-// Tells who broke, and takes back what that changed.
+// Reports the points that broke in this step and reloads their forces, because the report may change them (free gap).
 [[gnu::noinline]] void tell_broken(const KernelArrays& a, const KernelStep& step, int first_contact, int point, int state, Mask broke, Real Fn_trial,
                                    Real un, int count, Real& Fn, Real& Fs) {
     for (int lane = 0; lane < count; ++lane) {

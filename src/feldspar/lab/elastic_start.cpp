@@ -10,7 +10,7 @@ namespace feldspar {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// Of the critical damping of the Rayleigh quotient: a motion of many modes lies above the slowest, which is the one that is waited for.
+// Damping as a share of the critical damping of the Rayleigh quotient. The quotient of many modes lies above the slowest mode, which decides how long it takes.
 constexpr double kOfCritical = 0.6;
 
 // Smallest factor > 0 with value + factor x change = limit; the start is below the limit.

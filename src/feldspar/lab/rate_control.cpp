@@ -10,8 +10,8 @@
 namespace feldspar {
 namespace {
 
-// How much a block of steps may change the speed. The whole body takes the change along, so it may be quick: a crack that runs away
-// is to find the platens nearly at rest, and when it has stopped the time at low speed is lost.
+// How much a block of steps may change the speed. The whole body takes part in the change, so it may be fast: while an unstable crack grows
+// the platens should be nearly at rest, and afterwards every step at low speed is lost time.
 constexpr double kMostSlowing = 0.4;
 constexpr double kMostHastening = 1.1;
 // A crack that runs away shows by R* growing faster than the speed ever does; waiting for the target costs half a percent of strength.

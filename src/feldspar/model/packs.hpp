@@ -36,7 +36,7 @@ struct Assembly;
 inline constexpr int kMostLanes = 8;
 inline constexpr int kFetchAhead = 3;      ///< packs of contacts whose lines are fetched before they are needed
 inline constexpr int kMostVertices = 32;   ///< of a packed grain; those with more stay loose
-inline constexpr int kAtOnce = 5;          ///< contacts as side A, and as many as side B, whose forces a rigid body sums without a look at how many there are
+inline constexpr int kAtOnce = 5;          ///< contacts on each side that a rigid body sums unconditionally; missing ones point to a zero record, which avoids a branch
 
 /// What else a step has to do for a pack of grains.
 enum class PackForces : std::uint8_t {
