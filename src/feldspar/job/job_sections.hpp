@@ -51,7 +51,7 @@ inline constexpr int job_level = 2;
 SpecimenSpec read_own_specimen(const JobTable& test, const SpecimenSpec& of_job, bool grains_known);
 
 /// Keys on which an outline rests.
-inline constexpr std::array<std::string_view, 9> outline_keys{"shape", "width", "height", "diameter", "hole_diameter", "vertices", "edge_labels", "holes", "notches"};
+inline constexpr std::array<std::string_view, 10> outline_keys{"shape", "width", "height", "diameter", "hole_diameter", "vertices", "edge_labels", "arcs", "holes", "notches"};
 
 /// [[test]], lists of sigma3 expanded.
 std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,

@@ -158,6 +158,7 @@ std::vector<JobKey> outline_rows() {
          "one label an edge, edge i from vertex i to vertex i + 1: `\"top\"` on the upper end and `\"bottom\"` on the lower one, both within 10 degrees of "
          "horizontal; the load acts along y",
          polygon},
+        {"arcs", tables("specimen.arcs"), none, "round edges of the polygon", polygon},
         {"holes", tables("specimen.holes"), none, "holes, in any outline: not smaller than the largest grain, half a mean grain or more from the boundary and each other"},
         {"notches", tables("specimen.notches"), none,
          "sawn slits with square ends, which begin at a boundary or at a hole or lie inside: longer than the largest grain, half a mean grain or more from each "
@@ -178,6 +179,13 @@ std::vector<JobKey> specimen_keys() {
     };
     std::ranges::move(further, std::back_inserter(keys));
     return keys;
+}
+
+std::vector<JobKey> arc_keys() {
+    return {
+        {"edge", integer(0, 10000), needed, "the edge from vertex `edge`, counted from 0, to the next"},
+        {"through", point(), needed, "a point beside the edge: the arc goes from the one vertex through it to the other"},
+    };
 }
 
 std::vector<JobKey> hole_keys() {
@@ -546,6 +554,7 @@ std::vector<KeyTable> all_tables() {
         {"specimen", "[specimen]", specimen_keys()},
         {"specimen.grains", "[specimen.grains]", grains_keys()},
         {"specimen.grains.diameter", "[specimen.grains] diameter", diameter_keys()},
+        {"specimen.arcs", "[[specimen.arcs]]", arc_keys()},
         {"specimen.holes", "[[specimen.holes]]", hole_keys()},
         {"specimen.notches", "[[specimen.notches]]", notch_keys()},
         {"specimen.labels", "[[specimen.labels]]", label_keys()},

@@ -86,8 +86,8 @@ void read_cutouts(const JobTable& table, OutlineSpec& outline) {
 }
 
 void check_cutouts(const JobTable& table, const SpecimenSpec& specimen) {
-    if (!specimen.outline.is_cut() || (table.rows().path == "specimen" && !table.sound({"grains.diameter"}))) return;
-    table.check({"shape", "width", "height", "diameter", "hole_diameter", "vertices", "holes", "notches"}, [&] {
+    if ((!specimen.outline.is_cut() && specimen.outline.arcs.empty()) || (table.rows().path == "specimen" && !table.sound({"grains.diameter"}))) return;
+    table.check({"shape", "width", "height", "diameter", "hole_diameter", "vertices", "edge_labels", "arcs", "holes", "notches"}, [&] {
         try {
             make_outline(specimen);
         } catch (const InputError& error) {

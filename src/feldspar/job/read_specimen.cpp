@@ -45,6 +45,11 @@ void read_polygon(const JobTable& table, OutlineSpec& outline) {
             table.fail("vertices", "the outline crosses or touches itself", "a simple polygon: its edges meet at their ends only");
     });
 
+    if (table.has("arcs"))
+        for (const JobTable& one : table.tables("arcs", "an arc")) {
+            one.require({"edge", "through"});
+            outline.arcs.push_back({static_cast<int>(one.integer("edge")), one.point("through")});
+        }
     if (!table.has("edge_labels")) return;
     for (const toml::node& label : table.array("edge_labels"))
         table.check({}, [&] { outline.edge_labels.push_back(table.text_of(label, "edge_labels")); });
@@ -138,6 +143,13 @@ GrainSizeSpec read_grain_sizes(const JobTable& grains) {
 double rough_area_m2(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return outline.width_m * outline.height_m;
     if (outline.shape != Shape::polygon) return 0.25 * std::numbers::pi * outline.diameter_m * outline.diameter_m;
+    if (!outline.arcs.empty()) {
+        try {
+            return make_outline(outline).area_m2;
+        } catch (const InputError&) {   // told with the arcs
+            return 0.0;
+        }
+    }
     return std::abs(signed_area(outline.vertices_m));
 }
 
@@ -157,7 +169,7 @@ double smallest_extent_m(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return std::min(outline.width_m, outline.height_m);
     if (outline.shape == Shape::disc) return outline.diameter_m;
     if (outline.shape == Shape::ring) return 0.5 * (outline.diameter_m - outline.hole_diameter_m);
-    const Box box = bounding_box(outline);
+    const Box box = outline.arcs.empty() ? bounding_box(outline) : bounding_box(outline.vertices_m);   // arcs may be wrong, which is told with them
     return std::min(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
 }
 

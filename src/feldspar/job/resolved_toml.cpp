@@ -116,6 +116,9 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
             out.raw("vertices", points(outline.vertices_m));
             for (const std::string& label : outline.edge_labels) items.push_back(quote(label));
             if (!items.empty()) out.raw("edge_labels", fmt::format("[{}]", fmt::join(items, ", ")));
+            items.clear();
+            for (const ArcSpec& arc : outline.arcs) items.push_back(fmt::format("{{ edge = {}, through = {} }}", arc.edge, point(arc.through_m)));
+            if (!items.empty()) out.raw("arcs", list(items));
             break;
         }
         case Shape::ring:

@@ -52,7 +52,56 @@ Extremes extreme_widths(const Outline& outline, double low, double high) {
 
 std::string in_mm(Vec2 a, Vec2 b) { return fmt::format("from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) mm", 1e3 * a.x, 1e3 * a.y, 1e3 * b.x, 1e3 * b.y); }
 
-Outline make_polygon(const OutlineSpec& spec) {
+[[noreturn]] void refuse_arc(const ArcSpec& arc, const char* what, const char* allowed) {
+    throw InputError({"", 0, 0, "specimen.arcs"}, fmt::format("the arc of edge {} {}", arc.edge, what), allowed);
+}
+
+/// Corners of an arc from `from` to `to`, both left out.
+std::vector<Vec2> corners_between(const ArcSpec& arc, Vec2 from, Vec2 to, const GrainScale& grains) {
+    const Vec2 a = arc.through_m - from, b = to - from;
+    const double twice = 2.0 * cross(a, b), chord = norm(b);
+    constexpr double kFlat = 1e-6;   // of the chord: from there on the circle is larger than any specimen
+    if (!(std::abs(twice) > 2.0 * kFlat * chord * chord)) refuse_arc(arc, "goes through a point on the straight edge", "a point beside the edge, through which the arc goes");
+    const Vec2 centre = from + (1.0 / twice) * Vec2{b.y * dot(a, a) - a.y * dot(b, b), a.x * dot(b, b) - b.x * dot(a, a)};
+    const double radius = norm(from - centre), pi = std::numbers::pi;
+    const auto angle = [&](Vec2 p) { return std::atan2(p.y - centre.y, p.x - centre.x); };
+    const auto turn = [&](double to_rad) { return to_rad - std::floor(to_rad / (2.0 * pi)) * 2.0 * pi; };
+    const double begin = angle(from), through = turn(angle(arc.through_m) - begin), whole = turn(angle(to) - begin);
+    const double swept = through < whole ? whole : whole - 2.0 * pi;   // the way round on which the point lies
+    const int edges = std::max(2, static_cast<int>(std::lround(arc_edges(radius, grains.mean_m) * std::abs(swept) / (2.0 * pi))));
+    std::vector<Vec2> corners = arc_corners(centre, radius, begin, begin + swept, edges);
+    return {corners.begin() + 1, corners.end() - 1};
+}
+
+/// Puts the corners of the arcs between the vertices; every piece of an arc has the label of its edge.
+void bend_edges(Outline& outline, const std::vector<ArcSpec>& arcs, const GrainScale& grains) {
+    const auto n = static_cast<int>(outline.vertices.size());
+    std::vector<const ArcSpec*> of_edge(outline.vertices.size(), nullptr);
+    for (const ArcSpec& arc : arcs) {
+        if (arc.edge < 0 || arc.edge >= n) refuse_arc(arc, "is on no edge", "edges from 0 on, one a vertex");
+        if (of_edge[static_cast<std::size_t>(arc.edge)] != nullptr) refuse_arc(arc, "is given twice", "one arc an edge");
+        of_edge[static_cast<std::size_t>(arc.edge)] = &arc;
+    }
+    std::vector<Vec2> vertices;
+    std::vector<std::string> labels;
+    for (std::size_t k = 0; k < of_edge.size(); ++k) {
+        const std::string& label = outline.edge_labels[k];
+        const Vec2 from = outline.vertices[k];
+        vertices.push_back(from);
+        labels.push_back(label);
+        if (of_edge[k] == nullptr) continue;
+        if (label == top_label || label == bottom_label) refuse_arc(*of_edge[k], "is labelled as an end that platens press on, which is flat", "another label");
+        for (const Vec2 corner : corners_between(*of_edge[k], from, outline.vertices[(k + 1) % of_edge.size()], grains)) {
+            vertices.push_back(corner);
+            labels.push_back(label);
+        }
+    }
+    if (!is_simple_polygon(vertices)) throw InputError({"", 0, 0, "specimen.arcs"}, "an arc crosses or touches the rest of the outline", "arcs that bulge less, or to the other side");
+    outline.vertices = std::move(vertices);
+    outline.edge_labels = std::move(labels);
+}
+
+Outline make_polygon(const OutlineSpec& spec, const GrainScale& grains) {
     const std::size_t n = spec.vertices_m.size();
     if (!is_simple_polygon(spec.vertices_m)) {
         throw InputError({"", 0, 0, "specimen.vertices"},
@@ -70,8 +119,9 @@ Outline make_polygon(const OutlineSpec& spec) {
     if (outline.edge_labels.empty()) {
         for (std::size_t k = 0; k < n; ++k) outline.edge_labels.push_back(fmt::format("edge-{}", k));
     }
+    if (!spec.arcs.empty()) bend_edges(outline, spec.arcs, grains);
     if (signed_area(outline.vertices) < 0.0) {
-        // Vertex k becomes vertex n - 1 - k, so edge k (from k to k + 1) becomes edge n - 2 - k, and the last edge stays last.
+        // Of n vertices, vertex k becomes n - 1 - k, so edge k (from k to k + 1) becomes edge n - 2 - k, and the last edge stays last.
         std::reverse(outline.vertices.begin(), outline.vertices.end());
         std::reverse(outline.edge_labels.begin(), outline.edge_labels.end() - 1);
     }
@@ -193,7 +243,7 @@ Outline make_outline(const OutlineSpec& spec, const GrainScale& grains) {
             if (spec.flat_angle_rad != 0.0) flatten(outline, spec.flat_angle_rad);
             break;
         case Shape::polygon:
-            outline = make_polygon(spec);
+            outline = make_polygon(spec, grains);
             outline.area_m2 = signed_area(outline.vertices);
             break;
         case Shape::half_disc:
@@ -216,7 +266,7 @@ Outline make_outline(const OutlineSpec& spec, const GrainScale& grains) {
 }
 
 Outline make_outline(const SpecimenSpec& spec) {
-    if (!spec.outline.is_cut() && spec.outline.shape != Shape::half_disc) return make_outline(spec.outline);
+    if (!spec.outline.is_cut() && spec.outline.shape != Shape::half_disc && spec.outline.arcs.empty()) return make_outline(spec.outline);
     const GrainSizeSpec& sizes = spec.grain_sizes;
     return make_outline(spec.outline, {counting_diameter(sizes), sizes.kind == GrainSizeKind::sieve ? largest_of_sieve_m(sizes.sieve) : sizes.maximum_m});
 }
@@ -242,6 +292,7 @@ OutlineSpec scaled(const OutlineSpec& spec, double factor) {
     };
     for (double* length : {&result.width_m, &result.height_m, &result.diameter_m, &result.hole_diameter_m}) *length *= factor;
     scale(result.vertices_m);
+    for (ArcSpec& arc : result.arcs) arc.through_m = factor * arc.through_m;
     for (HoleSpec& hole : result.holes) {
         hole.centre_m *= factor;
         hole.diameter_m *= factor;
@@ -264,7 +315,7 @@ Box bounding_box(const OutlineSpec& spec) {
     const double radius = 0.5 * spec.diameter_m;
     switch (spec.shape) {
         case Shape::rectangle: return {{0.0, 0.0}, {spec.width_m, spec.height_m}};
-        case Shape::polygon: return bounding_box(std::span<const Vec2>(spec.vertices_m));
+        case Shape::polygon: return spec.arcs.empty() ? bounding_box(std::span<const Vec2>(spec.vertices_m)) : bounding_box(make_outline(spec));
         case Shape::half_disc: return {{-radius, 0.0}, {radius, radius}};
         case Shape::disc:
         case Shape::ring: break;

@@ -18,9 +18,9 @@ struct GrainScale {
 };
 
 /// Checks the spec and makes the outline. Rectangle: [0, width] x [0, height], edges bottom, right, top, left. Disc: centre
-/// (0, 0), flats at y = R cos(angle / 2) and below. Polygon: turned counter-clockwise where needed, each label staying with its edge. Half disc: a
+/// (0, 0), flats at y = R cos(angle / 2) and below. Polygon: turned counter-clockwise where needed, each label staying with its edge; round edges divided, each piece with the label of its edge. Half disc: a
 /// polygon, its corners on the arc, edges "flat" and then "arc", with one of these in the middle of the arc. Ring: a disc with a round hole, "hole".
-/// Arcs of the half disc and round holes are polygons of arc_edges() edges a circle; that of a hole has the area of the circle.
+/// Arcs of polygons and of the half disc and round holes are polygons of arc_edges() edges a circle; that of a hole has the area of the circle.
 /// @throws InputError for lengths that are not positive, flats of no angle below 180 degrees, a polygon that crosses or touches itself, a wrong number of labels,
 ///                    holes that are smaller than a grain, touch the boundary or each other, notches that are shorter than a grain, lie outside, touch each other
 ///                    or leave a bridge thinner than a grain

@@ -47,6 +47,14 @@ struct PlaceLabelSpec {
     bool operator==(const PlaceLabelSpec&) const = default;
 };
 
+/// A round edge of a polygon: the arc of a circle from the edge's first vertex through a point to its second.
+struct ArcSpec {
+    int edge = 0;       ///< from vertex `edge` to the next
+    Vec2 through_m;     ///< not on the straight line between them
+
+    bool operator==(const ArcSpec&) const = default;
+};
+
 /// The outline as the user describes it. A rectangle spans [0, width] x [0, height]; a disc and a ring are centred at (0, 0); a half disc
 /// stands on y = 0 with the middle of its flat at (0, 0).
 struct OutlineSpec {
@@ -57,6 +65,7 @@ struct OutlineSpec {
     double hole_diameter_m = 0.0;          ///< ring
     std::vector<Vec2> vertices_m;          ///< polygon: simple, either orientation
     std::vector<std::string> edge_labels;  ///< polygon: label of the edge from vertex i to i + 1; empty = "edge-0", "edge-1", ...
+    std::vector<ArcSpec> arcs;             ///< polygon: its round edges, one an edge at most
     double flat_angle_rad = 0.0;           ///< disc: angle of each of two flats across y, seen from the centre; 0 = a whole disc
     std::vector<HoleSpec> holes;           ///< in any outline
     std::vector<NotchSpec> notches;        ///< in any outline

@@ -31,7 +31,7 @@ private:
 // Takes each struct apart by name: one that gets another member is not compiled until the member stands here.
 std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
     const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain] = spec;
-    const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, flat_angle_rad, holes, notches, labels] = outline;
+    const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, arcs, flat_angle_rad, holes, notches, labels] = outline;
     const auto& [kind, minimum_m, maximum_m, median_m, log_standard_deviation, sieve] = grain_sizes;
     Text text;
     text.add(std::to_string(seed));
@@ -42,6 +42,13 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
         text.add(vertex.y);
     });
     text.add(edge_labels, [&](const std::string& label) { text.add(label); });
+    if (!arcs.empty())   // identities of outlines without arcs stay as they were
+        text.add(arcs, [&](const ArcSpec& arc) {
+            const auto& [edge, through] = arc;
+            text.add(edge);
+            text.add(through.x);
+            text.add(through.y);
+        });
     const auto add_point = [&](Vec2 point) {
         text.add(point.x);
         text.add(point.y);

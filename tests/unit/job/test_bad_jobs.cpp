@@ -221,6 +221,12 @@ std::vector<BadJob> bad_jobs() {
          with_outline("shape = \"disc\"\ndiameter = \"80 mm\""),
          31,
          {"test[1].kind", "a disc", "\"rectangle\""}},
+        {"an arc through its own edge",
+         with_outline("shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\n"
+                      "edge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\narcs = [{ edge = 1, through = [\"80 mm\", \"20 mm\"] }]"),
+         5,
+         {"specimen.arcs", "the arc of edge 1", "beside the edge"}},
+        {"an arc of a rectangle", with_outline("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"\narcs = [{ edge = 1, through = [\"80 mm\", \"20 mm\"] }]"), 5, {"specimen.arcs", "does not apply", "polygon"}},
         {"polygon without platens",
          with_outline("shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"]]"),
          31,

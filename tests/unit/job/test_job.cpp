@@ -393,6 +393,9 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplates = \"curved\"\njaw_radius = 1.25"));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\""));
     expect_round_trip(edited("height = \"160 mm\"", holed_and_notched));
+    expect_round_trip(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
+                             "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\n"
+                             "edge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\narcs = [{ edge = 1, through = [\"60 mm\", \"80 mm\"] }, { edge = 3, through = [\"20 mm\", \"80 mm\"] }]"));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));

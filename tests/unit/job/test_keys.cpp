@@ -69,6 +69,9 @@ const std::vector<std::string>& bases() {
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\" }"),
             replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test_in_stages),
             replaced(sample_job, "kind = \"uniaxial-compression\"\n", pressed_test),
+            replaced(sample_job, "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
+                     "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\nedge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\n"
+                     "arcs = [{ edge = 1, through = [\"60 mm\", \"80 mm\"] }]"),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"cyclic-compression\""),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
         };

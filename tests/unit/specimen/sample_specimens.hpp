@@ -54,6 +54,13 @@ inline SpecimenSpec triangle() { return polygon({{0, 0}, {0.05, 0}, {0.01, 0.04}
 /// A square whose top and bottom have a vertex in the middle, so that half of each can be loaded.
 inline SpecimenSpec split_sides() { return polygon({{0, 0}, {0.015, 0}, {0.03, 0}, {0.03, 0.03}, {0.015, 0.03}, {0, 0.03}}); }
 
+/// A dog bone of 40 x 60 mm, whose left side comes in and whose right side bulges: both are arcs.
+inline SpecimenSpec round_sides() {
+    SpecimenSpec spec = polygon({{0, 0}, {0.04, 0}, {0.04, 0.06}, {0, 0.06}});
+    spec.outline.arcs = {{1, {0.05, 0.03}}, {3, {0.008, 0.03}}};
+    return spec;
+}
+
 /// A half disc with a notch from the middle of its flat, as for the semi-circular bend test.
 inline SpecimenSpec half_disc(double diameter_m = 0.06, double notch_width_m = 0.001) {
     SpecimenSpec spec = disc(diameter_m);

@@ -1,4 +1,5 @@
 // From the user's outline to one ready for use.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -52,6 +53,65 @@ TEST(Outline, UnlabelledEdgesGetNumbersInTheUsersOrder) {
     const Outline o = make_outline(ell().outline);
     EXPECT_EQ(o.edge_labels.front(), "edge-0");
     EXPECT_EQ(o.edge_labels.back(), "edge-5");
+}
+
+// A dog bone: the sides of 80 x 160 mm are arcs that come in by 20 mm in the middle.
+OutlineSpec dog_bone(bool clockwise = false) {
+    OutlineSpec spec;
+    spec.shape = Shape::polygon;
+    spec.vertices_m = {{0, 0}, {0.08, 0}, {0.08, 0.16}, {0, 0.16}};
+    spec.edge_labels = {"bottom", "right", "top", "left"};
+    spec.arcs = {{1, {0.06, 0.08}}, {3, {0.02, 0.08}}};
+    if (clockwise) {
+        std::reverse(spec.vertices_m.begin(), spec.vertices_m.end());
+        spec.edge_labels = {"top", "right", "bottom", "left"};
+        spec.arcs = {{1, {0.06, 0.08}}, {3, {0.02, 0.08}}};
+    }
+    return spec;
+}
+
+TEST(Outline, RoundEdgesAreDividedAndKeepTheirLabel) {
+    // A chord of 160 mm and a rise of 20 mm: R = (80^2 + 20^2) / 40 = 170 mm.
+    constexpr double R = 0.17, rise = 0.02, chord = 0.16;
+    const double half = std::asin(0.5 * chord / R), segment = R * R * (half - std::sin(half) * std::cos(half));
+    for (const bool clockwise : {false, true}) {
+        for (const double grain : {0.0, 0.003, 0.0003}) {
+            const Outline o = make_outline(dog_bone(clockwise), {grain, grain});
+            ASSERT_EQ(o.vertices.size(), o.edge_labels.size());
+            std::size_t on_right = 0;
+            for (std::size_t k = 0; k < o.vertices.size(); ++k) {
+                if (o.edge_labels[k] != "right") continue;
+                ++on_right;
+                EXPECT_NEAR(norm(o.vertices[k] - Vec2{0.08 - rise + R, 0.08}), R, 1e-12);
+            }
+            EXPECT_EQ(on_right, static_cast<std::size_t>(std::max(2L, std::lround(arc_edges(R, grain) * half / std::numbers::pi))));
+            const double fine = 2.0 * half / static_cast<double>(on_right);   // a polygon inside the circle has less of the segment, of the second order
+            EXPECT_NEAR(o.area_m2, 0.08 * chord - 2.0 * segment, 1.2 * 2.0 * segment * fine * fine);
+            EXPECT_GT(signed_area(o.vertices), 0.0);
+        }
+    }
+    OutlineSpec bulging = dog_bone();   // more than half a circle: through a point that is farther out than the chord is long
+    bulging.arcs = {{1, {0.28, 0.08}}};
+    const double r = (0.08 * 0.08 + 0.2 * 0.2) / 0.4, cut = std::asin(0.08 / r), beyond = r * r * (std::numbers::pi - cut + std::sin(cut) * std::cos(cut));
+    EXPECT_NEAR(make_outline(bulging, {0.0003, 0.0003}).area_m2 / (0.08 * chord + beyond), 1.0, 1e-3);
+}
+
+TEST(Outline, ImpossibleArcsAreRefused) {
+    const auto refused = [](const std::vector<ArcSpec>& arcs) {
+        OutlineSpec spec = dog_bone();
+        spec.arcs = arcs;
+        try {
+            make_outline(spec);
+        } catch (const InputError& error) {
+            return error.problem();
+        }
+        return std::string("accepted");
+    };
+    EXPECT_NE(refused({{7, {0.06, 0.08}}}).find("is on no edge"), std::string::npos);
+    EXPECT_NE(refused({{1, {0.08, 0.05}}}).find("on the straight edge"), std::string::npos);
+    EXPECT_NE(refused({{1, {0.06, 0.08}}, {1, {0.07, 0.08}}}).find("given twice"), std::string::npos);
+    EXPECT_NE(refused({{2, {0.04, 0.17}}}).find("which is flat"), std::string::npos);
+    EXPECT_NE(refused({{1, {0.03, 0.08}}, {3, {0.05, 0.08}}}).find("crosses or touches"), std::string::npos);
 }
 
 TEST(Outline, ImpossibleOutlinesAreRefused) {

@@ -147,7 +147,7 @@ TEST_P(Cells, ShortestEdgeIsTheLast) {
 INSTANTIATE_TEST_SUITE_P(Outlines, Cells,
                          testing::Values(Case{"rectangle", rectangle(0.04, 0.06)}, Case{"disc", disc(0.05)}, Case{"flattened_disc", flattened_disc(0.05)},
                                          Case{"wide_flats", flattened_disc(0.05, 40.0)}, Case{"triangle", triangle()},
-                                         Case{"ell", ell()}, Case{"slit", slit()}, Case{"split_sides", split_sides()}),
+                                         Case{"round_sides", round_sides()}, Case{"ell", ell()}, Case{"slit", slit()}, Case{"split_sides", split_sides()}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 /// Without merging, a point lies in the cell of the disc to which its power is least.
