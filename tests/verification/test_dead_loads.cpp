@@ -33,22 +33,17 @@ FixtureSpec pressed(FixtureSpec plate, double force_N, double spring_Pa_m = 0.0)
     return plate;
 }
 
-GaugeSpec force_on(const char* fixture, Vec2 direction) {
+GaugeSpec of_fixture(GaugeKind kind, const char* fixture, Vec2 direction) {
     GaugeSpec gauge;
-    gauge.name = std::string("force-on-") + fixture;
-    gauge.kind = GaugeKind::force;
+    gauge.name = fixture;
+    gauge.kind = kind;
     gauge.fixture = fixture;
     gauge.direction = direction;
     return gauge;
 }
 
-GaugeSpec way_of(const char* fixture, Vec2 direction) {
-    GaugeSpec gauge;
-    gauge.name = std::string("way-of-") + fixture;
-    gauge.fixture = fixture;
-    gauge.direction = direction;
-    return gauge;
-}
+GaugeSpec force_on(const char* fixture, Vec2 direction) { return of_fixture(GaugeKind::force, fixture, direction); }
+GaugeSpec way_of(const char* fixture, Vec2 direction) { return of_fixture(GaugeKind::displacement, fixture, direction); }
 
 TestSetup setup(const ModelSpec& model, double height_m, std::vector<FixtureSpec> list, bool weighs) {
     TestSetup s = fixtures::setup(fixtures::rectangle(kWidth, height_m), methods::custom, model);

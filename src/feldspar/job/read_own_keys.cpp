@@ -47,8 +47,7 @@ void read_pressing(const JobTable& table, FixtureSpec& fixture) {
     table.check({"motion", "normal"}, [&] {
         if (std::abs(dot(fixture.motion, fixture.normal)) > 1e-9) table.fail("motion", "moves a plate along its normal, where its pressure decides how it moves", "a motion along the plate, or no pressure");
     });
-    fixture.contact.glued = false;
-    if (table.flag("glued")) table.check({"glued"}, [&] { table.fail("glued", "a plate under a pressure is not glued", "leave it out"); });
+    if (fixture.contact.glued) table.check({"glued"}, [&] { table.fail("glued", "a plate under a pressure is not glued", "leave it out"); });
 }
 
 FixtureSpec read_fixture(const JobTable& table) {

@@ -324,23 +324,27 @@ void hold_springs(Experiment& e) {
     }
 }
 
-// Dead loads on a body of unlimited strength, while the fixtures rest.
-void press_elastically(Experiment& e) {
-    if (!e.has_dead_loads()) return;
-    e.set_dead_loads(1.0);
-    relax_or_throw(e);
-    hold_springs(e);
-}
-
-// With that share of the dead loads that the elastic body bears, after all of them.
-void press_below_damage(Experiment& e, const BodyState& unloaded) {
+// From all dead loads back to a share of them that damages nothing. @return the share
+double go_below_damage(Experiment& e, const BodyState& unloaded) {
     const BodyState full = capture(e.assembly, e.platen_travel_m);
     const double share = 0.9 * first_damage(e.assembly, unloaded, full);
-    for (DeadLoad& load : e.assembly.dead_loads) load.springs = false;
     go_to(e, superpose(unloaded, full, share));
     e.set_dead_loads(share);
     relax_or_throw(e);
+    return share;
+}
+
+// Dead loads on a body of unlimited strength, while the fixtures rest; where they would damage it, a share of them.
+// @return whether it bears all of them
+bool press_elastically(Experiment& e) {
+    if (!e.has_dead_loads()) return true;
+    const BodyState unloaded = capture(e.assembly, e.platen_travel_m);
+    e.set_dead_loads(1.0);
+    relax_or_throw(e);
+    const bool elastic = consolidated_is_elastic(e, unloaded);
+    if (!elastic) go_below_damage(e, unloaded);
     hold_springs(e);
+    return elastic;
 }
 
 // From the unloaded body, with the real law.
@@ -368,9 +372,7 @@ void set_out(Experiment& e, double elastic_m) {
 void prepare_adaptive(Experiment& e) {
     if (!e.method.start.stays_in_touch) {
         const BodyState unloaded = capture(e.assembly, 0.0);
-        press_elastically(e);
-        const bool elastic = !e.has_dead_loads() || consolidated_is_elastic(e, unloaded);
-        if (!elastic) press_below_damage(e, unloaded);
+        const bool elastic = press_elastically(e);
         forget_relaxation_work(e);
         if (e.has_dead_loads() && elastic) note_consolidated(e);
         elastic_contacts(e);
@@ -387,14 +389,7 @@ void prepare_adaptive(Experiment& e) {
         if (e.confined()) {
             consolidate_elastically(e);
             elastic = consolidated_is_elastic(e, unloaded);
-            if (!elastic) {   // go as far as it is elastic, then ramp with the real law
-                const BodyState full = capture(e.assembly, e.platen_travel_m);
-                const double share = 0.9 * first_damage(e.assembly, unloaded, full);
-                go_to(e, superpose(unloaded, full, share));
-                e.set_dead_loads(share);
-                relax_or_throw(e);
-                consolidated = share;
-            }
+            if (!elastic) consolidated = go_below_damage(e, unloaded);   // then ramp with the real law
         }
         forget_relaxation_work(e);
         if (elastic) {
@@ -430,7 +425,6 @@ void forget_mode(Experiment& e) {
 void begin_in_mode(Experiment& e, double speed) {
     const BodyState unloaded = capture(e.assembly, 0.0);
     press_elastically(e);
-    if (e.has_dead_loads() && !consolidated_is_elastic(e, unloaded)) press_below_damage(e, unloaded);
     elastic_contacts(e);
     go_to(e, unloaded);
     press_by_ramp(e);
