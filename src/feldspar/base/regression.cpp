@@ -1,4 +1,4 @@
-#include "feldspar/lab/regression.hpp"
+#include "feldspar/base/regression.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "feldspar/base/regression.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
-#include "feldspar/lab/regression.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {

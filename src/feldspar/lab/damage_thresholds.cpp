@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "feldspar/lab/regression.hpp"
+#include "feldspar/base/regression.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {

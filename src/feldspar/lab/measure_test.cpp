@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/base/regression.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/cycles.hpp"
 #include "feldspar/lab/damage_thresholds.hpp"
@@ -16,7 +17,6 @@
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/quantities.hpp"
-#include "feldspar/lab/regression.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/methods/method.hpp"
 

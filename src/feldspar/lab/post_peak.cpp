@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "feldspar/lab/regression.hpp"
+#include "feldspar/base/regression.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "feldspar/base/angle.hpp"
-#include "feldspar/lab/regression.hpp"
+#include "feldspar/base/regression.hpp"
 
 namespace feldspar {
 

@@ -9,7 +9,7 @@
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/median.hpp"
-#include "feldspar/lab/regression.hpp"
+#include "feldspar/base/regression.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 #include "feldspar/methods/method.hpp"

@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/regression.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/methods/platens.hpp"
@@ -188,17 +191,14 @@ double dilation_angle_deg(const MethodReading& r) {
     std::size_t begin = record.peak(), end = record.peak() + 1;
     while (begin > record.first() + 1 && record.at(begin - 1).shear_Pa >= least) --begin;
     while (end < record.rows() && record.at(end).shear_Pa >= least) ++end;
-    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+    std::vector<double> shear_m, dilation_m;
     for (std::size_t row = begin; row < end; ++row) {
         const OnPlane p = record.at(row);
-        n += 1.0;
-        x += p.shear_m;
-        y += p.dilation_m;
-        xx += p.shear_m * p.shear_m;
-        xy += p.shear_m * p.dilation_m;
+        shear_m.push_back(p.shear_m);
+        dilation_m.push_back(p.dilation_m);
     }
-    const double spread = xx - x * x / n;
-    return n >= 3.0 && spread > 0.0 ? in_degrees(std::atan((xy - x * y / n) / spread)) : kNone;
+    constexpr std::size_t kLeast = 3;
+    return shear_m.size() >= kLeast ? in_degrees(std::atan(regression_line(shear_m, dilation_m).slope)) : kNone;
 }
 
 // (P62): secant at half the peak.

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "feldspar/base/regression.hpp"
 #include "feldspar/lab/quantities.hpp"
-#include "feldspar/lab/regression.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 #include "synthetic_records.hpp"
 
