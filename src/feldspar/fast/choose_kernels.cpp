@@ -20,23 +20,13 @@ void point_broke(Assembly& assembly, int contact_number, int j, BondEvent event,
 
 }  // namespace
 
-KernelLaw::KernelLaw(const BondLaw& law)
-    : Kn(law.Kn_Pa_m), Ks(law.Ks_Pa_m), inverse_Kn(1.0 / law.Kn_Pa_m), inverse_Ks(law.Ks_Pa_m > 0.0 ? 1.0 / law.Ks_Pa_m : 0.0), sigma_nt(law.sigma_nt_Pa),
-      tau(law.tau_Pa), mu(law.mu), shear_beyond_friction(law.shear_beyond_friction), secant_unloading(law.secant_unloading) {
-    const auto inverted = [](const SofteningEnvelope& e) {
-        const bool softens = !e.brittle && e.x_y > e.x0;
-        return Envelope{e.x0, e.x_y, e.x_f, softens ? 0.75 / (e.x_y - e.x0) : 0.0, softens ? 0.25 / (e.x_f - e.x_y) : 0.0, e.brittle};
-    };
-    normal = inverted(law.normal);
-    shear = inverted(law.shear);
-}
-
 KernelArrays::KernelArrays(Assembly& s)
     : assembly(&s),
       grain_packs(s.packs.grains.data()),
       pack_forces(s.packs.forces.data()),
       contact_packs(s.packs.contacts.data()),
       rigid_bodies(s.packs.rigid.data()),
+      laws(s.laws.data()),
       weight(pairs(s.weight)),
       reference(pairs(s.nodes.reference)),
       inverse_mass(pairs(s.nodes.inverse_mass)),
@@ -79,9 +69,7 @@ KernelArrays::KernelArrays(Assembly& s)
       thickness(s.thickness_m),
       D11(s.elasticity.D11),
       D12(s.elasticity.D12),
-      broke(point_broke) {
-    for (std::size_t role = 0; role < laws.size(); ++role) laws[role] = KernelLaw(s.laws[role]);
-}
+      broke(point_broke) {}
 
 const std::array<const Kernels*, 3>& all_kernels() {
 #if defined(__x86_64__)

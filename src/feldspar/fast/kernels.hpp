@@ -32,22 +32,6 @@ struct KernelStep {
     long long step = 0;
 };
 
-/// A contact law with what its kernel divides by, inverted once.
-struct KernelLaw {
-    struct Envelope {
-        double x0 = 0.0, x_y = 0.0, x_f = 0.0;
-        double first_slope = 0.0, second_slope = 0.0;   ///< of the damage over the displacement, 1/m
-        bool brittle = false;
-    };
-    double Kn = 0.0, Ks = 0.0, inverse_Kn = 0.0, inverse_Ks = 0.0;   ///< inverse_Ks: 0 without shear stiffness
-    double sigma_nt = 0.0, tau = 0.0, mu = 0.0;
-    Envelope normal, shear;
-    bool shear_beyond_friction = false, secant_unloading = false;
-
-    KernelLaw() = default;
-    explicit KernelLaw(const BondLaw& law);
-};
-
 /// The arrays of an assembly. Points (x, y) as pairs of doubles, lines of 64 bytes as 8 doubles.
 struct KernelArrays {
     Assembly* assembly = nullptr;
@@ -55,7 +39,7 @@ struct KernelArrays {
     const PackForces* pack_forces = nullptr;
     ContactPack* contact_packs = nullptr;
     const RigidBody* rigid_bodies = nullptr;
-    std::array<KernelLaw, contact_roles> laws;
+    const BondLaw* laws = nullptr;
     const double* weight = nullptr;   ///< of the nodes; null without gravity
     const double *reference = nullptr, *inverse_mass = nullptr, *loading_mode = nullptr, *mass = nullptr;
     double *displacement = nullptr, *velocity = nullptr, *force = nullptr;

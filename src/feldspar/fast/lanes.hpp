@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "feldspar/laws/number.hpp"
+
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -41,8 +43,6 @@ FELDSPAR_INLINE void store(double* p, Real v, int count) {
 }
 
 FELDSPAR_INLINE Real absolute(Real v) { return reinterpret_cast<Real>(reinterpret_cast<Mask>(v) & INT64_MAX); }
-FELDSPAR_INLINE Real smaller(Real a, Real b) { return a < b ? a : b; }
-FELDSPAR_INLINE Real larger(Real a, Real b) { return a > b ? a : b; }
 
 FELDSPAR_INLINE Real square_root(Real v) {
 #if defined(__AVX512F__) && FELDSPAR_LANES == 8
@@ -102,6 +102,18 @@ FELDSPAR_INLINE bool any(Mask m) {
     return bits != 0;
 #endif
 }
+
+}  // namespace
+
+/// A vector as the number type of a law.
+template <>
+struct NumberOf<Real> {
+    FELDSPAR_INLINE static Real absolute(Real v) { return feldspar::absolute(v); }
+    FELDSPAR_INLINE static Real square_root(Real v) { return feldspar::square_root(v); }
+    FELDSPAR_INLINE static bool any(Mask m) { return feldspar::any(m); }
+};
+
+namespace {
 
 // Stores the lanes of the mask among the first `count`, and leaves the memory of the others alone: another thread may be at it.
 FELDSPAR_INLINE void store_where(double* p, Real v, Mask mask, int count) {

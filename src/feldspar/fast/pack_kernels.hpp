@@ -1,7 +1,7 @@
 // The stages over packs, in vectors of FELDSPAR_LANES doubles. Included once by each kernels_<instruction set>.cpp.
 //
-// Formulas: contacts (C1)-(C19) of docs/theory/contacts.md, laws/bond.hpp; triangles laws/plane_elasticity.hpp; motion step/body_forces.cpp.
-// Here they stand in the form that costs least; tests/unit/fast compares them with the readable stages.
+// The laws are those of laws/, over vectors. What is geometry of contacts and triangles, (C1)-(C19) of docs/theory/contacts.md, and motion,
+// step/body_forces.cpp, stands here in the form that costs least; tests/unit/fast compares it with the readable stages.
 #pragma once
 
 #include "feldspar/fast/kernels.hpp"
@@ -77,62 +77,7 @@ FELDSPAR_INLINE void store_forces(double* const (&line)[kWidth], Real2 F, Real x
     store_quads(high, {{yx, yy, Real{}, Real{}}});
 }
 
-// 1 - f(x) / F of an envelope.
-FELDSPAR_INLINE Real envelope_damage(const KernelLaw::Envelope& e, Real x) {
-    if (e.first_slope == 0.0) return Real{};
-    const Real softened = x <= all(e.x_y) ? e.first_slope * (x - e.x0) : 1.0 - e.second_slope * (e.x_f - x);
-    return x <= all(e.x0) ? Real{} : x < all(e.x_f) ? softened : all(1.0);
-}
-
-struct BondLanes {
-    Real un, us, Fn, Fs, max_un, max_us, damage, fracture, friction;
-};
-
-FELDSPAR_INLINE Real normal_energy(const KernelLaw& law, Real inverse_area, Real Fn, Real un, Real damage) {
-    const Real energy = 0.5 * law.inverse_Kn * inverse_area * Fn * Fn;
-    if (!law.secant_unloading) return energy;
-    return (un > 0.0) & (damage > 0.0) ? 0.5 * absolute(Fn) * un : energy;
-}
-
-// update_damaged() of laws/bond.hpp, lane by lane; `s` is the bond before. @return lanes that break now
-FELDSPAR_INLINE Mask update_damaged(const KernelLaw& law, Real area, Real dun, Real dus, BondLanes& s, Real& Fn_trial_out) {
-    const Real kn = law.Kn * area, ks = law.Ks * area, inverse_area = 1.0 / area, inverse_ks = law.inverse_Ks * inverse_area;
-    const Real normal_energy_before = normal_energy(law, inverse_area, s.Fn, s.un, s.damage);
-    const Real Fn_before = s.Fn, Fs_before = s.Fs;
-    const Mask broken_before = s.damage >= 1.0;
-    const Real Fn_trial = s.Fn - kn * dun, Fs_trial = s.Fs - ks * dus;
-    const Real pressed = larger(Fn_trial, Real{});
-    s.un += dun;
-    s.us += dus;
-
-    Real measure = absolute(s.us);
-    if (law.shear_beyond_friction) measure -= law.mu * pressed * inverse_ks;
-    s.max_un = broken_before ? s.max_un : larger(s.max_un, s.un);
-    s.max_us = broken_before ? s.max_us : larger(s.max_us, measure);
-    Real damage = larger(s.damage, smaller(all(1.0), envelope_damage(law.normal, s.max_un) + envelope_damage(law.shear, s.max_us)));
-    const Real tension_limit = (1.0 - damage) * law.sigma_nt * area;
-    Real cohesion_limit = (1.0 - damage) * law.tau * area;
-    if (law.normal.brittle) damage = Fn_trial < -tension_limit ? all(1.0) : damage;
-    if (law.shear.brittle) damage = absolute(Fs_trial) > cohesion_limit + law.mu * pressed ? all(1.0) : damage;
-    s.damage = broken_before ? s.damage : damage;
-    Real Fn = larger(Fn_trial, -tension_limit);
-    if (law.secant_unloading) Fn = (s.un > 0.0) & (s.max_un > law.normal.x0) ? -tension_limit * s.un / s.max_un : Fn;
-    const Mask broken = s.damage >= 1.0;
-    s.Fn = broken ? (s.un < 0.0 ? -kn * s.un : Real{}) : Fn;
-    cohesion_limit = broken ? Real{} : cohesion_limit;
-    const Real friction_limit = law.mu * larger(s.Fn, Real{}), limit = cohesion_limit + friction_limit;
-    s.Fs = larger(smaller(Fs_trial, limit), -limit);
-
-    const Real work_n = -0.5 * (Fn_before + s.Fn) * dun, work_s = -0.5 * (Fs_before + s.Fs) * dus;
-    const Real dissipated_s = work_s + 0.5 * (Fs_before * Fs_before - s.Fs * s.Fs) * inverse_ks;
-    const Real dissipated_n = work_n + normal_energy_before - normal_energy(law, inverse_area, s.Fn, s.un, s.damage);
-    const Real share = limit > 0.0 ? friction_limit / limit : Real{};
-    const Real friction_share = broken_before ? all(1.0) : share;
-    s.friction += friction_share * dissipated_s;
-    s.fracture += dissipated_n + (1.0 - friction_share) * dissipated_s;
-    Fn_trial_out = Fn_trial;
-    return broken & ~broken_before;
-}
+using BondLanes = BondStateOf<Real>;
 
 // Reports the points that broke in this step and reloads their forces, because the report may change them (free gap).
 [[gnu::noinline]] void tell_broken(const KernelArrays& a, const KernelStep& step, int first_contact, int point, int state, Mask broke, Real Fn_trial,
@@ -150,33 +95,33 @@ struct PointForces {
     Real Fn, Fs;
 };
 [[gnu::noinline]] PointForces update_points(const KernelArrays& a, const KernelStep& step, const ContactPack& pack, Chunk chunk, int j, const Real& dun, const Real& dus) {
-    const KernelLaw& law = a.laws[pack.material];
+    const BondLaw& law = a.laws[pack.material];
     const int state = pack.first_state + j * pack.lanes + chunk.begin, count = chunk.count;
     const Mask takes_part = lanes_of(pack.active >> chunk.begin) & lanes_of((1U << count) - 1U);
-    const Real area = load(a.area + state, count), kn = law.Kn * area, ks = law.Ks * area;
+    const Real area = load(a.area + state, count), kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
     BondLanes s{load(a.un + state, count), load(a.us + state, count), load(a.Fn + state, count), load(a.Fs + state, count), load(a.max_un + state, count),
                 load(a.max_us + state, count), load(a.damage + state, count), load(a.fracture + state, count), load(a.friction + state, count)};
     const Mask intact = s.damage == 0.0;
-    s.Fn = intact ? -kn * s.un : s.Fn;   // of intact points it is not kept
-    s.Fs = intact ? -ks * s.us : s.Fs;
-    const Real un = s.un + dun, us = s.us + dus;
-    const Real Fn_elastic = intact ? -kn * un : s.Fn - kn * dun, Fs_elastic = intact ? -ks * us : s.Fs - ks * dus;
-    const Mask linear = step.unlimited ? s.damage < 1.0 : intact & (un <= law.normal.x0) & (absolute(us) <= law.shear.x0);
+    s.Fn_N = intact ? -kn * s.un_m : s.Fn_N;   // of intact points it is not kept
+    s.Fs_N = intact ? -ks * s.us_m : s.Fs_N;
+    const Real un = s.un_m + dun, us = s.us_m + dus;
+    const Real Fn_elastic = intact ? -kn * un : s.Fn_N - kn * dun, Fs_elastic = intact ? -ks * us : s.Fs_N - ks * dus;
+    const Mask linear = step.unlimited ? s.damage < 1.0 : is_linear(law, un, us, s.damage);
 
-    Real Fn_trial{};
-    const Mask broke = update_damaged(law, area, dun, dus, s, Fn_trial) & takes_part & ~linear;
-    Real Fn = linear ? Fn_elastic : s.Fn, Fs = linear ? Fs_elastic : s.Fs;
+    const BondUpdate<Real> update = update_damaged(law, area, dun, dus, s);
+    const Mask broke = update.broke & takes_part & ~linear;
+    Real Fn = linear ? Fn_elastic : s.Fn_N, Fs = linear ? Fs_elastic : s.Fs_N;
     store_where(a.un + state, un, takes_part, count);
     store_where(a.us + state, us, takes_part, count);
     store_where(a.Fn + state, Fn, takes_part, count);
     store_where(a.Fs + state, Fs, takes_part, count);
     const Mask damaged = takes_part & ~linear;
-    store_where(a.max_un + state, s.max_un, damaged, count);
-    store_where(a.max_us + state, s.max_us, damaged, count);
+    store_where(a.max_un + state, s.max_un_m, damaged, count);
+    store_where(a.max_us + state, s.max_us_m, damaged, count);
     store_where(a.damage + state, s.damage, damaged, count);
-    store_where(a.fracture + state, s.fracture, damaged, count);
-    store_where(a.friction + state, s.friction, damaged, count);
-    if (any(broke)) tell_broken(a, step, pack.first_contact + chunk.begin, j, state, broke, Fn_trial, un, count, Fn, Fs);
+    store_where(a.fracture + state, s.fracture_J, damaged, count);
+    store_where(a.friction + state, s.friction_J, damaged, count);
+    if (any(broke)) tell_broken(a, step, pack.first_contact + chunk.begin, j, state, broke, update.Fn_trial_N, un, count, Fn, Fs);
     return {Fn, Fs};
 }
 
@@ -263,9 +208,9 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     const auto place = [&](int state, int count) FELDSPAR_LAMBDA { return central ? Real{} : load(a.along + state, count); };
     const int points = pack.points, stride = pack.lanes, first = pack.first_state + chunk.begin;
     if (plain && pack.intact) {
-        const KernelLaw& law = arrays.laws[pack.material];
+        const BondLaw& law = arrays.laws[pack.material];
         const double x0n = step.unlimited ? __builtin_inf() : law.normal.x0, x0s = step.unlimited ? __builtin_inf() : law.shear.x0;
-        const double Kn = law.Kn, Ks = law.Ks;
+        const double Kn = law.Kn_Pa_m, Ks = law.Ks_Pa_m;
         for (int j = 0; j < points; ++j) {
             const int state = first + j * stride;
             const Real w = place(state, kWidth), area = load(a.area + state), dun = further(n0, n1, w), dus = further(s0, s1, w);
@@ -381,51 +326,28 @@ struct Elastic {
         : volumetric(all(0.5 * a.thickness * (a.D11 + a.D12))), deviatoric(all(0.5 * a.thickness * (a.D11 - a.D12))) {}
 };
 
-// 1 - 1/r from x = r^2 - 1: the binomial series, whose next term is below 1e-17 of the result for |x| < 1/128. A compression of 150 MPa makes x
-// about 1/200 in a grain of 25 GPa.
-FELDSPAR_INLINE Real one_minus_inverse_root(Real x) {
-    constexpr double kLargest = 1.0 / 128.0;
-    if (any(absolute(x) >= kLargest)) [[unlikely]] {
-        const Real r = square_root(1.0 + x);
-        return x / (r * (r + 1.0));
-    }
-    Real sum = all(-6435.0 / 32768.0);
-    sum = sum * x + 429.0 / 2048.0;
-    sum = sum * x - 231.0 / 1024.0;
-    sum = sum * x + 63.0 / 256.0;
-    sum = sum * x - 35.0 / 128.0;
-    sum = sum * x + 5.0 / 16.0;
-    sum = sum * x - 3.0 / 8.0;
-    sum = sum * x + 0.5;
-    return x * sum;
-}
-
-// Undeformed sides of a triangle (i, j, k), and its displacement gradient split as in laws/plane_elasticity.hpp.
-struct PolarLanes {
+// Undeformed sides of a triangle (i, j, k), and its displacement gradient split as the law has it.
+struct TriangleLanes {
     Real2 E1, E2;
-    Real a, b, p, q;
-    Real r2_minus_1;
+    PolarSplit<Real> split;
 
-    FELDSPAR_INLINE PolarLanes(Real2 Xi, Real2 Xj, Real2 Xk, Real2 ui, Real2 uj, Real2 uk, Real scale) : E1(Xj - Xi), E2(Xk - Xi) {
-        const Real2 d1 = uj - ui, d2 = uk - ui;
+    FELDSPAR_INLINE TriangleLanes(Real2 Xi, Real2 Xj, Real2 Xk, Real2 ui, Real2 uj, Real2 uk, Real scale)
+        : E1(Xj - Xi), E2(Xk - Xi), split(split_of(E1, E2, uj - ui, uk - ui, scale)) {}
+
+private:
+    FELDSPAR_INLINE static PolarSplit<Real> split_of(Real2 E1, Real2 E2, Real2 d1, Real2 d2, Real scale) {
         const Real Gxx = d1.x * E2.y - d2.x * E1.y, Gxy = d2.x * E1.x - d1.x * E2.x;   // x 2 A
         const Real Gyx = d1.y * E2.y - d2.y * E1.y, Gyy = d2.y * E1.x - d1.y * E2.x;
-        a = scale * (Gxx + Gyy);
-        b = scale * (Gyx - Gxy);
-        p = scale * (Gxx - Gyy);
-        q = scale * (Gxy + Gyx);
-        r2_minus_1 = 2.0 * a + (a * a + b * b);
+        return {scale * (Gxx + Gyy), scale * (Gyx - Gxy), scale * (Gxx - Gyy), scale * (Gxy + Gyx)};
     }
 };
 
 // Adds the forces of the triangle (i, j, k): f_j = -V P grad N_j, V grad N_j = t/2 (y_k - y_i, x_i - x_k) undeformed.
 FELDSPAR_INLINE void add_triangle(Real2 Xi, Real2 Xj, Real2 Xk, Real2 ui, Real2 uj, Real2 uk, Real scale, const Elastic& D, Real2& fi, Real2& fj, Real2& fk) {
-    const PolarLanes s(Xi, Xj, Xk, ui, uj, uk, scale);
-    const Real2 E1 = s.E1, E2 = s.E2;
-    const Real volumetric = D.volumetric * one_minus_inverse_root(s.r2_minus_1);
-    const Real c = volumetric + volumetric * s.a, vb = volumetric * s.b, dp = D.deviatoric * s.p, dq = D.deviatoric * s.q;
-    const Real Pxx = c + dp, Pxy = dq - vb, Pyx = dq + vb, Pyy = c - dp;
-    const Real2 gj = {Pxy * E2.x - Pxx * E2.y, Pyy * E2.x - Pyx * E2.y}, gk = {Pxx * E1.y - Pxy * E1.x, Pyx * E1.y - Pyy * E1.x};
+    const TriangleLanes triangle(Xi, Xj, Xk, ui, uj, uk, scale);
+    const Real2 E1 = triangle.E1, E2 = triangle.E2;
+    const PlaneStress<Real> P = first_piola_stress(D.volumetric, D.deviatoric, triangle.split);
+    const Real2 gj = {P.xy * E2.x - P.xx * E2.y, P.yy * E2.x - P.yx * E2.y}, gk = {P.xx * E1.y - P.xy * E1.x, P.yx * E1.y - P.yy * E1.x};
     fj = fj + gj;
     fk = fk + gk;
     fi = fi - gj - gk;
@@ -762,11 +684,10 @@ void unbalanced(const KernelArrays& a, double* of_bodies) {
     }
 }
 
-// V W of a triangle: laws/plane_elasticity.hpp.
+// V W of a triangle.
 FELDSPAR_INLINE Real triangle_energy(const NodeLanes& i, const NodeLanes& j, const NodeLanes& k, Real scale, const Elastic& D) {
-    const PolarLanes s(i.X, j.X, k.X, i.u, j.u, k.u, scale);
-    const Real r_minus_1 = s.r2_minus_1 / (1.0 + square_root(1.0 + s.r2_minus_1));
-    return cross(s.E1, s.E2) * (D.volumetric * r_minus_1 * r_minus_1 + D.deviatoric * (s.p * s.p + s.q * s.q));   // t/2 is in D
+    const TriangleLanes triangle(i.X, j.X, k.X, i.u, j.u, k.u, scale);
+    return cross(triangle.E1, triangle.E2) * strain_energy_density(D.volumetric, D.deviatoric, triangle.split);   // t/2 is in D
 }
 
 double energy_of_grains(const KernelArrays& a, double since) {
@@ -806,7 +727,7 @@ PackEnergies energies(const KernelArrays& a, double since) {
     Real fracture{}, friction{};
     for (int p = 0; p < a.contact_pack_count; ++p) {
         const ContactPack& pack = a.contact_packs[p];
-        const KernelLaw& law = a.laws[pack.material];
+        const BondLaw& law = a.laws[pack.material];
         Real stored{};
         const int end = pack.first_state + pack.lanes * pack.points;
         for (int state = pack.first_state; state < end; state += kWidth) {

@@ -7,46 +7,53 @@
 // If L <= 0 there is nothing to soften: the direction is brittle. Derivation of the areas: docs/theory/contacts.md.
 #pragma once
 
+#include "feldspar/laws/number.hpp"
 #include "feldspar/model/spec.hpp"
 
 namespace feldspar {
 
-struct SofteningEnvelope {
-    double x0 = 0.0;       ///< m, end of the elastic branch
-    double x_y = 0.0;      ///< m, break point
-    double x_f = 0.0;      ///< m, no strength left
-    bool brittle = false;  ///< breaks when the trial force passes its limit, and knows no softening
+/// @tparam Number  double: of one law; a vector of doubles: of a law a lane
+template <class Number>
+struct SofteningEnvelopeOf {
+    Number x0{};               ///< m, end of the elastic branch
+    Number x_y{};              ///< m, break point
+    Number x_f{};              ///< m, no strength left
+    Number first_slope{};      ///< 1/m, of the damage up to the break point; 0 in a brittle direction
+    Number second_slope{};     ///< 1/m, beyond it
+    MaskOf<Number> brittle{};  ///< breaks when the trial force passes its limit, and knows no softening
 
-    /// @param strength_Pa     F per area
-    /// @param stiffness_Pa_m  k per area
-    /// @param energy_J_m2     Gf
-    static SofteningEnvelope make(ContactLaw law, double strength_Pa, double stiffness_Pa_m, double energy_J_m2) {
-        SofteningEnvelope e;
-        e.x0 = strength_Pa / stiffness_Pa_m;
-        const double x_fl = 2.0 * energy_J_m2 / strength_Pa;
-        const double L = x_fl - e.x0;
-        e.brittle = law == ContactLaw::brittle || !(L > 0.0);
-        if (e.brittle) {
-            e.x_y = e.x_f = e.x0;
-        } else if (law == ContactLaw::bilinear) {
-            e.x_y = e.x0 + 0.375 * L;
-            e.x_f = e.x0 + 2.5 * L;
-        } else if (law == ContactLaw::bilinear_literal) {
-            e.x_y = e.x0 + 0.75 * L;
-            e.x_f = e.x_y + 5.0 * (x_fl - e.x_y);
-        } else {
-            e.x_y = e.x0 + 0.75 * L;   // on the straight line
-            e.x_f = x_fl;
-        }
+    /// @param x_fl  2 Gf / F; not beyond x0: brittle
+    FELDSPAR_LAW static SofteningEnvelopeOf from(ContactLaw law, Number x0, Number x_fl) {
+        SofteningEnvelopeOf e;
+        const Number none{}, L = x_fl - x0;
+        e.x0 = x0;
+        e.brittle = law == ContactLaw::brittle ? x0 == x0 : L <= none;
+        const Number x_y = law == ContactLaw::bilinear ? x0 + 0.375 * L : x0 + 0.75 * L;   // linear: on the straight line
+        const Number x_f = law == ContactLaw::bilinear ? x0 + 2.5 * L : law == ContactLaw::linear ? x_fl : x_y + 5.0 * (x_fl - x_y);
+        e.x_y = e.brittle ? x0 : x_y;
+        e.x_f = e.brittle ? x0 : x_f;
+        e.first_slope = e.x_y > x0 ? 0.75 / (e.x_y - x0) : none;
+        e.second_slope = e.x_y > x0 ? 0.25 / (e.x_f - e.x_y) : none;
         return e;
     }
 
     /// Damage of this direction, 1 - f(x) / F, for the largest displacement x so far; 0 for a brittle direction.
-    double damage(double x) const {
-        if (x <= x0 || brittle) return 0.0;
-        if (x <= x_y) return 0.75 * (x - x0) / (x_y - x0);
-        if (x < x_f) return 1.0 - 0.25 * (x_f - x) / (x_f - x_y);
-        return 1.0;
+    template <class Real>
+    FELDSPAR_LAW Real damage(Real x) const {
+        const Real none{}, one = number<Real>(1.0);
+        const Real softened = x <= none + x_y ? first_slope * (x - x0) : 1.0 - second_slope * (x_f - x);
+        const Real damage = x <= none + x0 ? none : x < none + x_f ? softened : one;
+        return first_slope == Number{} ? none : damage;
+    }
+};
+
+/// Of one law.
+struct SofteningEnvelope : SofteningEnvelopeOf<double> {
+    /// @param strength_Pa     F per area
+    /// @param stiffness_Pa_m  k per area
+    /// @param energy_J_m2     Gf
+    static SofteningEnvelope make(ContactLaw law, double strength_Pa, double stiffness_Pa_m, double energy_J_m2) {
+        return {from(law, strength_Pa / stiffness_Pa_m, 2.0 * energy_J_m2 / strength_Pa)};
     }
 };
 

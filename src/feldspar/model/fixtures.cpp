@@ -82,11 +82,7 @@ double distance_along(const OutlineSite& site, const Along& along, double c) {
 
 BondLaw law_at(const PlateContact& contact) {
     if (contact.glued) return BondLaw::unbreakable(contact.Kn_Pa_m, 0.0);
-    BondLaw law;
-    law.Kn_Pa_m = contact.Kn_Pa_m;
-    law.Ks_Pa_m = contact.eta * contact.Kn_Pa_m;
-    law.mu = contact.mu;
-    return law;
+    return BondLaw::frictional(contact.Kn_Pa_m, contact.eta, contact.mu);
 }
 
 int add_plate(Assembly& assembly, Vec2 place, Vec2 normal, Vec2 free) {
