@@ -158,7 +158,7 @@ TEST_P(RigidModels, DrawnGrainsFollowARigidMotionExactly) {
 TEST_P(RigidModels, AGrainsBodiesHaveItsVolumeAndItsMass) {
     const auto s = specimen();
     Assembly assembly = bodies(*s);
-    set_real_masses(assembly, 2650.0);
+    set_real_masses(assembly);
     std::vector<double> volume(s->cells.cells.size(), 0.0), mass = volume;
     for (const Body& body : assembly.bodies) {
         volume[body.grain] += body.volume_m3;
@@ -255,7 +255,7 @@ TEST(InnerParticles, ContactsAcrossAnEdgeShareItsAreaAndThoseInsideHaveTheSmalle
 TEST(RigidGrains, ASquareHasTheClosedFormsMassAndMomentOfInertia) {
     const double h = 0.003, mass = 2650.0 * h * h * 0.08;
     Assembly assembly = assemble(*fixtures::two_grain_bar(h, 0.5 * h), fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table1(GrainKind::rigid));
-    set_real_masses(assembly, 2650.0);
+    set_real_masses(assembly);
     EXPECT_NEAR(assembly.nodes.mass[0] / mass, 1.0, 1e-12);
     EXPECT_NEAR(assembly.nodes.mass[1] * 0.25 * h * h / (mass * h * h / 6.0), 1.0, 1e-12);              // m (h^2 + h^2) / 12
     EXPECT_NEAR(assembly.nodes.mass[3] * h * h / 16.0 / (0.5 * mass * 1.25 * h * h / 12.0), 1.0, 1e-12);   // m (h^2 + (h/2)^2) / 12

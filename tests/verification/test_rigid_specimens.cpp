@@ -24,7 +24,7 @@ double mean_axial_stress(const Experiment& e) {
     double sum = 0.0, volume = 0.0;
     if (!e.assembly.triangles.empty()) {
         for (const Triangle& triangle : e.assembly.triangles) {
-            sum += triangle.volume_m3 * cauchy_stress(e.assembly.elasticity, displacement_gradient(e.assembly.nodes.displacement, triangle)).yy;
+            sum += triangle.volume_m3 * cauchy_stress(e.assembly.elasticity.front(), displacement_gradient(e.assembly.nodes.displacement, triangle)).yy;
             volume += triangle.volume_m3;
         }
         return sum / volume;
@@ -92,7 +92,7 @@ double note_over_closed_form(const ModelSpec& model) {
     const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, kHeight), methods::uniaxial_compression, model);
     const double E = elastic(s).E_Pa;
     Assembly assembly = assemble(*s.specimen, s.model, s.grain, s.contact);
-    set_real_masses(assembly, kDensity);
+    set_real_masses(assembly);
     Team team(1);
     StepSettings settings;
     settings.dt = 0.8 * 2.0 / std::sqrt(largest_omega2(assembly, team));

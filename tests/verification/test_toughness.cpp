@@ -29,7 +29,7 @@ double K_I(const Experiment& e, Vec2 tip, Vec2 ahead, double inner_m, double out
     wanted[0] = 1.0;
     double K = 0.0;
     for (const auto& [t, w] : fitted_value(samples, fields, wanted)) {
-        const Mat2 s = cauchy_stress(e.assembly.elasticity, displacement_gradient(e.assembly.nodes.displacement, e.assembly.triangles[static_cast<std::size_t>(t)]));
+        const Mat2 s = cauchy_stress(e.assembly.elasticity.front(), displacement_gradient(e.assembly.nodes.displacement, e.assembly.triangles[static_cast<std::size_t>(t)]));
         K += w.xx * s.xx + w.xy * s.xy + w.yx * s.yx + w.yy * s.yy;
     }
     return K;

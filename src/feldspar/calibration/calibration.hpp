@@ -27,7 +27,7 @@ struct Observable {
 /// A number that the laboratory has measured: the mean over packings is to show it.
 struct Target {
     std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "UCS_over_BTS", "UCS_over_DTS", "BTS_over_DTS", "cohesion", "friction_angle",
-                             ///< "hoek_brown_mi", "sigma_ci", "sigma1"
+                             ///< "hoek_brown_mi", "sigma_ci", "sigma_cd", "sigma_ci_over_UCS", "sigma_cd_over_UCS", "sigma1"
     double sigma3_Pa = 0.0;  ///< of "sigma1"
     double value = 0.0;      ///< SI, degrees
     double tolerance = 0.0;  ///< in the same unit: as good as met within it
@@ -78,7 +78,7 @@ std::string calibration_template();
 std::vector<Observable> observables_for(const Calibration& calibration);
 std::vector<Observable> observables_for(const std::vector<Target>& targets, const std::vector<double>& sigma3_Pa);
 
-/// The property of the rock that a target is a value of, by its name in PropertySummary: "E_Pa", "sigma_ci_crack_count_Pa", ...
+/// The property of the rock that a target is a value of, by its name in PropertySummary: "E_Pa", "sigma_ci_crack_volume_Pa", ...
 std::string property_of(const Target& target);
 
 /// A target's value by the means of the quantities, in the order of observables_for(); not-a-number where they do not make sense.

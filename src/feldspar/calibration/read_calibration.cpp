@@ -39,6 +39,9 @@ const std::vector<TargetKind> target_kinds{
     {"friction_angle", 2.0, true},
     {"hoek_brown_mi", 0.10},
     {"sigma_ci", 0.10},
+    {"sigma_cd", 0.10},
+    {"sigma_ci_over_UCS", 0.10},
+    {"sigma_cd_over_UCS", 0.10},
     {"sigma1", 0.03},
 };
 

@@ -59,8 +59,10 @@ std::vector<Observable> observables_for(const std::vector<Target>& targets, cons
     const Observable ucs = observable("UCS", "UCS_Pa"), dts = observable("DTS", "DTS_Pa"), bts = observable("BTS", "BTS_Pa");
     const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), method_of_confined_strength(), sigma3_Pa, strength_column}); };
     for (const Target& target : targets) {
-        if (target.name == "E" || target.name == "nu" || target.name == "sigma_ci") add(observable(target.name, property_of(target)));
-        if (target.name == "UCS" || target.name.starts_with("UCS_over") || of_envelope(target)) add(ucs);
+        if (target.name == "E" || target.name == "nu" || target.name == "sigma_ci" || target.name == "sigma_cd") add(observable(target.name, property_of(target)));
+        if (target.name.starts_with("sigma_ci_over")) add(observable("sigma_ci", property_of({.name = "sigma_ci"})));
+        if (target.name.starts_with("sigma_cd_over")) add(observable("sigma_cd", property_of({.name = "sigma_cd"})));
+        if (target.name == "UCS" || target.name.ends_with("_over_UCS") || target.name.starts_with("UCS_over") || of_envelope(target)) add(ucs);
         if (target.name == "DTS" || target.name.ends_with("_DTS")) add(dts);
         if (target.name == "BTS" || target.name.find("BTS") != std::string::npos) add(bts);
         if (target.name == "sigma1") confined(target.sigma3_Pa);
@@ -72,13 +74,15 @@ std::vector<Observable> observables_for(const std::vector<Target>& targets, cons
 
 std::string property_of(const Target& target) {
     if (target.name == "sigma1") return confined_strength(target.sigma3_Pa);
-    return property_of_laboratory(target.name == "sigma_ci" ? "sigma_ci_crack_count" : target.name);
+    return property_of_laboratory(target.name == "sigma_ci" ? "sigma_ci_crack_volume" : target.name);
 }
 
 double value_of(const Target& target, const std::vector<Observable>& quantities, const std::vector<double>& means) {
     const auto mean = [&](const std::string& name) { return mean_of(name, quantities, means); };
     if (target.name == "UCS_over_BTS") return mean("UCS") / mean("BTS");
     if (target.name == "UCS_over_DTS") return mean("UCS") / mean("DTS");
+    if (target.name == "sigma_ci_over_UCS") return mean("sigma_ci") / mean("UCS");
+    if (target.name == "sigma_cd_over_UCS") return mean("sigma_cd") / mean("UCS");
     if (target.name == "BTS_over_DTS") return mean("BTS") / mean("DTS");
     if (target.name == "cohesion") return envelope(quantities, means).cohesion_Pa;
     if (target.name == "friction_angle") return envelope(quantities, means).friction_angle_deg;

@@ -14,7 +14,7 @@ void point_broke(Assembly& assembly, int contact_number, int j, BondEvent event,
     const int p = contact.first_point + j;
     ContactPoint& point = assembly.points[p];
     BondState bond = assembly.bond(p);
-    note_break(point, assembly.laws[contact.material], event, step, bond);
+    note_break(point, assembly.law_of(contact), event, step, bond);
     assembly.set_bond(p, bond);
 }
 
@@ -27,6 +27,11 @@ KernelArrays::KernelArrays(Assembly& s)
       contact_packs(s.packs.contacts.data()),
       rigid_bodies(s.packs.rigid.data()),
       laws(s.laws.data()),
+      own_form(s.own_laws.form),
+      own{s.own_laws.constants.Kn_Pa_m.data(), s.own_laws.constants.Ks_Pa_m.data(), s.own_laws.constants.x0_normal.data(), s.own_laws.constants.x0_shear.data(),
+          s.own_laws.constants.x_fl_normal.data(), s.own_laws.constants.x_fl_shear.data(), s.own_laws.constants.mu.data()},
+      volumetric(s.packs.volumetric.empty() ? nullptr : s.packs.volumetric.data()),
+      deviatoric(s.packs.deviatoric.empty() ? nullptr : s.packs.deviatoric.data()),
       weight(pairs(s.weight)),
       reference(pairs(s.nodes.reference)),
       inverse_mass(pairs(s.nodes.inverse_mass)),
@@ -67,8 +72,8 @@ KernelArrays::KernelArrays(Assembly& s)
       contact_pack_count(static_cast<std::int32_t>(s.packs.contacts.size())),
       node_count(s.nodes.count()),
       thickness(s.thickness_m),
-      D11(s.elasticity.D11),
-      D12(s.elasticity.D12),
+      D11(s.elasticity.empty() ? 0.0 : s.elasticity.front().D11),
+      D12(s.elasticity.empty() ? 0.0 : s.elasticity.front().D12),
       broke(point_broke) {}
 
 const std::array<const Kernels*, 3>& all_kernels() {

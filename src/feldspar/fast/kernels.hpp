@@ -39,7 +39,10 @@ struct KernelArrays {
     const PackForces* pack_forces = nullptr;
     ContactPack* contact_packs = nullptr;
     const RigidBody* rigid_bodies = nullptr;
-    const BondLaw* laws = nullptr;
+    const BondLaw* laws = nullptr;                 ///< by role
+    LawForm own_form;                              ///< of contacts with laws of their own
+    LawConstants<const double*> own;
+    const double *volumetric = nullptr, *deviatoric = nullptr;   ///< of the grains in packs; null where all are alike
     const double* weight = nullptr;   ///< of the nodes; null without gravity
     const double *reference = nullptr, *inverse_mass = nullptr, *loading_mode = nullptr, *mass = nullptr;
     double *displacement = nullptr, *velocity = nullptr, *force = nullptr;

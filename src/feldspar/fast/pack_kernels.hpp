@@ -94,8 +94,8 @@ using BondLanes = BondStateOf<Real>;
 struct PointForces {
     Real Fn, Fs;
 };
-[[gnu::noinline]] PointForces update_points(const KernelArrays& a, const KernelStep& step, const ContactPack& pack, Chunk chunk, int j, const Real& dun, const Real& dus) {
-    const BondLaw& law = a.laws[pack.material];
+template <class Law>
+[[gnu::noinline]] PointForces update_points(const KernelArrays& a, const KernelStep& step, const ContactPack& pack, const Law& law, Chunk chunk, int j, const Real& dun, const Real& dus) {
     const int state = pack.first_state + j * pack.lanes + chunk.begin, count = chunk.count;
     const Mask takes_part = lanes_of(pack.active >> chunk.begin) & lanes_of((1U << count) - 1U);
     const Real area = load(a.area + state, count), kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
@@ -125,6 +125,19 @@ struct PointForces {
     return {Fn, Fs};
 }
 
+// The law of a chunk: one for all, or of each lane its own.
+template <bool own>
+FELDSPAR_INLINE decltype(auto) law_of(const KernelArrays& a, const ContactPack& pack, Chunk chunk) {
+    if constexpr (own) {
+        const int at = pack.first_law + chunk.begin, count = chunk.count;
+        const auto lanes = [&](const double* constant) FELDSPAR_LAMBDA { return load(constant + at, count); };
+        return bond_law<Real>(a.own_form, {lanes(a.own.Kn_Pa_m), lanes(a.own.Ks_Pa_m), lanes(a.own.x0_normal), lanes(a.own.x0_shear), lanes(a.own.x_fl_normal),
+                                           lanes(a.own.x_fl_shear), lanes(a.own.mu)});
+    } else {
+        return static_cast<const BondLaw&>(a.laws[pack.material]);
+    }
+}
+
 // A vector turned by an angle: by the series of cosine and sine, to 1e-17 within a quarter; beyond, lane by lane.
 FELDSPAR_INLINE Real2 turned(Real2 v, Real angle) {
     Real c{}, s{};
@@ -142,7 +155,8 @@ FELDSPAR_INLINE Real2 turned(Real2 v, Real angle) {
 }
 
 // `central`: one point, at the reference point (of discs), so that nothing along the edge's line matters.
-template <Frame frame, bool central, bool plain>
+// `own`: its contacts have laws of their own.
+template <Frame frame, bool central, bool plain, bool own>
 FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelStep& step, ContactPack& pack, int pack_index, Chunk chunk) {
     constexpr bool rigid = frame != Frame::triangles;
     const KernelArrays a = arrays;   // a copy that nobody else can change: its pointers stay in registers
@@ -208,16 +222,21 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     const auto place = [&](int state, int count) FELDSPAR_LAMBDA { return central ? Real{} : load(a.along + state, count); };
     const int points = pack.points, stride = pack.lanes, first = pack.first_state + chunk.begin;
     if (plain && pack.intact) {
+        const auto constant = [&](const double* of_lanes, double of_all) FELDSPAR_LAMBDA {
+            if constexpr (own) return load(of_lanes + pack.first_law + chunk.begin);
+            else return of_all;
+        };
         const BondLaw& law = arrays.laws[pack.material];
-        const double x0n = step.unlimited ? __builtin_inf() : law.normal.x0, x0s = step.unlimited ? __builtin_inf() : law.shear.x0;
-        const double Kn = law.Kn_Pa_m, Ks = law.Ks_Pa_m;
+        auto x0n = constant(a.own.x0_normal, law.normal.x0), x0s = constant(a.own.x0_shear, law.shear.x0);
+        if (step.unlimited) x0n = x0s = decltype(x0n){} + __builtin_inf();
+        const auto Kn = constant(a.own.Kn_Pa_m, law.Kn_Pa_m), Ks = constant(a.own.Ks_Pa_m, law.Ks_Pa_m);
         for (int j = 0; j < points; ++j) {
             const int state = first + j * stride;
             const Real w = place(state, kWidth), area = load(a.area + state), dun = further(n0, n1, w), dus = further(s0, s1, w);
             const Real un = load(a.un + state) + dun, us = load(a.us + state) + dus;
             Real Fn = -Kn * area * un, Fs = -Ks * area * us;
             if (any((un > x0n) | (absolute(us) > x0s))) [[unlikely]] {
-                const PointForces damaged = update_points(arrays, step, pack, chunk, j, dun, dus);
+                const PointForces damaged = update_points(arrays, step, pack, law_of<own>(arrays, pack, chunk), chunk, j, dun, dus);
                 Fn = damaged.Fn;
                 Fs = damaged.Fs;
                 pack.intact = false;
@@ -232,9 +251,10 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
             add(w, Fn, Fs);
         }
     } else {
+        const auto& law = law_of<own>(arrays, pack, chunk);
         for (int j = 0; j < points; ++j) {
             const Real w = place(first + j * stride, chunk.count);
-            const PointForces point = update_points(arrays, step, pack, chunk, j, further(n0, n1, w), further(s0, s1, w));
+            const PointForces point = update_points(arrays, step, pack, law, chunk, j, further(n0, n1, w), further(s0, s1, w));
             add(w, point.Fn, point.Fs);
         }
     }
@@ -271,13 +291,22 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     }
 }
 
-template <Frame frame, bool central>
-FELDSPAR_INLINE void contacts_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
+template <Frame frame, bool central, bool own>
+FELDSPAR_INLINE void chunks_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
     if (pack.plain) {
-        for (int first = 0; first < kMostLanes; first += kWidth) contacts_of_chunk<frame, central, true>(a, step, pack, index, Chunk{first, kWidth});
+        for (int first = 0; first < kMostLanes; first += kWidth) contacts_of_chunk<frame, central, true, own>(a, step, pack, index, Chunk{first, kWidth});
     } else if (pack.active != 0) {
         for (int first = 0; first < pack.lanes; first += kWidth)
-            contacts_of_chunk<frame, central, false>(a, step, pack, index, Chunk{first, pack.lanes - first < kWidth ? pack.lanes - first : kWidth});
+            contacts_of_chunk<frame, central, false, own>(a, step, pack, index, Chunk{first, pack.lanes - first < kWidth ? pack.lanes - first : kWidth});
+    }
+}
+
+template <Frame frame, bool central>
+FELDSPAR_INLINE void contacts_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
+    if (pack.first_law >= 0) {
+        chunks_of_pack<frame, central, true>(a, step, pack, index);
+    } else {
+        chunks_of_pack<frame, central, false>(a, step, pack, index);
     }
 }
 
@@ -322,8 +351,15 @@ struct GrainLanes {
 struct Elastic {
     Real volumetric, deviatoric;   // (D11 + D12) t / 2, (D11 - D12) t / 2
 
-    FELDSPAR_INLINE explicit Elastic(const KernelArrays& a)
-        : volumetric(all(0.5 * a.thickness * (a.D11 + a.D12))), deviatoric(all(0.5 * a.thickness * (a.D11 - a.D12))) {}
+    FELDSPAR_INLINE Elastic(const KernelArrays& a, int pack, Chunk chunk) {
+        if (a.volumetric == nullptr) {
+            volumetric = all(0.5 * a.thickness * (a.D11 + a.D12));
+            deviatoric = all(0.5 * a.thickness * (a.D11 - a.D12));
+        } else {
+            volumetric = load(a.volumetric + kMostLanes * pack + chunk.begin);
+            deviatoric = load(a.deviatoric + kMostLanes * pack + chunk.begin);
+        }
+    }
 };
 
 // Undeformed sides of a triangle (i, j, k), and its displacement gradient split as the law has it.
@@ -480,8 +516,10 @@ FELDSPAR_INLINE void write_lines(const KernelArrays& a, const GrainPack& pack, c
 }
 
 template <bool local>
-FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelStep& step, const GrainPack& pack, PackForces forces, Chunk chunk) {
+FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelStep& step, int index, Chunk chunk) {
     const KernelArrays a = arrays;   // a copy that nobody else can change: its pointers stay in registers
+    const GrainPack& pack = a.grain_packs[index];
+    const PackForces forces = a.pack_forces[index];
     GrainLanes g;
     const GrainNodes nodes(pack);
     const int count = pack.nodes(), first = pack.first_node + chunk.begin;
@@ -493,7 +531,7 @@ FELDSPAR_INLINE void grains_of_chunk(const KernelArrays& arrays, const KernelSte
         g.node[i].f = from_outside != nullptr ? load_points(from_outside + 2 * node, chunk.count) : Real2{};
     }
 
-    const Elastic D(a);
+    const Elastic D(a, index, chunk);
     NodeLanes& hub = g.node[nodes.centre()];
     const Real2 centre = hub.position();
     Real2 centre_force = hub.f;
@@ -534,9 +572,9 @@ void grains(const KernelArrays& a, const KernelStep& step, int begin, int end) {
     for (int i = begin; i < end; ++i) {
         const GrainPack& pack = a.grain_packs[i];
         if (step.local_damping) {
-            for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA { grains_of_chunk<true>(a, step, pack, a.pack_forces[i], chunk); });
+            for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA { grains_of_chunk<true>(a, step, i, chunk); });
         } else {
-            for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA { grains_of_chunk<false>(a, step, pack, a.pack_forces[i], chunk); });
+            for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA { grains_of_chunk<false>(a, step, i, chunk); });
         }
     }
 }
@@ -691,13 +729,13 @@ FELDSPAR_INLINE Real triangle_energy(const NodeLanes& i, const NodeLanes& j, con
 }
 
 double energy_of_grains(const KernelArrays& a, double since) {
-    const Elastic D(a);
     Real sum{};
     GrainLanes g;
     for (int p = 0; p < a.grain_pack_count; ++p) {
         const GrainPack& pack = a.grain_packs[p];
         const GrainNodes nodes(pack);
         for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA {
+            const Elastic D(a, p, chunk);
             for (int i = 0; i < pack.nodes(); ++i) {
                 const int node = pack.first_node + chunk.begin + i * pack.lanes;
                 const Real2 v = load_points(a.velocity + 2 * node, chunk.count);
@@ -727,16 +765,22 @@ PackEnergies energies(const KernelArrays& a, double since) {
     Real fracture{}, friction{};
     for (int p = 0; p < a.contact_pack_count; ++p) {
         const ContactPack& pack = a.contact_packs[p];
-        const BondLaw& law = a.laws[pack.material];
         Real stored{};
-        const int end = pack.first_state + pack.lanes * pack.points;
-        for (int state = pack.first_state; state < end; state += kWidth) {
-            const int count = end - state < kWidth ? end - state : kWidth;
+        const auto add = [&](const auto& law, int state, int count) FELDSPAR_LAMBDA {
             const Real Fn = load(a.Fn + state, count), Fs = load(a.Fs + state, count), area = load(a.area + state, count);
             const Real inverse_area = area > 0.0 ? 1.0 / area : Real{};
             stored += normal_energy(law, inverse_area, Fn, load(a.un + state, count), load(a.damage + state, count)) + 0.5 * law.inverse_Ks * inverse_area * Fs * Fs;
             fracture += load(a.fracture + state, count);
             friction += load(a.friction + state, count);
+        };
+        if (pack.first_law >= 0) {
+            for_each_chunk(pack.lanes, [&](Chunk chunk) FELDSPAR_LAMBDA {
+                const auto law = law_of<true>(a, pack, chunk);
+                for (int j = 0; j < pack.points; ++j) add(law, pack.first_state + j * pack.lanes + chunk.begin, chunk.count);
+            });
+        } else {
+            const int end = pack.first_state + pack.lanes * pack.points;
+            for (int state = pack.first_state; state < end; state += kWidth) add(a.laws[pack.material], state, end - state < kWidth ? end - state : kWidth);
         }
         sums.contacts[static_cast<std::size_t>(pack.material)] += sum_of(stored);
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "feldspar/methods/test_spec.hpp"
+#include "feldspar/model/heterogeneity_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -20,6 +21,7 @@ struct Variant {
     ModelSpec model;
     GrainMaterial grain;
     ContactMaterial contact;
+    Heterogeneity rock;                ///< what of grains and contacts differs from these; of minerals `grain` is the mean
     NumericsSpec numerics;
     std::vector<std::uint64_t> seeds;  ///< of the job's; empty = all
     std::vector<MethodId> tests;       ///< of the job's; empty = all

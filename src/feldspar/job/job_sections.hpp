@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "feldspar/methods/test_spec.hpp"
+#include "feldspar/model/heterogeneity_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/job/job.hpp"
 #include "feldspar/job/job_table.hpp"
@@ -30,8 +31,13 @@ struct Physics {
     ModelSpec model;
     GrainMaterial grain;
     ContactMaterial contact;
+    Heterogeneity rock;
     NumericsSpec numerics;
 };
+/// What makes grains and contacts of [material] differ. @param model_decided_at  level of the table that chose the kind of grains
+/// @param grain, contact  of [material.grain] and [material.contact], for what minerals, pairs and joints do not give
+Heterogeneity read_rock(const JobTable& material, const ModelSpec& model, bool model_known, int model_decided_at, const GrainMaterial& grain, const ContactMaterial& contact);
+
 Physics read_physics(const JobTable& root, const JobTable* variant);
 
 /// What kinds of grains the job and its variants have was read without a mistake.

@@ -14,6 +14,7 @@
 #include "feldspar/job/words.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/rock_properties.hpp"
+#include "feldspar/model/heterogeneity_spec.hpp"
 
 namespace feldspar {
 namespace {
@@ -266,6 +267,129 @@ std::vector<JobKey> material_keys() {
         {"strength_preset", choice(strength_presets()), none, "a law and its strengths by name ([below](#presets)), under what the tables give"},
         {"grain", table("material.grain"), words("that of presets; must be given of flexible grains"), "the grains"},
         {"contact", table("material.contact"), words("that of presets; else it must be given"), "the contacts between grains"},
+        {"phase", tables("material.phase"), words("one mineral"), "the minerals of the rock ([theory](theory/heterogeneity.md))"},
+        {"pair", tables("material.pair"), words("by `unlike` of `[material.minerals]`"), "contacts between two minerals, or of one with itself, where they differ from `[material.contact]`"},
+        {"minerals", table("material.minerals"), words("at random"), "how the minerals lie in the specimen"},
+        {"scatter", table("material.scatter"), none, "what scatters from contact to contact, or from grain to grain"},
+        {"initial_cracks", table("material.initial_cracks"), none, "contacts that are not whole before the test"},
+        {"joint", tables("material.joint"), none, "joints, bedding planes and cracks: along the grain edges nearest to their traces"},
+    };
+}
+
+std::vector<JobKey> phase_keys() {
+    return {
+        {"name", text("1 to 40 letters, digits, '_' and '-'"), needed, "the mineral"},
+        {"share", share_of_one(share, "%"), needed, "of the area; all shares add up to 1"},
+        {"E", quantity(stress), words("that of `[material.grain]`"), "Young's modulus of its grains", with("model.kind", {GrainKind::flexible}), false,
+         ": these grains have no elastic constants, they deform by Kn and eta of their contacts"},
+        {"nu", number(poisson), words("that of `[material.grain]`"), "Poisson's ratio of its grains", with("model.kind", {GrainKind::flexible}), false,
+         ": these grains have no elastic constants, they deform by Kn and eta of their contacts"},
+        {"density", quantity(density), words("that of `[material.grain]`"), "density of its grains"},
+        {"colour", text("a colour such as \"#b08050\""), words("one of a palette"), "in pictures and in a map"},
+        {"value", integer(0, 255), words("its `colour`"), "of its pixels in a map that is a grey picture of numbers"},
+    };
+}
+
+std::vector<JobKey> pair_keys() {
+    return {
+        {"phases", list_of(text("two names of phases")), needed, "the two minerals; twice the same: contacts of a mineral with itself"},
+        {"Kn", quantity(stiffness_gradient), words("that of `[material.contact]`"), "normal stiffness per area"},
+        {"eta", number(positive), words("that of `[material.contact]`"), "shear over normal stiffness"},
+        {"sigma_nt", quantity(stress), words("that of `[material.contact]`"), "tensile strength"},
+        {"tau", quantity(stress), words("that of `[material.contact]`"), "cohesion"},
+        {"mu", number(not_negative), words("that of `[material.contact]`"), "friction coefficient"},
+        {"Gfn", quantity(fracture_energy), words("that of `[material.contact]`"), "fracture energy in tension"},
+        {"Gfs", quantity(fracture_energy), words("that of `[material.contact]`"), "fracture energy in shear"},
+    };
+}
+
+std::vector<JobKey> minerals_keys() {
+    const MineralSpec spec;
+    return {
+        {"unlike", choice_of(unlike_rules), usual_word(name(spec.unlike)),
+         "contacts of two unlike minerals without a `[[material.pair]]`: `\"weaker\"`: the smaller of each value of the two minerals' own contacts; `\"mean\"`: their mean; `\"given\"`: every pair must be given"},
+        {"unlike_strength", number({0.0, 1.0, false, true, "greater than 0, at most 1"}), usual(spec.unlike_strength), "multiplies the strengths and fracture energies of such contacts"},
+        {"cluster_length", quantity(length, not_negative), usual(spec.cluster_length_m), "grains of a mineral lie together over this length; 0: each grain by itself, at random"},
+        {"map", text("a PNG picture, its path relative to the job file"), none, "a scanned thin section over the whole specimen: colours are those of the phases; black without a phase is nothing"},
+        {"list", text("a text file, its path relative to the job file"), none, "the mineral of each grain by name, a line each, in the order of the packing"},
+    };
+}
+
+std::vector<JobKey> scatter_keys() {
+    const ScatterSpec spec;
+    std::vector<JobKey> keys;
+    const auto meaning = [](Scattered quantity) -> std::string {
+        switch (quantity) {
+            case Scattered::strength: return "`sigma_nt` and `tau` of a contact together";
+            case Scattered::sigma_nt: return "`sigma_nt` by itself, on top of `strength`";
+            case Scattered::tau: return "`tau` by itself, on top of `strength`";
+            case Scattered::stiffness: return "`Kn` and the shear stiffness of a contact together";
+            case Scattered::Kn: return "`Kn` by itself, on top of `stiffness`; the shear stiffness stays";
+            case Scattered::Ks: return "the shear stiffness by itself, on top of `stiffness`";
+            case Scattered::mu: return "the friction coefficient of a contact";
+            case Scattered::Gfn: return "`Gfn` by itself, on top of what follows from the strength";
+            case Scattered::Gfs: return "`Gfs` by itself, on top of what follows from the strength";
+            case Scattered::E: return "Young's modulus of a flexible grain";
+        }
+        return {};
+    };
+    for (const Scattered quantity : scattered_quantities) keys.push_back({name(quantity), table("material.scatter.quantity"), none, meaning(quantity)});
+    keys.push_back({"energy_power", number({0.0, 10.0, true, true, "from 0 to 10"}), usual(spec.energy_power),
+                    "a fracture energy is multiplied by the factor of its strength to this power: with 2 the softening scales as a whole, with 1 its displacements stay"});
+    return keys;
+}
+
+std::vector<JobKey> distribution_keys() {
+    return {
+        {"distribution", choice_of(distribution_kinds), usual_word(name(DistributionKind::weibull)), "of a factor of mean 1"},
+        {"modulus", number({0.2, 1000.0, true, true, "from 0.2 to 1000"}), words("must be given, or `variation`"), "Weibull modulus; rocks have 1.5 to 6", with("distribution", {DistributionKind::weibull})},
+        {"variation", share_of_one({0.0, 2.0, false, true, "greater than 0, at most 200 %"}, "%"), words("must be given; with `\"weibull\"` in place of `modulus`"), "coefficient of variation"},
+        {"lowest", number(below_one), words("0; with `\"normal\"` 0.05"), "smallest factor: the distribution is cut off there"},
+        {"highest", number({1.0, infinite, false, true, "greater than 1"}), words("no limit"), "largest factor"},
+        {"correlation_length", quantity(length, not_negative), usual(0.0), "draws so far apart are correlated by exp(-1/2) (a Gaussian random field); 0: independent"},
+    };
+}
+
+std::vector<JobKey> initial_cracks_keys() {
+    const InitialCracks spec;
+    return {
+        {"broken", share_of_one(share, "%"), usual(spec.broken), "share of the contacts that have no strength"},
+        {"opening", quantity(length, not_negative), usual(spec.opening_m), "of these: their faces meet when the gap has closed by it"},
+        {"weakened", share_of_one(share, "%"), usual(spec.weakened), "share of the contacts whose strengths are multiplied by `weakened_strength`"},
+        {"weakened_strength", number({0.0, 1.0, false, true, "greater than 0, at most 1"}), words("must be given beside `weakened`"), "that factor; fracture energies follow by `energy_power`"},
+    };
+}
+
+std::vector<JobKey> joint_keys() {
+    return {
+        {"name", text("1 to 40 letters, digits, '_' and '-'"), words("`\"joint-1\"`, `\"joint-2\"`, ..."), "the joint"},
+        {"trace", pairs_of(quantity(length, any_value), quantity(length, any_value)), words("`trace`, `file` or `set` must be given"), "a polyline of two points or more"},
+        {"file", text("a CSV or DXF file, its path relative to the job file"), words("`trace`, `file` or `set` must be given"),
+         "traces: CSV with a head `x1,y1,x2,y2` and lengths in m or in the `unit`, or DXF with LINE, LWPOLYLINE and POLYLINE"},
+        {"unit", text("a unit of length such as \"mm\""), words("CSV: m; DXF: that of its $INSUNITS, which must be there"), "of the lengths in the file"},
+        {"layer", text("a layer of the DXF file, or what stands in a column `set` of the CSV file"), words("all"), "which traces of the file"},
+        {"set", table("material.joint.set"), words("`trace`, `file` or `set` must be given"), "parallel traces, drawn from the seed"},
+        {"Kn", quantity(stiffness_gradient), words("that of `[material.contact]`"), "normal stiffness per area"},
+        {"eta", number(positive), words("that of `[material.contact]`"), "shear over normal stiffness"},
+        {"sigma_nt", quantity(stress, not_negative), words("0"), "tensile strength"},
+        {"tau", quantity(stress, not_negative), words("0"), "cohesion; without it and `sigma_nt` the joint slides from the start"},
+        {"mu", number(not_negative), words("that of `[material.contact]`"), "friction coefficient"},
+        {"Gfn", quantity(fracture_energy, not_negative), words("0: brittle in tension"), "fracture energy in tension"},
+        {"Gfs", quantity(fracture_energy, not_negative), words("0: brittle in shear"), "fracture energy in shear"},
+        {"opening", quantity(length, not_negative), usual(0.0), "of a joint without strength: its faces meet when the gap has closed by it"},
+    };
+}
+
+std::vector<JobKey> joint_set_keys() {
+    const Range angles{-180.0 * degree, 180.0 * degree, true, true, "from -180 to 180 degrees"};
+    return {
+        {"dip", quantity(angle, angles), needed, "from the x axis, counter-clockwise"},
+        {"dip_deviation", quantity(angle, {0.0, 45.0 * degree, true, true, "from 0 to 45 degrees"}), usual(0.0), "standard deviation of the dip from trace to trace"},
+        {"spacing", quantity(length), needed, "mean distance of neighbouring traces"},
+        {"spacing_variation", share_of_one(share, "%"), usual(0.0), "coefficient of variation of the spacing (log-normal)"},
+        {"length", quantity(length), words("through the whole specimen"), "mean length of a trace"},
+        {"length_variation", share_of_one(share, "%"), usual(0.0), "coefficient of variation of the length (log-normal)"},
+        {"persistence", share_of_one({0.0, 1.0, false, true, "greater than 0, at most 100 %"}, "%"), words("1; must be given beside `length`"), "share of its line that traces take up"},
     };
 }
 
@@ -531,7 +655,7 @@ std::vector<JobKey> laboratory_keys() {
         value.unit = property.unit.user;
         return value;
     };
-    constexpr std::pair<std::string_view, std::string_view> short_names[]{{"cohesion", "c"}, {"friction_angle", "phi"}, {"hoek_brown_mi", "mi"}};
+    constexpr std::pair<std::string_view, std::string_view> short_names[]{{"cohesion", "c"}, {"friction_angle", "phi"}, {"hoek_brown_mi", "mi"}, {"sigma_ci_crack_volume", "sigma_ci"}};
     std::vector<JobKey> keys;
     for (const RockProperty& property : rock_properties()) {
         if (property.laboratory.empty() || !property.reported()) continue;
@@ -562,6 +686,14 @@ std::vector<KeyTable> all_tables() {
         {"material", "[material]", material_keys()},
         {"material.grain", "[material.grain]", grain_keys()},
         {"material.contact", "[material.contact]", contact_keys()},
+        {"material.phase", "[[material.phase]]", phase_keys()},
+        {"material.pair", "[[material.pair]]", pair_keys()},
+        {"material.minerals", "[material.minerals]", minerals_keys()},
+        {"material.scatter", "[material.scatter]", scatter_keys()},
+        {"material.scatter.quantity", "[material.scatter] strength, ...", distribution_keys()},
+        {"material.initial_cracks", "[material.initial_cracks]", initial_cracks_keys()},
+        {"material.joint", "[[material.joint]]", joint_keys()},
+        {"material.joint.set", "[[material.joint]] set", joint_set_keys()},
         {"numerics", "[numerics]", numerics_keys()},
         {"variant", "[[variant]]", variant_keys()},
         {"test", "[[test]]", test_keys()},

@@ -1,9 +1,11 @@
 // One variant's physics: its own tables lie over the job's, and each over the presets that it names.
 #include <algorithm>
+#include <limits>
 
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/presets.hpp"
 #include "feldspar/job/words.hpp"
+#include "feldspar/model/texture.hpp"
 
 namespace feldspar {
 namespace {
@@ -157,14 +159,18 @@ MaterialTables material_tables(const Layers& holders, const ReadModel& model) {
 GrainMaterial read_grain(const MaterialTables& material, const ReadModel& read) {
     GrainMaterial grain;
     const bool flexible = read.model.kind == GrainKind::flexible || !read.known;
-    if (flexible && read.known && !material.grain) material.all.require({"grain"});
+    const bool minerals = material.all.has("phase");   // which may give it all
+    if (minerals) grain.nu = std::numeric_limits<double>::quiet_NaN();
+    if (flexible && read.known && !material.grain && !minerals) material.all.require({"grain"});
     if (!material.grain) return grain;
     const JobTable& table = *material.grain;
     grain.density_kg_m3 = table.quantity("density");
-    if (!read.known) table.do_not_miss({"E", "nu"});
+    if (!read.known || minerals) table.do_not_miss({"E", "nu"});
     else table.suit("model.kind", name(read.model.kind), read.decided_at);
     if (!flexible) return grain;
+    if (minerals && !table.has("E")) return grain;
     grain.E_Pa = table.quantity("E");
+    if (minerals && !table.has("nu")) return grain;
     Range range = table.rows().key("nu").value.element.range;
     if (read.model.plane == PlaneState::strain) range.words = "greater than -1 and less than 0.5 (at 0.5 the stiffness in plane strain is infinite)";
     grain.nu = table.TableReader::number("nu", range);
@@ -254,6 +260,8 @@ Physics read_physics(const JobTable& root, const JobTable* variant) {
     physics.model = model.model;
     physics.grain = read_grain(material, model);
     physics.contact = read_contact(material);
+    physics.rock = read_rock(material.all, model.model, model.known, model.decided_at, physics.grain, physics.contact);
+    physics.grain = mean_grain(physics.rock.minerals, physics.grain);
     physics.numerics = read_numerics(laid_over(tables_of(holders, "numerics")));
     return physics;
 }

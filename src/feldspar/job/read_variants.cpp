@@ -45,6 +45,7 @@ Variant read_variant(const JobTable& root, const JobTable* table) {
     variant.model = physics.model;
     variant.grain = physics.grain;
     variant.contact = physics.contact;
+    variant.rock = std::move(physics.rock);
     variant.numerics = physics.numerics;
     return variant;
 }

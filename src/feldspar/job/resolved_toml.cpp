@@ -177,12 +177,14 @@ void write_model(Lines& out, const ModelSpec& model, const std::string& place) {
 
 void write_materials(Lines& out, const Variant& variant, const std::string& place) {
     const ContactMaterial& contact = variant.contact;
-    out.head("material.grain", "[" + place + "material.grain]");
-    if (variant.model.kind == GrainKind::flexible) {
-        out.quantity("E", variant.grain.E_Pa);
-        out.number("nu", variant.grain.nu);
+    if (variant.rock.minerals.phases.empty()) {   // else each mineral has its own
+        out.head("material.grain", "[" + place + "material.grain]");
+        if (variant.model.kind == GrainKind::flexible) {
+            out.quantity("E", variant.grain.E_Pa);
+            out.number("nu", variant.grain.nu);
+        }
+        out.quantity("density", variant.grain.density_kg_m3);
     }
-    out.quantity("density", variant.grain.density_kg_m3);
     out.head("material.contact", "[" + place + "material.contact]");
     out.word("law", name(contact.law));
     out.quantity("Kn", contact.Kn_Pa_m);
@@ -195,6 +197,102 @@ void write_materials(Lines& out, const Variant& variant, const std::string& plac
     out.quantity("Gfs", contact.Gfs_J_m2);
     out.word("shear_measure", name(contact.shear_measure));
     out.word("tension_unloading", name(contact.tension_unloading));
+}
+
+void write_distribution(std::vector<std::string>& items, const Distribution& d) {
+    items.push_back(fmt::format("distribution = \"{}\"", name(d.kind)));
+    if (d.kind == DistributionKind::weibull) items.push_back("modulus = " + format_exact(d.weibull_modulus));
+    else items.push_back("variation = " + format_exact(d.variation));
+    items.push_back("lowest = " + format_exact(d.lowest));
+    if (std::isfinite(d.highest)) items.push_back("highest = " + format_exact(d.highest));
+    if (d.correlation_length_m > 0.0) items.push_back("correlation_length = " + si(d.correlation_length_m, Dimension::length));
+}
+
+void write_minerals(Lines& out, const Variant& variant, const std::string& place) {
+    const MineralSpec& minerals = variant.rock.minerals;
+    for (const Mineral& phase : minerals.phases) {
+        out.head("material.phase", "[[" + place + "material.phase]]");
+        out.word("name", phase.name);
+        out.number("share", phase.share);
+        if (variant.model.kind == GrainKind::flexible) {
+            out.quantity("E", phase.grain.E_Pa);
+            out.number("nu", phase.grain.nu);
+        }
+        out.quantity("density", phase.grain.density_kg_m3);
+        out.word("colour", fmt::format("#{:06x}", phase.colour));
+        if (phase.value >= 0) out.raw("value", std::to_string(phase.value));
+    }
+    for (const PhasePair& pair : minerals.pairs) {
+        out.head("material.pair", "[[" + place + "material.pair]]");
+        out.raw("phases", fmt::format("[{}, {}]", quote(minerals.phases[pair.a].name), quote(minerals.phases[pair.b].name)));
+        const ContactChanges& c = pair.changes;
+        for (const auto& [key, value] : {std::pair{"Kn", c.Kn_Pa_m}, std::pair{"sigma_nt", c.sigma_nt_Pa}, std::pair{"tau", c.tau_Pa}, std::pair{"Gfn", c.Gfn_J_m2}, std::pair{"Gfs", c.Gfs_J_m2}})
+            if (value) out.quantity(key, *value);
+        for (const auto& [key, value] : {std::pair{"eta", c.eta}, std::pair{"mu", c.mu}})
+            if (value) out.number(key, *value);
+    }
+    if (minerals.phases.empty()) return;
+    out.head("material.minerals", "[" + place + "material.minerals]");
+    out.word("unlike", name(minerals.unlike));
+    out.number("unlike_strength", minerals.unlike_strength);
+    if (minerals.cluster_length_m > 0.0) out.quantity("cluster_length", minerals.cluster_length_m);
+    if (minerals.map) out.word("map", minerals.map_file);
+    if (!minerals.list.empty()) out.word("list", minerals.list_file);
+}
+
+void write_joints(Lines& out, const Variant& variant, const std::string& place) {
+    for (const JointSpec& joint : variant.rock.joints) {
+        out.head("material.joint", "[[" + place + "material.joint]]");
+        out.word("name", joint.name);
+        if (joint.set) {
+            const JointSet& set = *joint.set;
+            std::vector<std::string> items{"dip = " + si(set.dip_rad, Dimension::angle), "dip_deviation = " + si(set.dip_deviation_rad, Dimension::angle),
+                                           "spacing = " + si(set.spacing_m, Dimension::length), "spacing_variation = " + format_exact(set.spacing_variation)};
+            if (set.length_m > 0.0)
+                items.insert(items.end(), {"length = " + si(set.length_m, Dimension::length), "length_variation = " + format_exact(set.length_variation), "persistence = " + format_exact(set.persistence)});
+            out.raw("set", fmt::format("{{ {} }}", fmt::join(items, ", ")));
+        } else if (!joint.file.empty()) {
+            out.word("file", joint.file);
+            if (!joint.unit.empty()) out.word("unit", joint.unit);
+            if (!joint.layer.empty()) out.word("layer", joint.layer);
+        } else {
+            out.raw("trace", points(joint.lines_m.front()));
+        }
+        const ContactMaterial& c = joint.contact;
+        out.quantity("Kn", c.Kn_Pa_m);
+        out.number("eta", c.eta);
+        out.quantity("sigma_nt", c.sigma_nt_Pa);
+        out.quantity("tau", c.tau_Pa);
+        out.number("mu", c.mu);
+        out.quantity("Gfn", c.Gfn_J_m2);
+        out.quantity("Gfs", c.Gfs_J_m2);
+        out.quantity("opening", joint.opening_m);
+    }
+}
+
+// What makes the rock uneven; nothing of a rock that is even, so that identities of its runs stay as they were.
+void write_rock(Lines& out, const Variant& variant, const std::string& place) {
+    write_minerals(out, variant, place);
+    const ScatterSpec& scatter = variant.rock.scatter;
+    if (scatter.any()) {
+        out.head("material.scatter", "[" + place + "material.scatter]");
+        for (const Scattered quantity : scattered_quantities) {
+            if (!scatter[quantity].scatters()) continue;
+            std::vector<std::string> items;
+            write_distribution(items, scatter[quantity]);
+            out.raw(name(quantity), fmt::format("{{ {} }}", fmt::join(items, ", ")));
+        }
+        out.number("energy_power", scatter.energy_power);
+    }
+    const InitialCracks& cracks = variant.rock.initial_cracks;
+    if (cracks.any()) {
+        out.head("material.initial_cracks", "[" + place + "material.initial_cracks]");
+        out.number("broken", cracks.broken);
+        out.quantity("opening", cracks.opening_m);
+        out.number("weakened", cracks.weakened);
+        if (cracks.weakened > 0.0) out.number("weakened_strength", cracks.weakened_strength);
+    }
+    write_joints(out, variant, place);
 }
 
 void write_numerics(Lines& out, const NumericsSpec& numerics, const std::string& place) {
@@ -405,6 +503,7 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
 void write_physics(Lines& out, const Variant& variant, const std::string& place) {
     write_model(out, variant.model, place);
     write_materials(out, variant, place);
+    write_rock(out, variant, place);
     write_numerics(out, variant.numerics, place);
 }
 

@@ -22,7 +22,7 @@ StoredEnergy stored_energy(const Assembly& assembly, double since) {
         for (int t = grain.triangle_begin; t < grain.triangle_end; ++t) {
             const Triangle& triangle = assembly.triangles[t];
             for (const int n : triangle.node) u[n] = nodes.displacement[n] - since * nodes.velocity[n];
-            sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity, displacement_gradient(u, triangle));
+            sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity_of(b), displacement_gradient(u, triangle));
         }
     }
     for (const BodyWork& work : assembly.body_work) {

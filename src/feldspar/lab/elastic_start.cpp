@@ -56,7 +56,7 @@ BodyState superpose(const BodyState& base, const BodyState& state, double factor
 double first_damage(const Assembly& assembly, const BodyState& base, const BodyState& state) {
     double first = kNever;
     for (const Contact& contact : assembly.contacts) {
-        const BondLaw& law = assembly.laws[contact.material];
+        const BondLaw law = assembly.law_of(contact);
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
             const auto i = static_cast<std::size_t>(assembly.points[p].state);
             const BondState b = base.bonds.at(i);

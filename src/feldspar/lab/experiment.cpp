@@ -98,7 +98,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     : setup(s),
       method(method_of(s.test)),
       control(c),
-      assembly(assemble(*s.specimen, s.model, s.grain, s.contact)),
+      assembly(assemble(*s.specimen, s.model, s.grain, s.contact, s.rock)),
       team(c.threads),
       gauge(assembly, *s.specimen),
       direction(method.loading.sign),
@@ -114,7 +114,7 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     require_stages(*this);
     stage = stages.empty() ? 0 : 1;
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
-    if (s.test.custom.gravity_m_s2 != Vec2{}) full_weight = weights(assembly, s.grain.density_kg_m3, s.test.custom.gravity_m_s2);
+    if (s.test.custom.gravity_m_s2 != Vec2{}) full_weight = weights(assembly, s.test.custom.gravity_m_s2);
     if (!confined()) dead_load_N = total_of_dead_loads(assembly, full_weight);
     impose_motion();
 }
@@ -191,7 +191,7 @@ void choose_step(Experiment& e) {
     e.settings.damping = Damping::local;
     e.settings.alpha = n.damping;
     if (n.kind == NumericsKind::dynamic) {
-        set_real_masses(e.assembly, e.setup.grain.density_kg_m3);
+        set_real_masses(e.assembly);
     } else {
         e.mass_factor = n.mass_factor.value_or(1.0 + n.damping);
         set_scaled_masses(e.assembly, bound, e.mass_factor);

@@ -302,11 +302,24 @@ void Gauges::add_stress(const Assembly& assembly, const GrainMesh& mesh, std::ve
     }
 }
 
+namespace {
+
+Mat2 stress_of_triangle(const Assembly& assembly, int triangle) {
+    int body = 0;
+    if (assembly.elasticity.size() > 1) {
+        const auto behind = std::upper_bound(assembly.bodies.begin(), assembly.bodies.begin() + std::ssize(assembly.elasticity), triangle, [](int t, const Body& b) { return t < b.triangle_begin; });
+        body = static_cast<int>(behind - assembly.bodies.begin()) - 1;
+    }
+    return cauchy_stress(assembly.elasticity_of(body), displacement_gradient(assembly.nodes.displacement, assembly.triangles[triangle]));
+}
+
+}  // namespace
+
 double Gauges::stress_sum(const Assembly& assembly, std::size_t begin, std::size_t end, std::span<const Mat2> of_grains) const {
     double sum = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
         const auto& [cell, w] = stress_terms_[i];
-        const Mat2 s = of_grains.empty() ? cauchy_stress(assembly.elasticity, displacement_gradient(assembly.nodes.displacement, assembly.triangles[cell])) : of_grains[cell];
+        const Mat2 s = of_grains.empty() ? stress_of_triangle(assembly, cell) : of_grains[cell];
         sum += w.xx * s.xx + w.xy * s.xy + w.yx * s.yx + w.yy * s.yy;
     }
     return sum;

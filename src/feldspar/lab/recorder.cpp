@@ -215,8 +215,9 @@ Snapshot Recorder::complete(const Fields& f) const {
         s.stress_yy_Pa.push_back(-stress.yy);
         s.stress_xy_Pa.push_back(-stress.xy);
     };
-    for (const Triangle& triangle : e_.assembly.triangles)
-        add_stress(cauchy_stress(e_.assembly.elasticity, displacement_gradient(f.displacement, triangle)));
+    for (int b = 0; b < std::ssize(e_.assembly.bodies); ++b)   // the triangles of all bodies, in their order
+        for (int t = e_.assembly.bodies[b].triangle_begin; t < e_.assembly.bodies[b].triangle_end; ++t)
+            add_stress(cauchy_stress(e_.assembly.elasticity_of(b), displacement_gradient(f.displacement, e_.assembly.triangles[t])));
     for (std::size_t g = 0; g < f.grain_stress.size(); ++g)
         for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) add_stress(f.grain_stress[g]);
     s.damage.assign(mesh.triangles.size(), 0.0F);

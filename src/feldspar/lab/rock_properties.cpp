@@ -62,6 +62,13 @@ RockProperty ratio(std::string_view name, std::string_view above, std::string_vi
     return p;
 }
 
+RockProperty over_UCS(std::string_view name, std::string_view above, const char* label, const char* symbol) {
+    RockProperty p{name, units::pure, label, symbol, "(P11)", Source::ratio, {method_of_strength("UCS")}};
+    p.above = above;
+    p.below = "UCS";
+    return p;
+}
+
 RockProperty fitted(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, std::string_view definition, double EnvelopeFit::* fit,
                     std::string_view laboratory = {}) {
     RockProperty p{name, unit, label, symbol, definition, Source::envelope, {method_of_strength("UCS"), method_of_confined_strength()}};
@@ -121,10 +128,12 @@ std::vector<RockProperty> table() {
         read("hole_breakout", method_that_reads(Reading::hole), "Axial stress at which a breakout begins", "\u03c3 breakout"),
         read("hole_breakout_side_stress", method_that_reads(Reading::hole), "Stress at the sides of a hole when a breakout begins", "\u03c3\u03b8 breakout"),
         in_compression("first_crack", "Stress at the first crack", "\u03c31st"),
+        in_compression("sigma_ci_crack_volume", "Crack initiation stress, crack volumetric strain", "\u03c3ci", "sigma_ci_crack_volume"),
         in_compression("sigma_ci_crack_count", "Crack initiation stress, crack count", "\u03c3ci"),
-        in_compression("sigma_ci_crack_volume", "Crack initiation stress, crack volumetric strain", "\u03c3ci"),
         in_compression("sigma_ci_lateral_strain", "Crack initiation stress, lateral strain response", "\u03c3ci"),
-        in_compression("sigma_cd", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd"),
+        in_compression("sigma_cd", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd", "sigma_cd"),
+        over_UCS("sigma_ci_over_UCS", "sigma_ci_crack_volume", "Ratio crack initiation / UCS", "\u03c3ci/UCS"),
+        over_UCS("sigma_cd_over_UCS", "sigma_cd", "Ratio crack damage / UCS", "\u03c3cd/UCS"),
         // Not the post-peak modulus: it jumps from minus to plus infinity where the branch is upright, and has no median there.
         in_compression("brittleness_k1", "Brittleness k1: above 1 class I, below 1 class II", "k1"),
         in_compression("E_tangent", "Young's modulus, tangent at 50 % of the peak", "Et50", "E"),

@@ -14,6 +14,7 @@
 #include "feldspar/lab/recorder.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/model/masses.hpp"
+#include "feldspar/model/texture.hpp"
 
 namespace feldspar {
 namespace {
@@ -45,6 +46,8 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     result.model = setup.model;
     result.contact = setup.contact;
     result.grain = setup.grain;
+    result.rock = setup.rock;
+    if (setup.rock.any()) result.texture = Texture(*setup.specimen, setup.grain, setup.contact, setup.rock).summary();
     result.numerics = setup.numerics;
     result.seed = setup.specimen->seed;
     result.specimen = setup.specimen;
@@ -134,7 +137,7 @@ TestResult run_test(const TestSetup& setup, const RunControl& control) {
 
 TestPreview preview_test(const TestSetup& setup, const RunControl& control) {
     Experiment e(setup, control);
-    set_real_masses(e.assembly, setup.grain.density_kg_m3);   // replaced below
+    set_real_masses(e.assembly);   // replaced below
     const double real_omega2 = largest_omega2(e.assembly, e.team);
     choose_step(e);
     TestPreview preview;

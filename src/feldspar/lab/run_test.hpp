@@ -7,6 +7,7 @@
 #include <string>
 
 #include "feldspar/methods/result.hpp"
+#include "feldspar/model/heterogeneity_spec.hpp"
 
 namespace feldspar {
 
@@ -38,6 +39,7 @@ struct TestSetup {
     ContactMaterial contact;
     NumericsSpec numerics;
     TestSpec test;
+    Heterogeneity rock{};   ///< what of grains and contacts differs from these
 };
 
 /// Runs the test; the result has its properties and evidence filled in. With NumericsSpec::confirm the test is run again at a

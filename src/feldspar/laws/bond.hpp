@@ -46,13 +46,16 @@ struct BondLawOf {
     FELDSPAR_LAW void set_stiffness(Number Kn, Number Ks) {
         Kn_Pa_m = Kn;
         Ks_Pa_m = Ks;
-        inverse_Kn = 1.0 / Kn;
+        inverse_Kn = Kn > Number{} ? 1.0 / Kn : Number{};   // none in lanes without a contact
         inverse_Ks = Ks > Number{} ? 1.0 / Ks : Number{};
     }
 };
 
 /// One law, of all contacts of a class.
 struct BondLaw : BondLawOf<double> {
+    BondLaw() = default;
+    explicit BondLaw(const BondLawOf<double>& law) : BondLawOf<double>(law) {}
+
     static BondLaw make(const ContactMaterial& m) {
         BondLaw law;
         law.set_stiffness(m.Kn_Pa_m, m.eta * m.Kn_Pa_m);
@@ -84,6 +87,44 @@ struct BondLaw : BondLawOf<double> {
         return law;
     }
 };
+
+/// What all laws that contacts have of their own share.
+struct LawForm {
+    ContactLaw law = ContactLaw::bilinear;
+    bool shear_beyond_friction = false;
+    bool secant_unloading = false;
+};
+
+/// The constants of a law that a contact has of its own; everything else of it follows from them.
+template <class Number>
+struct LawConstants {
+    Number Kn_Pa_m{}, Ks_Pa_m{};
+    Number x0_normal{}, x0_shear{};       ///< m, ends of the elastic branches
+    Number x_fl_normal{}, x_fl_shear{};   ///< m, 2 Gf over the strength
+    Number mu{};
+};
+
+/// The constants of a material. One without strength in a direction is brittle there.
+inline LawConstants<double> law_constants(const ContactMaterial& m) {
+    const double Ks = m.eta * m.Kn_Pa_m;
+    const auto over = [](double Gf, double strength) { return strength > 0.0 ? 2.0 * Gf / strength : 0.0; };
+    return {m.Kn_Pa_m, Ks, m.sigma_nt_Pa / m.Kn_Pa_m, m.tau_Pa / Ks, over(m.Gfn_J_m2, m.sigma_nt_Pa), over(m.Gfs_J_m2, m.tau_Pa), m.mu};
+}
+
+/// The law of these constants.
+template <class Number>
+FELDSPAR_LAW BondLawOf<Number> bond_law(const LawForm& form, const LawConstants<Number>& c) {
+    BondLawOf<Number> law;
+    law.set_stiffness(c.Kn_Pa_m, c.Ks_Pa_m);
+    law.sigma_nt_Pa = c.Kn_Pa_m * c.x0_normal;
+    law.tau_Pa = c.Ks_Pa_m * c.x0_shear;
+    law.mu = c.mu;
+    law.normal = SofteningEnvelopeOf<Number>::from(form.law, c.x0_normal, c.x_fl_normal);
+    law.shear = SofteningEnvelopeOf<Number>::from(form.law, c.x0_shear, c.x_fl_shear);
+    law.shear_beyond_friction = form.shear_beyond_friction;
+    law.secant_unloading = form.secant_unloading;
+    return law;
+}
 
 /// What a contact point remembers.
 template <class Real>
@@ -119,7 +160,7 @@ FELDSPAR_LAW Real normal_energy(const BondLawOf<Number>& law, Real inverse_area,
 }
 
 /// Recoverable energy of a point, J.
-inline double elastic_energy(const BondLaw& law, double area_m2, const BondState& s) {
+inline double elastic_energy(const BondLawOf<double>& law, double area_m2, const BondState& s) {
     const double inverse_area = 1.0 / area_m2;
     return normal_energy(law, inverse_area, s.Fn_N, s.un_m, s.damage) + 0.5 * law.inverse_Ks * inverse_area * s.Fs_N * s.Fs_N;
 }
@@ -183,7 +224,7 @@ FELDSPAR_LAW BondUpdate<Real> update_damaged(const BondLawOf<Number>& law, Real 
 
 /// Elastic update with unlimited strength for intact points (the elastic start); broken points obey the real law.
 /// @return true if the state is final, false if the real law has to be applied.
-inline bool update_elastic(const BondLaw& law, double area_m2, double dun_m, double dus_m, BondState& s) {
+inline bool update_elastic(const BondLawOf<double>& law, double area_m2, double dun_m, double dus_m, BondState& s) {
     if (s.damage >= 1.0) return false;
     s.un_m += dun_m;
     s.us_m += dus_m;
@@ -194,7 +235,7 @@ inline bool update_elastic(const BondLaw& law, double area_m2, double dun_m, dou
 
 /// A bond that has just broken between bodies that did not touch each other, but were joined over a free gap: from now on they
 /// push each other only when they meet. The energy of the compression that vanishes is booked as fracture.
-inline void free_gap(const BondLaw& law, double area_m2, double gap_m, BondState& s) {
+inline void free_gap(const BondLawOf<double>& law, double area_m2, double gap_m, BondState& s) {
     const double before = elastic_energy(law, area_m2, s);
     s.un_m += gap_m;
     s.Fn_N = s.un_m < 0.0 ? -law.Kn_Pa_m * area_m2 * s.un_m : 0.0;
@@ -206,7 +247,7 @@ inline void free_gap(const BondLaw& law, double area_m2, double gap_m, BondState
 /// Advances a point by the increments of its gap and its shear displacement.
 /// @param area_m2  A_J, the point's share of the contact area
 /// @param dun_m    gap increment, opening positive
-inline BondEvent update_bond(const BondLaw& law, double area_m2, double dun_m, double dus_m, BondState& s) {
+inline BondEvent update_bond(const BondLawOf<double>& law, double area_m2, double dun_m, double dus_m, BondState& s) {
     const double un = s.un_m + dun_m, us = s.us_m + dus_m;
     if (is_linear(law, un, us, s.damage)) {   // what most points are most of the time
         s.un_m = un;

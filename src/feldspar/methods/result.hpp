@@ -11,6 +11,7 @@
 #include "feldspar/base/vec2.hpp"
 #include "feldspar/methods/test_spec.hpp"
 #include "feldspar/model/spec.hpp"
+#include "feldspar/model/texture.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -232,6 +233,8 @@ struct TestResult {
     ModelSpec model;
     ContactMaterial contact;
     GrainMaterial grain;
+    Heterogeneity rock{};                 ///< what of grains and contacts differs from these
+    TextureSummary texture{};             ///< what it came to on this specimen
     NumericsSpec numerics;
     std::uint64_t seed = 0;
     std::shared_ptr<const Specimen> specimen;

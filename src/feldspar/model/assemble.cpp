@@ -11,6 +11,7 @@
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/model/attachment.hpp"
 #include "feldspar/model/masses.hpp"
+#include "feldspar/model/texture.hpp"
 
 namespace feldspar {
 namespace {
@@ -418,14 +419,60 @@ int Assembly::add_point(double along_m, double area_m2, const BondState& bond) {
     return point.state;
 }
 
-Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact) {
+namespace {
+
+// Grains of their own elastic constants and density.
+void set_grains(Assembly& assembly, const Texture& texture, const ModelSpec& model, const Heterogeneity& rock) {
+    for (Body& body : assembly.bodies) {
+        const GrainMaterial grain = texture.grain(body.grain);
+        body.density_kg_m3 = grain.density_kg_m3;
+        if (model.kind != GrainKind::flexible) continue;
+        if (rock.grains_differ() || assembly.elasticity.empty()) assembly.elasticity.push_back(plane_elasticity(grain.E_Pa, grain.nu, model.plane));
+    }
+}
+
+// A contact that is broken from the start.
+void open(Assembly& assembly, const Contact& contact, double opening_m) {
+    for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+        BondState bond = assembly.bond(p);
+        bond.damage = 1.0;
+        bond.un_m = assembly.points[p].free_gap_m + opening_m;
+        assembly.set_bond(p, bond);
+    }
+}
+
+// Laws of their own for the contacts between grains, and inside grains of minerals whose stiffness is not that of the others.
+void set_contacts(Assembly& assembly, const Texture& texture, const ContactMaterial& contact, const Heterogeneity& rock) {
+    if (!rock.contacts_differ()) return;
+    assembly.own_laws.form = {contact.law, contact.shear_measure == ShearMeasure::beyond_friction, contact.tension_unloading == TensionUnloading::secant};
+    const bool own_inside = !rock.minerals.phases.empty();
+    for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
+        Contact& made = assembly.contacts[c];
+        const ContactOrigin& origin = assembly.origins[c];
+        const int a = assembly.bodies[made.a.body].grain, b = assembly.bodies[made.b.body].grain;
+        if (made.material == inside_grains) {
+            if (!own_inside) continue;
+            constexpr double kNever = std::numeric_limits<double>::infinity();
+            const ContactMaterial inside = texture.between(texture.phases()[a], texture.phases()[a]);
+            made.own_law = assembly.own_laws.add({inside.Kn_Pa_m, inside.eta * inside.Kn_Pa_m, kNever, kNever, kNever, kNever, 0.0});
+        } else {
+            const GrainContact joined = texture.contact(a, b, origin.from, origin.to);
+            made.own_law = assembly.own_laws.add(law_constants(joined.material));
+            if (joined.broken) open(assembly, made, joined.opening_m);
+        }
+    }
+}
+
+}  // namespace
+
+Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact, const Heterogeneity& rock) {
     Assembly assembly;
+    const Texture texture(specimen, grain, contact, rock);
     assembly.thickness_m = specimen.spec.thickness_m;
     assembly.laws[between_grains] = BondLaw::make(contact);
     assembly.laws[inside_grains] = BondLaw::unbreakable(contact.Kn_Pa_m, contact.eta);
     switch (model.kind) {
         case GrainKind::flexible:
-            assembly.elasticity = plane_elasticity(grain.E_Pa, grain.nu, model.plane);
             add_flexible_grains(assembly, specimen);
             add_contacts_of_grains(assembly, specimen.cells, model.contact);
             break;
@@ -441,6 +488,8 @@ Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainM
             add_contacts_of_particles(assembly, specimen.filling, model.normal);
             break;
     }
+    set_grains(assembly, texture, model, rock);
+    set_contacts(assembly, texture, contact, rock);
     index_bodies(assembly);
     index_contacts(assembly);
     release_spare_memory(assembly);
@@ -483,6 +532,31 @@ void index_contacts(Assembly& assembly) {
     index_contact_packs(assembly);
 }
 
+namespace {
+
+// A new contact in a rock whose contacts are not alike: stiffness and friction are the means of those of the contacts that the two bodies have.
+std::int32_t law_between(Assembly& assembly, int body_a, int body_b) {
+    LawConstants<double> mean;
+    int count = 0;
+    for (const int b : {body_a, body_b}) {
+        const Body& body = assembly.bodies[b];
+        for (int i = body.slot_begin; i < body.slot_end; ++i) {
+            const Contact& contact = assembly.contacts[assembly.slots_of_bodies[i] / 2];
+            if (contact.own_law < 0 || contact.material != between_grains) continue;
+            const LawConstants<double> law = assembly.own_laws.at(contact.own_law);
+            mean.Kn_Pa_m += law.Kn_Pa_m;
+            mean.Ks_Pa_m += law.Ks_Pa_m;
+            mean.mu += law.mu;
+            ++count;
+        }
+    }
+    const BondLaw& usual = assembly.laws[between_grains];
+    if (count == 0) return assembly.own_laws.add({.Kn_Pa_m = usual.Kn_Pa_m, .Ks_Pa_m = usual.Ks_Pa_m, .mu = usual.mu});
+    return assembly.own_laws.add({.Kn_Pa_m = mean.Kn_Pa_m / count, .Ks_Pa_m = mean.Ks_Pa_m / count, .mu = mean.mu / count});
+}
+
+}  // namespace
+
 void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_overlap_m, double closing_distance_m) {
     const double ra = assembly.bodies[body_a].radius_m, rb = assembly.bodies[body_b].radius_m;
     const Vec2 xa = assembly.centre(body_a), line = assembly.centre(body_b) - xa;
@@ -500,7 +574,8 @@ void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_ove
     BondState bond;
     bond.un_m = -(ra + rb - d - rest_overlap_m);
     bond.damage = 1.0;
-    if (bond.un_m < 0.0) bond.Fn_N = -assembly.laws[contact.material].Kn_Pa_m * area * bond.un_m;
+    if (!assembly.own_laws.empty()) contact.own_law = law_between(assembly, body_a, body_b);
+    if (bond.un_m < 0.0) bond.Fn_N = -assembly.law_of(contact).Kn_Pa_m * area * bond.un_m;
     contact.first_point = assembly.add_point(0.0, area, bond);
     add_contact(assembly, contact, {});
 }
@@ -509,7 +584,7 @@ double Assembly::memory_bytes() const {
     const auto bytes = [](const auto& v) { return static_cast<double>(v.capacity() * sizeof(v[0])); };
     double sum = bytes(nodes.reference) * 6.0 + bytes(nodes.mass) + bytes(triangles) + bytes(bodies) + bytes(edges) + bytes(node_of_mesh) + bytes(contacts) +
                  bytes(origins) + bytes(points) + bytes(bonds.un_m) * 9.0 + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) +
-                 bytes(pressure_edges) + bytes(body_work) + bytes(weight);
+                 bytes(pressure_edges) + bytes(body_work) + bytes(weight) + own_laws.memory_bytes();
     sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.line_of_edge) + bytes(packs.lines) + bytes(packs.inverse_cross) +
            bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0 + bytes(packs.normal_x) * 2.0 + bytes(packs.rigid);
     return sum;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "feldspar/model/assembly.hpp"
+#include "feldspar/model/heterogeneity_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -14,8 +15,10 @@ namespace feldspar {
 ///   inner particles   a rigid disc for each particle of the filling, joined inside its grain by unbreakable elastic contacts
 /// Flexible and rigid grains get a bonded contact on each interior cell edge, with three Lobatto points (areas 1/6, 2/3, 1/6) or
 /// one; inner particles the one-point contacts across the edges, whose areas add up to the edge's.
-/// @throws InputError  inner particles are asked for, but the specimen is not filled
-Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact);
+/// Where grains or contacts of the rock differ, grains get elastic constants and densities of their own, and all contacts between grains laws of
+/// their own; inside a grain of inner particles the stiffness is that of its mineral's contacts.
+/// @throws InputError  inner particles are asked for, but the specimen is not filled; a rock that does not suit the specimen (texture.hpp)
+Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact, const Heterogeneity& rock = {});
 
 /// The side of a contact that hangs on these nodes of a body. @param edge  into Assembly::edges, -1 of a disc or a plate
 ContactSide side_of(const Assembly& assembly, int body, const SideNodes& node, int edge);

@@ -18,6 +18,7 @@
 #include "feldspar/base/vec2.hpp"
 #include "feldspar/laws/bond.hpp"
 #include "feldspar/laws/plane_elasticity.hpp"
+#include "feldspar/model/own_laws.hpp"
 #include "feldspar/model/packs.hpp"
 #include "feldspar/model/spec.hpp"
 
@@ -93,6 +94,7 @@ struct Body {
     Vec2 normal;                                     ///< of a plate: from the specimen into it
     double volume_m3 = 0.0;                          ///< of a rigid body, for its real mass; of a disc its share of the grain
     double gyration_m2 = 0.0;                        ///< of a rigid body: moment of inertia over mass
+    double density_kg_m3 = 0.0;
 
     std::int32_t node(int local) const { return first_node + local * node_stride; }
     NodeNumbers nodes() const { return {first_node, node_count, node_stride}; }
@@ -128,7 +130,8 @@ struct Contact {
     double closing_distance_m = 0.0; ///< once broken, the contact is dropped beyond this distance of the centres
     std::int32_t first_point = 0;
     std::int32_t points = 0;
-    std::int32_t material = 0;       ///< into Assembly::laws
+    std::int32_t material = 0;       ///< its role; without a law of its own also its law: into Assembly::laws
+    std::int32_t own_law = -1;       ///< into Assembly::own_laws; -1: that of its role
     bool plate = false;              ///< side B is a plate
     bool flexible = false;           ///< side A is a flexible grain, and side B if it is no plate
     bool initial_shape = false;      ///< uses the shape functions of the undeformed state (fall-back)
@@ -160,7 +163,7 @@ struct InitialShape {
 };
 
 /// Notes how and when a point broke. Bodies that were joined over a free gap push each other from now on only when they meet.
-inline void note_break(ContactPoint& point, const BondLaw& law, BondEvent event, long long step, BondState& bond) {
+inline void note_break(ContactPoint& point, const BondLawOf<double>& law, BondEvent event, long long step, BondState& bond) {
     point.broken_step = step;
     point.broke_in_tension = event == BondEvent::broke_in_tension;
     point.lost_compression = event == BondEvent::broke_in_shear_losing_compression;
@@ -222,8 +225,9 @@ enum ContactRole : std::int32_t { between_grains = 0, at_plates = 1, inside_grai
 /// Everything that a test moves.
 struct Assembly {
     double thickness_m = 0.0;
-    PlaneElasticity elasticity;
-    std::array<BondLaw, contact_roles> laws;
+    std::vector<PlaneElasticity> elasticity;   ///< of flexible grains: one for all, or one each
+    std::array<BondLaw, contact_roles> laws;   ///< by role
+    OwnLaws own_laws;                          ///< of contacts between the grains of a rock whose contacts are not alike
     Nodes nodes;
     std::vector<Triangle> triangles;
     std::vector<Body> bodies;                  ///< the grains, or their inner particles; then the plates
@@ -244,6 +248,10 @@ struct Assembly {
     Array<Vec2> weight;                        ///< N, of each node: what gravity does; empty without gravity
     Packs packs;
 
+    const PlaneElasticity& elasticity_of(int body) const { return elasticity.size() == 1 ? elasticity.front() : elasticity[body]; }
+    BondLaw law_of(const Contact& contact) const {
+        return contact.own_law < 0 ? laws[contact.material] : BondLaw(bond_law(own_laws.form, own_laws.at(contact.own_law)));
+    }
     Vec2 centre(int body) const { return nodes.position(bodies[body].centre_node); }
     /// Rotation of a rigid body, rad.
     double rotation(const Body& body) const { return nodes.displacement[body.centre_node + 1].x / body.radius_m; }

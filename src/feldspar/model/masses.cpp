@@ -46,7 +46,7 @@ double size(const Assembly& assembly, const ContactSide& side, PlateAttachment::
 // Calls visit(kn, ks, n, weights of A, weights of B) for every point of a contact in the present state.
 template <class Visit>
 void visit_points(const Assembly& assembly, const Contact& contact, Visit visit) {
-    const BondLaw& law = assembly.laws[contact.material];
+    const BondLaw law = assembly.law_of(contact);
     const ContactFrame frame = contact_frame(assembly, contact);
     with_attachments(contact, [&]<class A, class B>() {
         const A a(assembly, contact.a);
@@ -62,10 +62,12 @@ void visit_points(const Assembly& assembly, const Contact& contact, Visit visit)
 // Row sums of |K_FE| of the assembled grain, a node's two rows.
 std::vector<Vec2> finite_element_row_sums(const Assembly& assembly) {
     std::vector<Vec2> sums(assembly.nodes.reference.size());
-    const double D11 = assembly.elasticity.D11, D12 = assembly.elasticity.D12, D33 = 0.5 * (D11 - D12);
     std::vector<double> K;
-    for (const Body& body : assembly.bodies) {
+    for (int b = 0; b < std::ssize(assembly.bodies); ++b) {
+        const Body& body = assembly.bodies[b];
         if (body.kind != BodyKind::flexible) continue;
+        const auto [D11, D12] = assembly.elasticity_of(b);
+        const double D33 = 0.5 * (D11 - D12);
         const int n = body.node_count, dofs = 2 * n;
         const auto local = [&](int node) { return (node - body.first_node) / body.node_stride; };
         K.assign(static_cast<std::size_t>(dofs) * dofs, 0.0);
@@ -207,6 +209,20 @@ void set_masses_by_tensors(Assembly& assembly, double factor) {
     }
 }
 
+// Of the bodies that are no plates.
+double mean_density(const Assembly& assembly) {
+    double first = 0.0, sum = 0.0;
+    int count = 0;
+    bool alike = true;
+    for (const Body& body : assembly.bodies) {
+        if (body.kind == BodyKind::plate) continue;
+        if (count++ == 0) first = body.density_kg_m3;
+        alike = alike && body.density_kg_m3 == first;
+        sum += body.density_kg_m3;
+    }
+    return alike ? first : sum / count;
+}
+
 double mean_grain_radius(const Assembly& assembly) {
     double sum = 0.0;
     int count = 0;
@@ -231,22 +247,22 @@ void set_scaled_masses(Assembly& assembly, MassBound bound, double factor) {
 namespace {
 
 // Of the nodes of grains and particles, kg; of a turn the moment of inertia over the radius squared.
-std::vector<double> real_masses(const Assembly& assembly, double density_kg_m3) {
+std::vector<double> real_masses(const Assembly& assembly) {
     std::vector<double> mass(assembly.nodes.reference.size(), 0.0);
-    for (const Triangle& triangle : assembly.triangles)
-        for (const int node : triangle.node) mass[node] += density_kg_m3 * triangle.volume_m3 / 3.0;
     for (const Body& body : assembly.bodies) {
+        for (int t = body.triangle_begin; t < body.triangle_end; ++t)
+            for (const int node : assembly.triangles[t].node) mass[node] += body.density_kg_m3 * assembly.triangles[t].volume_m3 / 3.0;
         if (body.kind != BodyKind::rigid) continue;
-        mass[body.centre_node] = density_kg_m3 * body.volume_m3;
-        mass[body.centre_node + 1] = density_kg_m3 * body.volume_m3 * body.gyration_m2 / (body.radius_m * body.radius_m);
+        mass[body.centre_node] = body.density_kg_m3 * body.volume_m3;
+        mass[body.centre_node + 1] = body.density_kg_m3 * body.volume_m3 * body.gyration_m2 / (body.radius_m * body.radius_m);
     }
     return mass;
 }
 
 }  // namespace
 
-Array<Vec2> weights(const Assembly& assembly, double density_kg_m3, Vec2 gravity_m_s2) {
-    std::vector<double> mass = real_masses(assembly, density_kg_m3);
+Array<Vec2> weights(const Assembly& assembly, Vec2 gravity_m_s2) {
+    std::vector<double> mass = real_masses(assembly);
     for (const Body& body : assembly.bodies)
         if (body.kind == BodyKind::rigid) mass[body.centre_node + 1] = 0.0;   // gravity turns nothing
     Array<Vec2> weight(mass.size());
@@ -254,8 +270,9 @@ Array<Vec2> weights(const Assembly& assembly, double density_kg_m3, Vec2 gravity
     return weight;
 }
 
-void set_real_masses(Assembly& assembly, double density_kg_m3) {
-    std::vector<double> mass = real_masses(assembly, density_kg_m3);
+void set_real_masses(Assembly& assembly) {
+    std::vector<double> mass = real_masses(assembly);
+    const double density_kg_m3 = mean_density(assembly);
     for (const PressureEdge& edge : assembly.pressure_edges)
         if (edge.plate_length_m > 0.0)
             mass[edge.node_a] = density_kg_m3 * edge.plate_length_m * assembly.thickness_m * mean_grain_radius(assembly);

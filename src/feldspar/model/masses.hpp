@@ -15,11 +15,11 @@ enum class MassBound { tensor, row_sum };
 void set_scaled_masses(Assembly& assembly, MassBound bound, double factor);
 
 /// Real masses: a third of each triangle's to each of its nodes; a rigid body's own, with its moment of inertia. A plate of a
-/// membrane weighs as much as a strip of the specimen behind it that is one mean grain radius thick.
-void set_real_masses(Assembly& assembly, double density_kg_m3);
+/// membrane weighs as much as a strip of rock of the mean density that is one mean grain radius thick.
+void set_real_masses(Assembly& assembly);
 
 /// What gravity does to each node, N, with the real masses of grains and particles; plates have no weight.
-Array<Vec2> weights(const Assembly& assembly, double density_kg_m3, Vec2 gravity_m_s2);
+Array<Vec2> weights(const Assembly& assembly, Vec2 gravity_m_s2);
 
 /// |N_i| sum|N_j| of the six shape functions of a contact point between flexible bodies: what its stiffness counts for at each
 /// node. @param b_moves  false if side B is a plate whose motion is imposed

@@ -55,7 +55,8 @@ bool has_own_normal(const Contact& contact) { return contact.edge_normal != Vec2
 // Contacts c and c + 1 may be lanes of one pack.
 bool alike(const Assembly& assembly, int c) {
     const Contact &l = assembly.contacts[c], &r = assembly.contacts[c + 1];
-    return l.points == r.points && l.material == r.material && l.flexible == r.flexible && has_own_normal(l) == has_own_normal(r) && l.plate == r.plate &&
+    const bool laws = l.own_law < 0 ? r.own_law < 0 : r.own_law == l.own_law + 1;
+    return laws && l.points == r.points && l.material == r.material && l.flexible == r.flexible && has_own_normal(l) == has_own_normal(r) && l.plate == r.plate &&
            (!l.plate || l.b.body == r.b.body);
 }
 
@@ -113,9 +114,16 @@ void index_grain_packs(Assembly& assembly) {
     packs.line_of_edge.assign(assembly.edges.size(), -1);
     packs.pack_of_body.assign(assembly.bodies.size(), -1);
     packs.forces.assign(packs.grains.size(), PackForces::own);
+    const bool alike = assembly.elasticity.size() <= 1;
+    for (auto* constants : {&packs.volumetric, &packs.deviatoric}) constants->assign(alike ? 0 : kMostLanes * packs.grains.size(), 0.0);
     int lines = 0;
     for (std::size_t p = 0; p < packs.grains.size(); ++p) {
         const GrainPack& pack = packs.grains[p];
+        for (int l = 0; l < pack.lanes && !alike; ++l) {
+            const PlaneElasticity& D = assembly.elasticity_of(pack.grain[l]);
+            packs.volumetric[kMostLanes * p + l] = 0.5 * assembly.thickness_m * (D.D11 + D.D12);
+            packs.deviatoric[kMostLanes * p + l] = 0.5 * assembly.thickness_m * (D.D11 - D.D12);
+        }
         packs.scale.resize(static_cast<std::size_t>(pack.first_triangle + pack.triangles() * pack.lanes));
         lines = pack.first_edge + pack.vertices * pack.lanes;
         for (int l = 0; l < pack.lanes; ++l) {
@@ -169,6 +177,7 @@ void find_contact_packs(Assembly& assembly) {
         pack.points = first.points;
         pack.first_state = assembly.points[first.first_point].state;
         pack.material = first.material;
+        pack.first_law = first.own_law;
         pack.rigid = !first.flexible;
         // The lanes' points stand right if those of the first point are consecutive and those of the second follow.
         const auto stands = [&](int lane, int lanes) {

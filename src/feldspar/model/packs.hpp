@@ -63,13 +63,14 @@ struct GrainPack {
 /// The grains of the mesh that have a common topology, in packs; numbers of nodes, edges and triangles from 0 on.
 std::vector<GrainPack> pack_grains(const GrainMesh& mesh);
 
-/// Consecutive contacts with equally many points of one material; all with a normal of their own, or none; if at a plate, all at the same.
+/// Consecutive contacts with equally many points of one material; all with laws of their own, or none; all with a normal of their own, or none; if at a plate, all at the same.
 struct ContactPack {
     std::int32_t first_contact = 0;
     std::int32_t lanes = 0;
     std::int32_t points = 0;
     std::int32_t first_state = 0;
     std::int32_t material = 0;
+    std::int32_t first_law = -1;      ///< of a pack whose contacts have laws of their own: into Assembly::own_laws
     std::int32_t first_normal = -1;   ///< of a pack whose contacts have a normal of their own, which are central: into Packs::normal_x, normal_y
     bool rigid = false;          ///< both sides are rigid bodies
     bool central = false;        ///< its contacts have one point, at the reference point
@@ -150,6 +151,7 @@ struct Packs {
     Array<RigidBody> rigid;                          ///< these
     std::vector<std::int32_t> more_of_rigid;         ///< slots of the contacts that a body has beyond kAtOnce as either side
     Array<double> scale;                             ///< of each triangle: 1 / (4 x area), 1/m2
+    Array<double> volumetric, deviatoric;            ///< kMostLanes a pack: (D11 + D12) t / 2 and (D11 - D12) t / 2 of each grain; empty where all grains are alike
     std::vector<std::int32_t> line_of_edge;          ///< of each GrainEdge of a flexible body
     std::int32_t line_of_first_body = 0;
     Array<SideLine> lines;                           ///< of the edges of flexible grains; then of the bodies

@@ -42,7 +42,16 @@ StateHash hash_state(const Assembly& assembly) {
             motion.add(assembly.nodes.displacement[n]);
             motion.add(assembly.nodes.velocity[n]);
         }
+    if (assembly.elasticity.size() > 1)
+        for (const auto& [D11, D12] : assembly.elasticity) {
+            motion.add(D11);
+            motion.add(D12);
+        }
     for (const Contact& contact : assembly.contacts) {
+        if (contact.own_law >= 0) {   // what was drawn
+            const LawConstants<double> law = assembly.own_laws.at(contact.own_law);
+            for (const double value : {law.Kn_Pa_m, law.Ks_Pa_m, law.x0_normal, law.x0_shear, law.x_fl_normal, law.x_fl_shear, law.mu}) bonds.add(value);
+        }
         breaks.add(contact.a.body);
         breaks.add(contact.b.body);
         breaks.add(contact.dropped);

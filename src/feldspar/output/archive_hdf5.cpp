@@ -230,7 +230,7 @@ void put_cracks(hid_t root, const std::vector<Crack>& cracks) {
     put(group, "energy", each<double>(cracks, [](const Crack& c) { return c.energy_J; }), 1, "J", "dissipated until the break");
 }
 
-void put_mesh(hid_t root, const GrainMesh& mesh) {
+void put_mesh(hid_t root, const GrainMesh& mesh, const std::vector<int>& phase_of_grain) {
     const Handle group = make_group(root, "mesh");
     std::vector<int> triangles;
     std::vector<int> grain(mesh.triangles.size(), 0);
@@ -242,6 +242,7 @@ void put_mesh(hid_t root, const GrainMesh& mesh) {
     put(group, "nodes", flat(mesh.nodes), 2, "m", "undeformed position of each node");
     put(group, "triangles", triangles, 3, "1", "three nodes each, counter-clockwise");
     put(group, "grain", grain, 1, "1", "grain of each triangle");
+    if (!phase_of_grain.empty()) put(group, "mineral", phase_of_grain, 1, "1", "of each grain, in the order of [[material.phase]]");
 }
 
 void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
@@ -274,7 +275,7 @@ std::string archive_bytes(const TestResult& result, const Job& job, const Proven
         put_provenance(root, result, job, provenance);
         put_history(root, result);
         put_cracks(root, result.cracks);
-        if (result.specimen) put_mesh(root, result.specimen->mesh);
+        if (result.specimen) put_mesh(root, result.specimen->mesh, result.texture.phase_of_grain);
         put_snapshots(root, result.snapshots);
     }
     require(H5Fflush(file, H5F_SCOPE_LOCAL));

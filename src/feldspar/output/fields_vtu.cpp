@@ -43,7 +43,7 @@ std::vector<float> floats_in_MPa(const std::vector<double>& values_Pa) {
 }
 
 /// What the grids of all snapshots have in common.
-VtuGrid undeformed_grains(const GrainMesh& mesh) {
+VtuGrid undeformed_grains(const GrainMesh& mesh, const std::vector<int>& phase_of_grain) {
     std::vector<double> points;
     for (const Vec2 node : mesh.nodes) points.insert(points.end(), {node.x, node.y, 0.0});
     std::vector<std::int32_t> corners;
@@ -55,6 +55,11 @@ VtuGrid undeformed_grains(const GrainMesh& mesh) {
     }
     VtuGrid grid(points, corners, VtkCell::triangle);
     grid.cell_data("grain", std::span<const std::int32_t>(grain));
+    if (!phase_of_grain.empty()) {
+        std::vector<std::int32_t> mineral;
+        for (const std::int32_t g : grain) mineral.push_back(phase_of_grain[static_cast<std::size_t>(g)]);
+        grid.cell_data("mineral", std::span<const std::int32_t>(mineral));
+    }
     return grid;
 }
 
@@ -136,7 +141,7 @@ void write_vtu(const RunDirectory& directory, const TestResult& result, int thre
     const std::string stem = test_stem(result);
     const std::string folder = stem + "-vtu/";
     const std::vector<CrackFaces> faces = find_crack_faces(*result.specimen, result.cracks);
-    const VtuGrid undeformed = undeformed_grains(result.specimen->mesh);
+    const VtuGrid undeformed = undeformed_grains(result.specimen->mesh, result.texture.phase_of_grain);
     const Times time = times(result.snapshots);
     std::string collection = fmt::format(
         "<?xml version=\"1.0\"?>\n<!-- {}; {}. Part 0: grains; part 1: cracks (mode 0 tensile, 1 shear; time = magnitude of the "

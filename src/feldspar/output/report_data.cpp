@@ -13,6 +13,7 @@
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/provenance_json.hpp"
+#include "feldspar/output/texture_json.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
 
@@ -199,6 +200,8 @@ Json test_json(const TestResult& result, std::size_t tests) {
     add(test["post_peak"], result, QuantityGroup::post_peak);
     add(test, result, QuantityGroup::elastic);
     add(test["sigma_ci"], result, QuantityGroup::initiation);
+    if (result.rock.any()) test["rock"] = texture_json(result);
+    test["crack_initiation"] = rounded(result.properties.sigma_ci_crack_volume_Pa * MPa);
     for (const QuantityGroup group : {QuantityGroup::damage, QuantityGroup::cracks, QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence,
                                       QuantityGroup::balance})
         add(test, result, group);

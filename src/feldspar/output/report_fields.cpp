@@ -6,6 +6,8 @@
 //   triangle_begin   int32    grains + 1
 //   vertex_count     int32    grains: the first so many nodes of a grain are its outline
 //   corners          uint16   three a triangle, counted from the grain's first node
+//   phase            uint8    grains: the mineral; only of a rock with minerals
+//   joint_ends       float32  x, y of both ends of the grain edges of joints (mm); only with joints
 //   crack_ends       float32  x, y of both ends (mm)
 //   crack_nodes      int32    two on face a, two on face b; -1 unknown
 //   crack_strain     float32  axial strain at the break, 10^-3
@@ -14,6 +16,7 @@
 //   u<n>             int16    all x, then all y, each as the difference from the node before; times `scale` (mm)
 //   damage<n>        uint8    0 ... 255 for 0 ... 1
 //   sigma1_<n>, sigma3_<n>  uint8  principal stresses: 0 ... 255 between the test's limits
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -89,6 +92,19 @@ void add_mesh(Block& block, const GrainMesh& mesh) {
     block.add("corners", "uint16", corners);
 }
 
+void add_texture(Block& block, Json& meta, const TestResult& result) {
+    const TextureSummary& texture = result.texture;
+    if (!texture.phase_of_grain.empty()) {
+        block.add("phase", "uint8", std::vector<std::uint8_t>(texture.phase_of_grain.begin(), texture.phase_of_grain.end()));
+        for (const Mineral& mineral : result.rock.minerals.phases) meta["minerals"].push_back({{"name", mineral.name}, {"colour", fmt::format("#{:06x}", mineral.colour)}});
+    }
+    if (texture.joint_edges.empty()) return;
+    std::vector<float> ends;
+    for (const auto& [from, to] : texture.joint_edges)
+        for (const double x : {from.x, from.y, to.x, to.y}) ends.push_back(static_cast<float>(x * 1e3));
+    block.add("joint_ends", "float32", ends);
+}
+
 void add_cracks(Block& block, const TestResult& result) {
     std::vector<float> ends, strain;
     std::vector<int> nodes;
@@ -130,7 +146,9 @@ double add_displacement(Block& block, const std::string& part, const std::vector
 
 ReportFields fields_of(const TestResult& result, std::size_t test, const std::vector<std::size_t>& chosen) {
     Block block;
+    ReportFields fields;
     add_mesh(block, result.specimen->mesh);
+    add_texture(block, fields.meta, result);
     add_cracks(block, result);
     std::vector<Principal> stresses;
     std::vector<double> all_1, all_3;
@@ -164,12 +182,11 @@ ReportFields fields_of(const TestResult& result, std::size_t test, const std::ve
                              {"cracks", std::clamp(snapshot.cracks, 0, static_cast<int>(result.cracks.size()))},
                              {"scale", scale}});
     }
-    ReportFields fields;
-    fields.meta = {{"test", test},
-                   {"sigma1", {rounded(limits_1.low), rounded(limits_1.high)}},
-                   {"sigma3", {rounded(limits_3.low), rounded(limits_3.high)}},
-                   {"snapshots", snapshots},
-                   {"parts", block.parts()}};
+    fields.meta.update(Json{{"test", test},
+                            {"sigma1", {rounded(limits_1.low), rounded(limits_1.high)}},
+                            {"sigma3", {rounded(limits_3.low), rounded(limits_3.high)}},
+                            {"snapshots", snapshots},
+                            {"parts", block.parts()}});
     fields.block = block.packed();
     return fields;
 }

@@ -12,6 +12,7 @@
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/provenance_json.hpp"
 #include "feldspar/output/results.hpp"
+#include "feldspar/output/texture_json.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
 
@@ -169,6 +170,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["quasi_static"] = std::string(1, result.evidence.grade);
     test["verdict"] = result.evidence.verdict;
     add(test, result, QuantityGroup::repeats);
+    if (result.rock.any()) test["rock"] = texture_json(result);
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
     add(test["energy_at_end"], result, QuantityGroup::energies);

@@ -40,10 +40,11 @@ void gather_at_centre(Assembly& assembly, const Body& body) {
 
 void add_triangles(Assembly& assembly, const Body& body) {
     const std::span<const Vec2> u = assembly.nodes.displacement;
+    const PlaneElasticity& D = assembly.elasticity_of(static_cast<int>(&body - assembly.bodies.data()));
     for (int t = body.triangle_begin; t < body.triangle_end; ++t) {
         const Triangle& triangle = assembly.triangles[t];
         const auto [i, j, k] = triangle.node;
-        const Mat2 P = first_piola_stress(assembly.elasticity, displacement_gradient(u, triangle));
+        const Mat2 P = first_piola_stress(D, displacement_gradient(u, triangle));
         const Vec2 fj = -triangle.volume_m3 * (P * triangle.gradient[0]), fk = -triangle.volume_m3 * (P * triangle.gradient[1]);
         assembly.nodes.force[j] += fj;
         assembly.nodes.force[k] += fk;

@@ -29,7 +29,7 @@ void forces_of_contact(Assembly& assembly, const Contact& contact, SlotForces& s
     const Vec2 s = rot90(frame.n);
     const AttachmentA a(assembly, contact.a);
     const AttachmentB b(assembly, contact.b);
-    const BondLaw& law = assembly.laws[contact.material];
+    const BondLaw law = assembly.law_of(contact);
 
     for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
         ContactPoint& point = assembly.points[p];

@@ -109,7 +109,7 @@ ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_fac
         if (d >= radii - pair.rest_overlap_m) return false;
         add_new_contact(assembly, pair.a, pair.b, pair.rest_overlap_m, radii);
         const int p = assembly.contacts.back().first_point;
-        changes.elastic_J += elastic_energy(assembly.laws[between_grains], assembly.points[p].area_m2, assembly.bond(p));
+        changes.elastic_J += elastic_energy(assembly.law_of(assembly.contacts.back()), assembly.points[p].area_m2, assembly.bond(p));
         if (mass_factor > 0.0) changes.kinetic_J += add_contact_mass(assembly, assembly.contacts.back(), mass_factor);
         ++changes.made;
         return true;
@@ -147,7 +147,7 @@ double follow_stiffness(Assembly& assembly, const Contact& contact, int p, const
     bool beyond = false;
     for (int i = 0; i < 3; ++i) beyond = beyond || a[i] > 1.1 * shape.covered_a[i] + 0.05 || b[i] > 1.1 * shape.covered_b[i] + 0.05;
     if (!beyond) return 0.0;
-    const BondLaw& law = assembly.laws[contact.material];
+    const BondLaw law = assembly.law_of(contact);
     const double per_share = 0.25 * mass_factor * assembly.points[p].area_m2 * std::max(law.Kn_Pa_m, law.Ks_Pa_m);
     double kinetic = cover(assembly, contact.a.node, a, shape.covered_a, per_share);
     if (b_is_grain) kinetic += cover(assembly, contact.b.node, b, shape.covered_b, per_share);

@@ -72,7 +72,7 @@ int body_count(const PlannedRun& run, const Specimen& specimen) {
 
 TestSetup setup_of(const PlannedRun& run, std::shared_ptr<const Specimen> specimen) {
     const Variant& variant = *run.variant;
-    return {std::move(specimen), variant.model, variant.grain, variant.contact, variant.numerics, *run.test};
+    return {std::move(specimen), variant.model, variant.grain, variant.contact, variant.numerics, *run.test, run.variant->rock};
 }
 
 }  // namespace feldspar

@@ -27,7 +27,7 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
         const Variant& variant = run.job.variants.front();
         TestSpec test = run.test();
         if (keep != Keep::all) test.snapshots = 0;
-        result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test}, control);
+        result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock}, control);
     }
     if (result.interrupted) return result;
     if (!finished_record(path, run)) remove_directory(path);

@@ -23,7 +23,7 @@ TEST(Masses, RealOnesAddUpToTheSpecimens) {
     const double whole_kg = kDensity * 0.02 * 0.03 * specimen->spec.thickness_m;
     for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
         Assembly assembly = of(*specimen, grains);
-        set_real_masses(assembly, kDensity);
+        set_real_masses(assembly);
         double sum_kg = 0.0;
         for (const Body& body : assembly.bodies) {
             if (body.kind == BodyKind::rigid) sum_kg += assembly.nodes.mass[body.centre_node];
@@ -38,7 +38,7 @@ TEST(Masses, RealOnesAddUpToTheSpecimens) {
 TEST(Masses, OfTheRotationIsTheMomentOfInertiaOverTheRadiusSquared) {
     const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.03));
     Assembly assembly = of(*specimen, GrainKind::rigid);
-    set_real_masses(assembly, kDensity);
+    set_real_masses(assembly);
     for (const Body& body : assembly.bodies) {
         const double mass_kg = assembly.nodes.mass[body.centre_node];
         EXPECT_NEAR(assembly.nodes.mass[body.centre_node + 1], mass_kg * body.gyration_m2 / (body.radius_m * body.radius_m), 1e-12 * mass_kg);

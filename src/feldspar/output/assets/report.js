@@ -157,8 +157,7 @@ function strainSeries(test) {
     const value = sign * magnitude;
     series.push({label: name, x: [left ? low : high, left ? high : low], y: [value, value], color, width: 1, dash: true, quiet: true, note: name, noteSide: left ? "left" : "right"});
   };
-  const initiation = Object.entries(test.sigma_ci).filter(([, v]) => v !== null);
-  if (initiation.length) level("\u03c3ci " + show(median(initiation.map(([, v]) => v))) + " (median of " + plural(initiation.length, "method") + ")", median(initiation.map(([, v]) => v)), "soft", true);
+  level("\u03c3ci " + show(test.crack_initiation), test.crack_initiation, "soft", true);
   level("\u03c3cd " + show(test.sigma_cd), test.sigma_cd, "soft", false);
   return series;
 }
@@ -193,6 +192,15 @@ function gaugeSeries(tests, chosen, g) {
   const t = tests[chosen], line = (test, more) => ({x: test.gauges[g].values, y: test.gauges[g].load, ...more});
   return [...tests.filter((other) => other !== t && other.gauges[g]).map((o, i) => line(o, {label: i ? "packing " + o.seed : "other packings", color: "context", width: 1.3, quiet: i > 0})),
     line(t, {label: "packing " + t.seed, color: "ink", width: 2.2})];
+}
+
+/** What the rock came to on this specimen: minerals, draws, joints. */
+function addRock(t, add) {
+  const r = t.rock;
+  for (const m of r.minerals || []) add(m.name, show(100 * m.area_share) + " % of the area (" + show(100 * m.wanted_share) + " % wanted), " + plural(m.grains, "grain"));
+  for (const d of r.draws || []) add("Scatter of " + d.quantity, "mean " + show(d.mean) + ", variation " + show(100 * d.variation) + " %, " + show(d.lowest) + " to " + show(d.highest) + " times, " + plural(d.count, d.quantity === "E" ? "grain" : "contact"));
+  if (r.initial_cracks) add("Before the test", r.initial_cracks.broken + " broken and " + r.initial_cracks.weakened + " weakened of " + plural(r.initial_cracks.contacts, "contact"));
+  for (const j of r.joints || []) add("Joint " + j.name, plural(j.contacts, "contact") + ", " + show(j.length_mm) + " mm of grain edges");
 }
 
 /** What a plate with a hole shows, in words. */
@@ -299,6 +307,7 @@ function testFacts(tests, updates) {
     if (branch.brittleness !== null) add("Behind the peak", "modulus " + show(branch.modulus) + " GPa, brittleness k1 " + show(branch.brittleness, 2) + (branch.brittleness < 1 ? " (class II)" : " (class I)"));
     if (branch.fracture !== null) add("Energy behind the peak", show(100 * branch.fracture, 2) + " % fracture, " + show(100 * branch.friction, 2) + " % friction, " + show(100 * branch.damping, 2) + " % damping");
     add("Cracks at the end", t.tensile + " tensile, " + t.shear + " shear");
+    if (t.rock) addRock(t, add);
     add("Ended because", t.stop_reason || "\u2013");
     add("Quasi-static", h("span", {}, h("span", {class: "grade " + t.grade}, t.grade), " " + t.verdict));
     add("Cost", t.steps.toLocaleString("en") + " steps, " + show(t.wall_s) + " s");
@@ -421,6 +430,8 @@ function writePattern() {
     }
     const key = (color, text) => h("span", {}, h("b", {style: "border-color:" + color}), text);
     crackKey.replaceChildren();
+    if (specimen && viewer.field === "grain") for (const m of specimen.meta.minerals || []) crackKey.append(key(m.colour, m.name));
+    if (specimen && specimen.parts.joint_ends) crackKey.append(key("var(--ink)", "joint before the test, dashed"));
     if (viewer.cracks === "mode") crackKey.append(key("var(--tensile)", "tensile crack"), key("var(--shear)", "shear crack"));
     if (viewer.cracks === "time") {
       const [first, last] = viewer.crackTimes(), colors = palette("viridis");

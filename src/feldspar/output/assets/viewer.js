@@ -208,7 +208,7 @@ class Viewer {
     if (t === undefined || t < 0) { this.readout.textContent = ""; return; }
     const s = this.specimen, n = this.snapshot;
     const value = (field) => { const [low, high] = s.meta[field]; return low + (s.parts[field + "_" + n][t] / 255) * (high - low); };
-    this.readout.textContent = "grain " + s.grain[t] + "  \u00b7  \u03c3\u2081 \u2248 " + show(value("sigma1")) + " MPa  \u00b7  \u03c3\u2083 \u2248 " +
+    this.readout.textContent = "grain " + s.grain[t] + (s.meta.minerals ? ", " + s.meta.minerals[s.parts.phase[s.grain[t]]].name : "") + "  \u00b7  \u03c3\u2081 \u2248 " + show(value("sigma1")) + " MPa  \u00b7  \u03c3\u2083 \u2248 " +
       show(value("sigma3")) + " MPa  \u00b7  damage " + show(s.parts["damage" + n][t] / 255, 2);
   }
 
@@ -241,6 +241,7 @@ class Viewer {
     ctx.clearRect(0, 0, width, height);
     ctx.putImageData(image, 0, 0);
     this.paintGrainEdges(ctx, px, py);
+    this.paintJoints(ctx);
     this.paintCracks(ctx, p);
     this.paintMarks(ctx, p);
     this.paintRuler(ctx);
@@ -249,8 +250,9 @@ class Viewer {
   triangleColors() {
     const s = this.specimen, n = this.snapshot, count = s.grain.length, colors = new Uint32Array(count);
     if (this.field === "grain") {
-      const [r, g, b] = rgb(theme.get("grain"));
+      const minerals = (s.meta.minerals || []).map((m) => rgb(m.colour)), plain = rgb(theme.get("grain"));
       for (let t = 0; t < count; ++t) {
+        const [r, g, b] = minerals.length ? minerals[s.parts.phase[s.grain[t]]] : plain;
         const shade = 1 - 0.075 * (((s.grain[t] * 2654435761) >>> 0) / 4294967296);   // neighbours differ a little
         colors[t] = (255 << 24) | (Math.round(b * shade) << 16) | (Math.round(g * shade) << 8) | Math.round(r * shade);
       }
@@ -279,6 +281,22 @@ class Viewer {
     ctx.strokeStyle = theme.get("edge");
     ctx.lineWidth = Math.min(1, 0.45 * this.dpr);
     ctx.stroke();
+  }
+
+  /** Joints where they were before the test, dashed. */
+  paintJoints(ctx) {
+    const ends = this.specimen.parts.joint_ends;
+    if (!ends) return;
+    ctx.beginPath();
+    for (let i = 0; i < ends.length; i += 4) {
+      ctx.moveTo(ctx.canvas.width / 2 + (ends[i] - this.cx) * this.scale, ctx.canvas.height / 2 - (ends[i + 1] - this.cy) * this.scale);
+      ctx.lineTo(ctx.canvas.width / 2 + (ends[i + 2] - this.cx) * this.scale, ctx.canvas.height / 2 - (ends[i + 3] - this.cy) * this.scale);
+    }
+    ctx.strokeStyle = theme.get("ink");
+    ctx.lineWidth = 1.4 * this.dpr;
+    ctx.setLineDash([4 * this.dpr, 3 * this.dpr]);
+    ctx.stroke();
+    ctx.setLineDash([]);
   }
 
   paintCracks(ctx, positions) {

@@ -1,0 +1,13 @@
+// What a rock with minerals, scatter or joints came to on a specimen, for summary.json and the report.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "feldspar/methods/result.hpp"
+
+namespace feldspar {
+
+/// minerals, pairs, draws, initial cracks, joints: what the rock has of them; an empty object of an even rock.
+nlohmann::ordered_json texture_json(const TestResult& result);
+
+}  // namespace feldspar
