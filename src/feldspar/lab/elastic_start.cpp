@@ -83,6 +83,7 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
     Array<Vec2> force_before = nodes.force, velocity_before = nodes.velocity;
     PlatenWork none;
     Relaxation result;
+    double largest_contacts = 0.0;
     StepSequence steps(assembly, team);   // in between nodes are only read
     while (result.steps < maximum_steps && !(stop && stop())) {
         force_before = nodes.force;
@@ -100,7 +101,13 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
         }
         if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9, kOfCritical * 2.0 * std::sqrt(stiffness / inertia));
         if (result.steps % 10 == 0) {
+            constexpr double kNothing = 1e-6;   // of the largest: a body that nothing holds together, behind an open joint, has come to rest without force
             const double contacts = mean_contact_force(assembly);
+            largest_contacts = std::max(largest_contacts, contacts);
+            if (contacts < kNothing * largest_contacts) {
+                result.converged = true;
+                break;
+            }
             result.residual = contacts > 0.0 ? force / nodes.count() / contacts : kNever;
             if (!std::isfinite(force)) break;
             if (result.residual < tolerance) {

@@ -131,6 +131,12 @@ bool is_end_of_elastic_phase(double damage_factor, double nearly, double maximum
     return damage_factor > 1.0 && (damage_factor < nearly || std::abs(maximum_factor - 1.0) < 1e-3);
 }
 
+// Contacts between grains that are broken before the test, perhaps open: the answer is not linear.
+bool has_cracks(const Assembly& assembly) {
+    return std::any_of(assembly.contacts.begin(), assembly.contacts.end(),
+                       [&](const Contact& contact) { return !contact.plate && assembly.bonds.damage[assembly.points[contact.first_point].state] >= 1.0; });
+}
+
 // Axial loading of the relaxed state `base` up to the maximum stress or just below the first damage; sets B. Platens that stay in touch.
 void elastic_loading(Experiment& e, const BodyState& base) {
     const double force_before = platen_force(e), quantity_before = quantity_at_base(e);
@@ -145,6 +151,13 @@ void elastic_loading(Experiment& e, const BodyState& base) {
         if (attempt > 0 && is_end_of_elastic_phase(factor, 1.05, most)) break;
         go_to(e, superpose(base, reached, std::min(kBelowDamage * factor, most)));
         relax_or_throw(e);
+    }
+    if (has_cracks(e.assembly)) {   // they may have slid: not beyond the first damage
+        const BodyState reached = capture(e.assembly, e.platen_travel_m);
+        if (const double factor = first_damage(e.assembly, base, reached); factor <= 1.0) {
+            go_to(e, superpose(base, reached, 0.9 * factor));
+            relax_or_throw(e);
+        }
     }
     set_loading_mode(e, base, capture(e.assembly, e.platen_travel_m));
 }
@@ -181,6 +194,22 @@ void balance(Experiment& e) {
     }
 }
 
+// A first motion; where the specimen gives way without force, because open joints close, a larger one, until it resists.
+template <class Move, class Settle>
+BodyState first_motion(Experiment& e, double first_m, double force_unloaded, Move move, Settle settle) {
+    constexpr int kMost = 12;          // doublings: an opening of up to 4000 times the first motion
+    constexpr double kResists = 0.01;  // of what a body without joints would
+    move(first_m);
+    BodyState reached = settle();
+    if (!has_cracks(e.assembly)) return reached;
+    for (int k = 0; k < kMost && std::abs(platen_force(e) - force_unloaded) < kResists * e.axial_stiffness * first_m; ++k) {
+        first_m *= 2.0;
+        move(first_m);
+        reached = settle();
+    }
+    return reached;
+}
+
 // Where contacts close on the way the answer is not linear, so scale and relax several times; B from the last two states. Beside dead loads the first
 // motion is small against them: a specimen that they alone hold may slide.
 void elastic_contacts(Experiment& e) {
@@ -195,9 +224,8 @@ void elastic_contacts(Experiment& e) {
     };
     double first_m = kFirstStrain * e.length_m;
     if (e.has_dead_loads()) first_m = std::min(first_m, kFirstLoad * e.dead_load_N / e.axial_stiffness);
-    if (e.method.start.strained_evenly) add_affine(e, first_m);
-    else move_fixtures(e, first_m);
-    BodyState reached = settle(kOnTheWay);
+    const auto move = [&](double travel_m) { e.method.start.strained_evenly ? add_affine(e, travel_m) : move_fixtures(e, travel_m); };
+    BodyState reached = first_motion(e, first_m, force_unloaded, move, [&] { return settle(kOnTheWay); });
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded: its fixtures do not strain it");
@@ -231,7 +259,9 @@ void elastic_contacts(Experiment& e) {
     go_to(e, reached);
     relax_or_throw(e);
     set_loading_mode(e, below, capture(e.assembly, e.platen_travel_m));
-    if (e.method.start.time_of_mode) learn_time_of_mode(e, (platen_force(e) - force_below) / (reached.platen_travel_m - below.platen_travel_m));
+    const double force_change = platen_force(e) - force_below, travel_change = reached.platen_travel_m - below.platen_travel_m;
+    if (e.method.start.time_of_mode) learn_time_of_mode(e, force_change / travel_change);
+    else learn_from(e, force_change, travel_change);
 }
 
 // Isotropic stress by superposition: lateral pressure, and platen travel until the platens carry the same stress.
@@ -394,7 +424,8 @@ void prepare_adaptive(Experiment& e) {
         forget_relaxation_work(e);
         if (elastic) {
             note_consolidated(e);
-            elastic_loading(e, capture(e.assembly, e.platen_travel_m));
+            if (has_cracks(e.assembly) && !e.confined()) elastic_contacts(e);
+            else elastic_loading(e, capture(e.assembly, e.platen_travel_m));
         } else {
             const StoredEnergy before = stored_energy(e.assembly, 0.0);
             e.elastic_start_J = before.grains_J + before.contacts_J;

@@ -156,7 +156,11 @@ void Recorder::collect_cracks() {
         crack.to = p0 + share.to * (p1 - p0);
         crack.place = p0 + share.middle * (p1 - p0);
         crack.area_m2 = point.area_m2;
-        crack.energy_J = e_.assembly.bond(f.point).fracture_J;
+        crack.energy_J = point.broken_J;
+        const BondState bond = e_.assembly.bond(f.point);
+        crack.normal = contact_frame(e_.assembly, contact).n;
+        crack.opening_m = bond.un_m;
+        crack.slip_m = bond.us_m;
         ++(crack.mode == CrackMode::tensile ? now_.tensile : now_.shear);
         result_.cracks.push_back(crack);
         now_.crack_points.push_back(f.point);

@@ -73,6 +73,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
         }
         if (setup.numerics.kind == NumericsKind::adaptive && e.computed_start) recorder.elastic_phase(from);
         result.travel_time = e.travel_time;
+        result.travel_steps = e.travel_time / e.settings.dt;
         load(e, recorder, result);
     } catch (const Interrupted&) {
         result.interrupted = true;
@@ -80,6 +81,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     }
     result.preparation_steps = e.preparation_steps;
     result.travel_time = e.travel_time;
+    result.travel_steps = e.travel_time / e.settings.dt;
     result.threads = e.team.size();
     recorder.finish();
     result.vanished_compressions = count_vanished(e.assembly);

@@ -76,6 +76,8 @@ struct Crack {
     Vec2 from, to;         ///< m, undeformed: the share of the grain edge that this point stands for
     double area_m2 = 0.0;
     double energy_J = 0.0; ///< dissipated at this point until it broke
+    Vec2 normal;           ///< from grain a to grain b, when it was recorded
+    double opening_m = 0.0, slip_m = 0.0;   ///< of grain b against a, along the normal and across it (rot90), then
 };
 
 /// Fields at one moment.
@@ -262,6 +264,7 @@ struct TestResult {
     double angular_momentum_loss = 0.0;   ///< moment lost by them, relative to the contact moments
     long long vanished_compressions = 0;  ///< points whose compression vanished at damage 1 (model, section 5)
     int new_contacts = 0;                 ///< frictional contacts made after detachment
+    double travel_steps = 0.0;            ///< of a wave over the height, in steps
     double travel_time = 0.0;             ///< of a wave over the height, steps (dynamic: s)
     double stable_omega2 = 0.0;           ///< largest omega^2 dt^2 of the initial state
     double stable_limit = 0.0;            ///< its bound for this damping

@@ -152,6 +152,7 @@ struct ContactPoint {
     double free_gap_m = 0.0;       ///< between the circles of two bonded discs that do not touch; 0 for facing edges
     std::int32_t state = -1;       ///< where its bond stands in Assembly::bonds
     long long broken_step = -1;    ///< step at which damage became 1; -1: not broken, or broken from the start
+    double broken_J = 0.0;         ///< what it had dissipated by then
     bool broke_in_tension = false;
     bool lost_compression = false; ///< compression left at an open gap vanished when it broke
 };
@@ -168,6 +169,7 @@ inline void note_break(ContactPoint& point, const BondLawOf<double>& law, BondEv
     point.broke_in_tension = event == BondEvent::broke_in_tension;
     point.lost_compression = event == BondEvent::broke_in_shear_losing_compression;
     if (point.free_gap_m > 0.0) free_gap(law, point.area_m2, point.free_gap_m, bond);
+    point.broken_J = bond.fracture_J;
 }
 
 /// The bonds of all contact points, quantity by quantity (BondState).

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/output/event_columns.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -228,6 +229,21 @@ void put_cracks(hid_t root, const std::vector<Crack>& cracks) {
     put(group, "to", points([](const Crack& c) { return c.to; }), 2, "m", "its end");
     put(group, "area", each<double>(cracks, [](const Crack& c) { return c.area_m2; }), 1, "m2", "area of the contact point");
     put(group, "energy", each<double>(cracks, [](const Crack& c) { return c.energy_J; }), 1, "J", "dissipated until the break");
+    put(group, "normal", points([](const Crack& c) { return c.normal; }), 2, "1", "from grain_a to grain_b, when it was recorded");
+    put(group, "opening", each<double>(cracks, [](const Crack& c) { return c.opening_m; }), 1, "m", "along the normal, when it was recorded");
+    put(group, "slip", each<double>(cracks, [](const Crack& c) { return c.slip_m; }), 1, "m", "of grain_b across the normal (a quarter turn to the left), when it was recorded");
+}
+
+void put_events(hid_t root, const TestResult& result) {
+    const AcousticEmission emission = acoustic_emission(result);
+    if (emission.events.empty()) return;
+    const Handle group = make_group(root, "events");
+    for (const EventColumn& column : event_columns()) {
+        std::vector<double> values;
+        for (const AcousticEvent& event : emission.events) values.push_back(column.value(event));
+        if (column.whole) put(group, column.name, std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit, column.meaning);
+        else put(group, column.name, values, 1, column.unit, column.meaning);
+    }
 }
 
 void put_mesh(hid_t root, const GrainMesh& mesh, const std::vector<int>& phase_of_grain) {
@@ -275,6 +291,7 @@ std::string archive_bytes(const TestResult& result, const Job& job, const Proven
         put_provenance(root, result, job, provenance);
         put_history(root, result);
         put_cracks(root, result.cracks);
+        put_events(root, result);
         if (result.specimen) put_mesh(root, result.specimen->mesh, result.texture.phase_of_grain);
         put_snapshots(root, result.snapshots);
     }

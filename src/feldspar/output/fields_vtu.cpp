@@ -9,6 +9,7 @@
 
 #include "feldspar/base/parallel.hpp"
 #include "feldspar/output/crack_geometry.hpp"
+#include "feldspar/output/event_columns.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -116,6 +117,26 @@ std::string cracks_vtu(const TestResult& result, const std::vector<CrackFaces>& 
     return grid.file(comment);
 }
 
+/// Acoustic events up to a moment, as points.
+std::string events_vtu(const AcousticEmission& emission, const Snapshot& snapshot, const std::string& comment) {
+    std::vector<double> points;
+    std::vector<std::int32_t> vertices;
+    std::vector<const AcousticEvent*> until;
+    for (const AcousticEvent& event : emission.events)
+        if (event.first_step <= snapshot.step) until.push_back(&event);
+    for (const AcousticEvent* event : until) {
+        vertices.push_back(static_cast<std::int32_t>(vertices.size()));
+        points.insert(points.end(), {event->place.x, event->place.y, 0.0});
+    }
+    VtuGrid grid(points, vertices, VtkCell::vertex);
+    for (const EventColumn& column : event_columns()) {
+        std::vector<float> values;
+        for (const AcousticEvent* event : until) values.push_back(static_cast<float>(column.value(*event)));
+        grid.cell_data(column.name, values);
+    }
+    return grid.file(comment);
+}
+
 /// ParaView needs times that always grow: the magnitude of the axial strain, or the snapshot's number where it does not.
 struct Times {
     std::vector<double> values;
@@ -142,15 +163,17 @@ void write_vtu(const RunDirectory& directory, const TestResult& result, int thre
     const std::string folder = stem + "-vtu/";
     const std::vector<CrackFaces> faces = find_crack_faces(*result.specimen, result.cracks);
     const VtuGrid undeformed = undeformed_grains(result.specimen->mesh, result.texture.phase_of_grain);
+    const AcousticEmission emission = acoustic_emission(result);
     const Times time = times(result.snapshots);
     std::string collection = fmt::format(
         "<?xml version=\"1.0\"?>\n<!-- {}; {}. Part 0: grains; part 1: cracks (mode 0 tensile, 1 shear; time = magnitude of the "
         "axial "
-        "strain at the break). timestep = {}. -->\n"
+        "strain at the break); part 2: acoustic events. timestep = {}. -->\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
         stem, sign_convention, time.meaning);
     const auto grains_file = [&](std::size_t n) { return fmt::format("{}grains-{:03}.vtu", folder, n); };
     const auto cracks_file = [&](std::size_t n) { return fmt::format("{}cracks-{:03}.vtu", folder, n); };
+    const auto events_file = [&](std::size_t n) { return fmt::format("{}events-{:03}.vtu", folder, n); };
     side_by_side(static_cast<int>(result.snapshots.size()), threads, [&](int number) {
         const auto n = static_cast<std::size_t>(number);
         const Snapshot& snapshot = result.snapshots[n];
@@ -159,10 +182,12 @@ void write_vtu(const RunDirectory& directory, const TestResult& result, int thre
                                                 snapshot.axial_strain, sign_convention);
         directory.write_text(grains_file(n), grains_vtu(undeformed, snapshot, comment));
         directory.write_text(cracks_file(n), cracks_vtu(result, faces, snapshot, comment));
+        directory.write_text(events_file(n), events_vtu(emission, snapshot, comment));
     });
     for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
         collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}\"/>\n", time.values[n], grains_file(n));
         collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"1\" file=\"{}\"/>\n", time.values[n], cracks_file(n));
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"2\" file=\"{}\"/>\n", time.values[n], events_file(n));
     }
     directory.write_text(stem + ".pvd", collection + "</Collection>\n</VTKFile>\n");
 }

@@ -74,7 +74,10 @@ struct FailedTest {
 /// history-<stem>.csv: units and sign convention in the header.
 void write_history_csv(const RunDirectory& directory, const TestResult& result, const Provenance& provenance);
 
-/// <stem>.h5: history, cracks, mesh and fields at the snapshots, with provenance.
+/// events-<stem>.csv: the acoustic events of a test; no file without cracks.
+void write_events_csv(const RunDirectory& directory, const TestResult& result);
+
+/// <stem>.h5: history, cracks, acoustic events, mesh and fields at the snapshots, with provenance.
 void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance);
 
 /// <stem>.pvd with <stem>-vtu/*.vtu: triangles with stress and damage, cracks as lines with mode, time and opening. The snapshots are

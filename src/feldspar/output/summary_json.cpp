@@ -50,6 +50,7 @@ Json files_json(const RunDirectory& directory, const std::string& stem) {
     add("history", "history-" + stem + ".csv");
     add("archive", stem + ".h5");
     add("paraview", stem + ".pvd");
+    add("events", "events-" + stem + ".csv");
     return files;
 }
 
@@ -171,6 +172,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["verdict"] = result.evidence.verdict;
     add(test, result, QuantityGroup::repeats);
     if (result.rock.any()) test["rock"] = texture_json(result);
+    test["acoustic_emission"] = acoustic_emission_json(result);
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
     add(test["energy_at_end"], result, QuantityGroup::energies);

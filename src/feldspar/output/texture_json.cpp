@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/output/report_data.hpp"
 
 namespace feldspar {
@@ -24,6 +29,32 @@ nlohmann::ordered_json texture_json(const TestResult& result) {
     for (std::size_t j = 0; j < result.rock.joints.size() && j < texture.joint_contacts.size(); ++j)
         json["joints"].push_back({{"name", result.rock.joints[j].name}, {"contacts", texture.joint_contacts[j]}, {"length_mm", rounded(1e3 * texture.joint_lengths_m[j])}});
     return json;
+}
+
+nlohmann::ordered_json acoustic_emission_json(const TestResult& result) {
+    using Json = nlohmann::ordered_json;
+    const AcousticEmission emission = acoustic_emission(result);
+    if (emission.events.empty()) return nullptr;
+    double energy_J = 0.0, largest = std::numeric_limits<double>::quiet_NaN();
+    int shear = 0, tensile = 0, largest_cracks = 0;
+    for (const AcousticEvent& event : emission.events) {
+        energy_J += event.energy_J;
+        if (std::isfinite(event.magnitude) && !(event.magnitude <= largest)) largest = event.magnitude;
+        largest_cracks = std::max(largest_cracks, event.cracks);
+        shear += std::abs(event.isotropy) <= 30.0;
+        tensile += event.isotropy > 30.0;
+    }
+    Json counts = Json::array();
+    for (const double radius : {2.0, 3.0, usual_event_radius}) {
+        const AcousticEmission other = acoustic_emission(result, radius);
+        counts.push_back({{"radius_grains", radius}, {"events", other.events.size()}, {"b_value", rounded(other.b_value.b)}});
+    }
+    const double count = static_cast<double>(emission.events.size());
+    return {{"radius_mm", rounded(1e3 * emission.radius_m)}, {"window_steps", rounded(emission.window_steps)}, {"events", emission.events.size()},
+            {"energy_J", rounded(energy_J)}, {"largest_magnitude", rounded(largest)}, {"most_cracks", largest_cracks}, {"tensile_share", rounded(tensile / count)},
+            {"shear_share", rounded(shear / count)}, {"b_value", rounded(emission.b_value.b)}, {"b_error", rounded(emission.b_value.error)},
+            {"completeness_magnitude", rounded(emission.b_value.completeness)}, {"events_above_it", emission.b_value.events},
+            {"fractal_dimension", rounded(emission.fractal_dimension)}, {"other_radii", counts}};
 }
 
 }  // namespace feldspar

@@ -94,7 +94,7 @@ std::string VtuGrid::array(const std::string& name, std::span<const Number> valu
 }
 
 VtuGrid::VtuGrid(std::span<const double> points, std::span<const std::int32_t> cells, VtkCell type) {
-    const std::size_t corners = type == VtkCell::line ? 2 : 3;
+    const std::size_t corners = type == VtkCell::vertex ? 1 : type == VtkCell::line ? 2 : 3;
     point_count_ = points.size() / 3;
     cell_count_ = cells.size() / corners;
     std::vector<std::int64_t> offsets(cell_count_);

@@ -9,14 +9,14 @@
 
 namespace feldspar {
 
-enum class VtkCell : std::uint8_t { line = 3, triangle = 5 };
+enum class VtkCell : std::uint8_t { vertex = 1, line = 3, triangle = 5 };
 
 /// Collects points, cells and data arrays, then gives the file. All cells have one type. Arrays are compressed as they come, so
 /// a copy of a grid shares that work: what all snapshots have in common is added before the copy is made.
 class VtuGrid {
 public:
     /// @param points  x, y, z of each point, m
-    /// @param cells   point numbers, 2 for each line or 3 for each triangle
+    /// @param cells   point numbers, 1 for each vertex, 2 for each line or 3 for each triangle
     VtuGrid(std::span<const double> points, std::span<const std::int32_t> cells, VtkCell type);
 
     /// `values` holds `components` numbers for each point, or for each cell.

@@ -144,6 +144,7 @@ public:
             result.variant = run.variant->name;
             if (!result.history.empty()) {   // else interrupted before the first row
                 write_history_csv(directory_, result, control_.provenance);
+                write_events_csv(directory_, result);
                 write_vtu(directory_, result, *run_control.more_threads);
             }
             return result;

@@ -194,6 +194,13 @@ function gaugeSeries(tests, chosen, g) {
     line(t, {label: "packing " + t.seed, color: "ink", width: 2.2})];
 }
 
+/** Acoustic emission in words. */
+function addEmission(t, add) {
+  const a = t.emission;
+  add("Acoustic emission", plural(a.events, "event") + " (" + a.other_radii.map((o) => o.events + " within " + o.radius_grains + " grains").join(", ") + "), " + show(100 * a.tensile_share, 2) + " % tensile, " + show(100 * a.shear_share, 2) + " % shear; largest magnitude " + show(a.largest_magnitude));
+  if (a.b_value !== null) add("b-value", show(a.b_value) + " \u00b1 " + show(a.b_error, 2) + " of " + a.events_above_it + " events from magnitude " + show(a.completeness_magnitude) + " on; fractal dimension " + show(a.fractal_dimension));
+}
+
 /** What the rock came to on this specimen: minerals, draws, joints. */
 function addRock(t, add) {
   const r = t.rock;
@@ -307,6 +314,7 @@ function testFacts(tests, updates) {
     if (branch.brittleness !== null) add("Behind the peak", "modulus " + show(branch.modulus) + " GPa, brittleness k1 " + show(branch.brittleness, 2) + (branch.brittleness < 1 ? " (class II)" : " (class I)"));
     if (branch.fracture !== null) add("Energy behind the peak", show(100 * branch.fracture, 2) + " % fracture, " + show(100 * branch.friction, 2) + " % friction, " + show(100 * branch.damping, 2) + " % damping");
     add("Cracks at the end", t.tensile + " tensile, " + t.shear + " shear");
+    if (t.emission) addEmission(t, add);
     if (t.rock) addRock(t, add);
     add("Ended because", t.stop_reason || "\u2013");
     add("Quasi-static", h("span", {}, h("span", {class: "grade " + t.grade}, t.grade), " " + t.verdict));

@@ -1,0 +1,135 @@
+#include "feldspar/lab/acoustic_emission.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "feldspar/base/regression.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Constants of the rock by which a crack's displacement becomes a moment: of flexible grains theirs; else what the test has shown.
+struct Lame {
+    double lambda = nan, G = nan;
+};
+
+Lame lame_of(const TestResult& result) {
+    const bool flexible = result.model.kind == GrainKind::flexible;
+    const double E = flexible ? result.grain.E_Pa : result.properties.E_initial_Pa, nu = flexible ? result.grain.nu : result.properties.nu_initial;
+    const double G = E / (2.0 * (1.0 + nu));
+    return {result.model.plane == PlaneState::strain ? 2.0 * G * nu / (1.0 - 2.0 * nu) : 2.0 * G * nu / (1.0 - nu), G};
+}
+
+// (P66) of one crack: its area, normal and the displacement of one face against the other.
+Mat2 moment_of(const Crack& crack, const Lame& rock) {
+    const Vec2 n = crack.normal, d = crack.opening_m * n + crack.slip_m * rot90(n);
+    const double trace = rock.lambda * crack.opening_m;
+    const double A = crack.area_m2;
+    return {A * (trace + 2.0 * rock.G * d.x * n.x), A * rock.G * (d.x * n.y + d.y * n.x), A * rock.G * (d.x * n.y + d.y * n.x), A * (trace + 2.0 * rock.G * d.y * n.y)};
+}
+
+// Magnitude, moment magnitude and R, once all cracks are in.
+void finish(AcousticEvent& event) {
+    if (event.energy_J > 0.0) event.magnitude = 2.0 / 3.0 * (std::log10(event.energy_J) - 4.8);
+    const Mat2& M = event.moment_Nm;
+    const double mean = 0.5 * (M.xx + M.yy), radius = std::hypot(0.5 * (M.xx - M.yy), M.xy);
+    const double M0 = std::sqrt(0.5 * ((mean + radius) * (mean + radius) + (mean - radius) * (mean - radius)));
+    if (!(M0 > 0.0)) return;
+    event.moment_magnitude = 2.0 / 3.0 * std::log10(M0) - 6.07;
+    event.isotropy = 100.0 * 2.0 * mean / (2.0 * std::abs(mean) + 2.0 * radius);
+}
+
+}  // namespace
+
+AcousticEmission acoustic_emission(const TestResult& result, double radius_grains) {
+    AcousticEmission emission;
+    if (!result.specimen || result.cracks.empty()) return emission;
+    emission.radius_m = radius_grains * result.specimen->quality.cell_sizes.mean_m;
+    emission.window_steps = emission.radius_m / result.length_m * result.travel_steps;
+    const Lame rock = lame_of(result);
+    std::vector<std::size_t> active;   // events that a crack may still join, the oldest first
+    for (const Crack& crack : result.cracks) {
+        std::erase_if(active, [&](std::size_t e) { return static_cast<double>(crack.step - emission.events[e].last_step) > emission.window_steps; });
+        std::size_t joined = emission.events.size();
+        double nearest = emission.radius_m;
+        for (const std::size_t e : active)
+            if (const double distance = norm(crack.place - emission.events[e].place); distance <= nearest) {
+                nearest = distance;
+                joined = e;
+            }
+        if (joined == emission.events.size()) {
+            emission.events.push_back({.first_step = crack.step, .axial_strain = crack.axial_strain, .axial_stress_Pa = crack.axial_stress_Pa});
+            active.push_back(joined);
+        }
+        AcousticEvent& event = emission.events[joined];
+        event.last_step = crack.step;
+        event.place = (1.0 / (event.cracks + 1)) * (static_cast<double>(event.cracks) * event.place + crack.place);
+        ++event.cracks;
+        event.shear_cracks += crack.mode == CrackMode::shear;
+        event.energy_J += crack.energy_J;
+        const Mat2 m = moment_of(crack, rock);
+        event.moment_Nm = {event.moment_Nm.xx + m.xx, event.moment_Nm.xy + m.xy, event.moment_Nm.yx + m.yx, event.moment_Nm.yy + m.yy};
+    }
+    std::vector<double> magnitudes;
+    std::vector<Vec2> places;
+    for (AcousticEvent& event : emission.events) {
+        finish(event);
+        if (std::isfinite(event.magnitude)) magnitudes.push_back(event.magnitude);
+        places.push_back(event.place);
+    }
+    const double completeness = magnitude_of_completeness(magnitudes);
+    const BValue fit = b_value(magnitudes, completeness);
+    if (fit.events >= fewest_events) emission.b_value = fit;
+    if (static_cast<int>(places.size()) >= fewest_events) emission.fractal_dimension = correlation_dimension(places);
+    return emission;
+}
+
+double magnitude_of_completeness(const std::vector<double>& magnitudes) {
+    constexpr double kBin = 0.1, kCorrection = 0.2;
+    std::map<long long, int> histogram;
+    for (const double m : magnitudes) ++histogram[std::llround(m / kBin)];
+    const auto most = std::max_element(histogram.begin(), histogram.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    return most == histogram.end() ? nan : kBin * static_cast<double>(most->first) + kCorrection;
+}
+
+BValue b_value(std::vector<double> magnitudes, double completeness, double bin) {
+    std::erase_if(magnitudes, [&](double m) { return !(m >= completeness - 1e-9); });
+    BValue fit;
+    fit.completeness = completeness;
+    fit.events = static_cast<int>(magnitudes.size());
+    if (fit.events < 2) return fit;
+    const double n = static_cast<double>(fit.events);
+    double mean = 0.0, squares = 0.0;
+    for (const double m : magnitudes) mean += m / n;
+    for (const double m : magnitudes) squares += (m - mean) * (m - mean);
+    const double above = mean - completeness;
+    if (!(above > 0.0)) return fit;
+    fit.b = bin > 0.0 ? std::log1p(bin / above) / (bin * std::numbers::ln10) : std::numbers::log10e / above;
+    fit.error = std::numbers::ln10 * fit.b * fit.b * std::sqrt(squares / (n * (n - 1.0)));
+    return fit;
+}
+
+double correlation_dimension(const std::vector<Vec2>& places) {
+    constexpr double kFrom = 0.05, kTo = 0.30;   // of the largest distance: below a few points decide, above the specimen's edge
+    constexpr int kRadii = 12;
+    std::vector<double> distances;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j) distances.push_back(norm(places[i] - places[j]));
+    if (distances.empty()) return nan;
+    std::sort(distances.begin(), distances.end());
+    std::vector<double> log_r, log_C;
+    for (int k = 0; k < kRadii; ++k) {
+        const double r = distances.back() * kFrom * std::pow(kTo / kFrom, static_cast<double>(k) / (kRadii - 1));
+        const auto closer = std::lower_bound(distances.begin(), distances.end(), r) - distances.begin();
+        if (closer == 0) continue;
+        log_r.push_back(std::log(r));
+        log_C.push_back(std::log(static_cast<double>(closer) / static_cast<double>(distances.size())));
+    }
+    return log_r.size() < 3 ? nan : regression_line(log_r, log_C).slope;
+}
+
+}  // namespace feldspar
