@@ -1,6 +1,7 @@
 // Rocks whose grains and contacts differ, against closed forms: mixtures, the weakest link, sliding, and that an even rock written as an uneven one is itself.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -158,6 +159,73 @@ TEST(Joints, ThatAreOpenCloseFirst) {
     EXPECT_LT(more, 2.5 * joint.opening_m / 0.06);
 }
 
+SpecimenSpec with_joint(double width_m, double height_m, double dip_deg) {
+    SpecimenSpec spec = fixtures::rectangle(width_m, height_m);
+    const double dip = dip_deg * std::numbers::pi / 180.0, reach = 0.51 * std::min(width_m / std::cos(dip), height_m / std::max(std::sin(dip), 1e-9));
+    const Vec2 centre{0.5 * width_m, 0.5 * height_m}, along{std::cos(dip), std::sin(dip)};
+    spec.outline.notches = {{centre - reach * along, centre + reach * along, 0.0, "plane", true}};
+    return spec;
+}
+
+JointSpec smooth_joint(const ContactMaterial& rock, double mu, double tau_Pa, double sigma_nt_Pa) {
+    JointSpec joint;
+    joint.name = "plane";
+    joint.cut = "plane";
+    joint.contact = rock;
+    joint.contact.mu = mu;
+    joint.contact.tau_Pa = tau_Pa;
+    joint.contact.sigma_nt_Pa = sigma_nt_Pa;
+    joint.contact.Gfn_J_m2 = 1.0;
+    joint.contact.Gfs_J_m2 = 30.0;
+    return joint;
+}
+
+// Jaeger's plane of weakness: a rock with a smooth joint slides on it where its normal is more than phi from the load; else it has its own strength.
+TEST(Joints, ThatAreSmoothFollowJaeger) {
+    constexpr double c = 5e6, mu = 0.57735;
+    for (const double beta_deg : {30.0, 45.0, 60.0, 75.0}) {
+        TestSetup setup = fixtures::setup(fixtures::make(with_joint(0.04, 0.08, beta_deg)), methods::uniaxial_compression);
+        setup.rock.joints = {smooth_joint(setup.contact, mu, c, 3e6)};
+        const TestResult r = run_test(setup, fixtures::threads(1));
+        const auto on_joint = [](const Crack& crack, double tan_beta) {   // distance from the line through the middle
+            return std::abs((crack.place.y - 0.04) - tan_beta * (crack.place.x - 0.02)) / std::sqrt(1.0 + tan_beta * tan_beta) < 1e-6;
+        };
+        const double beta = beta_deg * std::numbers::pi / 180.0;
+        if (beta_deg < 31.0) {
+            EXPECT_GT(r.properties.peak_stress_Pa, 90e6);   // 118 MPa without a joint
+            continue;
+        }
+        const double expected = 2.0 * c / ((1.0 - mu / std::tan(beta)) * std::sin(2.0 * beta));
+        EXPECT_NEAR(r.properties.peak_stress_Pa / expected, 1.0, 0.05) << beta_deg;
+        const auto until_peak = [&](const Crack& crack) { return crack.axial_stress_Pa > 0.5 * expected; };
+        const auto cracks = std::count_if(r.cracks.begin(), r.cracks.end(), until_peak);
+        const auto along = std::count_if(r.cracks.begin(), r.cracks.end(), [&](const Crack& crack) { return until_peak(crack) && on_joint(crack, std::tan(beta)); });
+        EXPECT_EQ(along, cracks) << beta_deg;   // sliding on the joint, not failure of the rock
+    }
+}
+
+// A smooth joint without cohesion in direct shear slides at its friction: mean forces along and across it while it slides.
+TEST(Joints, ThatAreSmoothSlideAtTheirFriction) {
+    for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
+        TestSetup setup = fixtures::setup(with_joint(0.04, 0.02, 0.0), methods::direct_shear, fixtures::model(grains));
+        setup.test = usual_test(methods::direct_shear);
+        setup.rock.joints = {smooth_joint(setup.contact, 0.5, 0.0, 0.0)};
+        setup.test.sigma3_Pa = 2e6;
+        setup.test.maximum_strain = 0.004;
+        setup.test.stop_fraction = 0.5;
+        const TestResult r = run_test(setup, fixtures::threads(1));
+        double along = 0.0, across = 0.0;
+        for (const HistoryRow& row : r.history)
+            if (row.phase == Phase::loading && row.axial_strain > 0.001) {
+                along += row.axial_stress_Pa * r.section_m2;
+                across += row.gauges[1];
+            }
+        // The edges of flexible grains tilt as they deform, and with them the planes on which they slide: measured 0.9968.
+        EXPECT_NEAR(along / across / 0.5, 1.0, grains == GrainKind::rigid ? 1e-3 : 5e-3) << name(grains);
+        EXPECT_NEAR(r.properties.peak_stress_Pa / 1e6, 1.0, 0.02) << name(grains);
+    }
+}
+
 // Every crack dissipates, and the events hold all of it.
 TEST(Cracks, DissipateEnergyAndEventsHoldAllOfIt) {
     TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.04, 0.08)), methods::uniaxial_compression);
@@ -179,6 +247,7 @@ TEST(Cracks, DissipateEnergyAndEventsHoldAllOfIt) {
 TEST(UnevenRock, HasTheSameBitsForAnyNumberOfThreads) {
     TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
     setup.rock = fixtures::uneven_rock();
+    setup.numerics.maximum_steps = 3000;
     const TestResult one = run_test(setup, fixtures::threads(1)), three = run_test(setup, fixtures::threads(3));
     EXPECT_EQ(one.properties.peak_stress_Pa, three.properties.peak_stress_Pa);
     ASSERT_EQ(one.cracks.size(), three.cracks.size());

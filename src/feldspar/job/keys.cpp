@@ -204,6 +204,7 @@ std::vector<JobKey> notch_keys() {
         {"to", point(), needed, "where it ends"},
         {"width", quantity(length, not_negative), needed, "`\"0 mm\"`: a cut whose faces touch, and nothing joins them"},
         {"label", text(), words("`\"notch-1\"`, `\"notch-2\"`, ..."), "label of its faces"},
+        {"joined", flag(), usual(0.0), "the faces of a cut of width 0 stay in contact: a smooth joint, to which a `[[material.joint]]` with `cut` gives its law; it may go through the specimen"},
     };
 }
 
@@ -222,6 +223,8 @@ std::vector<JobKey> grains_keys() {
     return {
         {"diameter", table("specimen.grains.diameter"), needed,
          "the distribution of diameters; of discs, which the cells exceed ([by how much](theory/specimen.md))"},
+        {"crystals", table("specimen.grains.diameter"), words("each grain is a crystal"),
+         "the distribution of diameters of crystals that consist of several grains each, and can break between them (`[material.crystal]`)"},
         {"porosity", number(below_one), usual(spec.porosity), "sets the number of grains only: the grains fill the plane"},
         {"merge_length", quantity(length, not_negative, {"auto", "none"}), usual_word("auto"),
          "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
@@ -269,6 +272,7 @@ std::vector<JobKey> material_keys() {
         {"contact", table("material.contact"), words("that of presets; else it must be given"), "the contacts between grains"},
         {"phase", tables("material.phase"), words("one mineral"), "the minerals of the rock ([theory](theory/heterogeneity.md))"},
         {"pair", tables("material.pair"), words("by `unlike` of `[material.minerals]`"), "contacts between two minerals, or of one with itself, where they differ from `[material.contact]`"},
+        {"crystal", table("material.crystal"), words("as `[material.contact]`"), "contacts inside crystals, where they differ from `[material.contact]`"},
         {"minerals", table("material.minerals"), words("at random"), "how the minerals lie in the specimen"},
         {"scatter", table("material.scatter"), none, "what scatters from contact to contact, or from grain to grain"},
         {"initial_cracks", table("material.initial_cracks"), none, "contacts that are not whole before the test"},
@@ -293,6 +297,7 @@ std::vector<JobKey> phase_keys() {
 std::vector<JobKey> pair_keys() {
     return {
         {"phases", list_of(text("two names of phases")), needed, "the two minerals; twice the same: contacts of a mineral with itself"},
+        {"inside", flag(), usual(0.0), "of a mineral with itself: the contacts inside its crystals, not those between two of them"},
         {"Kn", quantity(stiffness_gradient), words("that of `[material.contact]`"), "normal stiffness per area"},
         {"eta", number(positive), words("that of `[material.contact]`"), "shear over normal stiffness"},
         {"sigma_nt", quantity(stress), words("that of `[material.contact]`"), "tensile strength"},
@@ -301,6 +306,12 @@ std::vector<JobKey> pair_keys() {
         {"Gfn", quantity(fracture_energy), words("that of `[material.contact]`"), "fracture energy in tension"},
         {"Gfs", quantity(fracture_energy), words("that of `[material.contact]`"), "fracture energy in shear"},
     };
+}
+
+std::vector<JobKey> crystal_keys() {
+    std::vector<JobKey> keys = pair_keys();
+    std::erase_if(keys, [](const JobKey& key) { return key.name == "phases" || key.name == "inside"; });
+    return keys;
 }
 
 std::vector<JobKey> minerals_keys() {
@@ -333,7 +344,7 @@ std::vector<JobKey> scatter_keys() {
         }
         return {};
     };
-    for (const Scattered quantity : scattered_quantities) keys.push_back({name(quantity), table("material.scatter.quantity"), none, meaning(quantity)});
+    for (const Scattered quantity : scattered_quantities) keys.push_back({name(quantity), table("material.scatter.strength"), none, meaning(quantity)});
     keys.push_back({"energy_power", number({0.0, 10.0, true, true, "from 0 to 10"}), usual(spec.energy_power),
                     "a fracture energy is multiplied by the factor of its strength to this power: with 2 the softening scales as a whole, with 1 its displacements stay"});
     return keys;
@@ -363,12 +374,13 @@ std::vector<JobKey> initial_cracks_keys() {
 std::vector<JobKey> joint_keys() {
     return {
         {"name", text("1 to 40 letters, digits, '_' and '-'"), words("`\"joint-1\"`, `\"joint-2\"`, ..."), "the joint"},
-        {"trace", pairs_of(quantity(length, any_value), quantity(length, any_value)), words("`trace`, `file` or `set` must be given"), "a polyline of two points or more"},
-        {"file", text("a CSV or DXF file, its path relative to the job file"), words("`trace`, `file` or `set` must be given"),
-         "traces: CSV with a head `x1,y1,x2,y2` and lengths in m or in the `unit`, or DXF with LINE, LWPOLYLINE and POLYLINE"},
+        {"cut", text("the label of a notch with `joined = true`"), words("`trace`, `cut`, `file` or `set` must be given"), "a smooth joint: the faces of this cut"},
+        {"trace", pairs_of(quantity(length, any_value), quantity(length, any_value)), words("`trace`, `cut`, `file` or `set` must be given"), "a rough joint: a polyline of two points or more"},
+        {"file", text("a CSV or DXF file, its path relative to the job file"), words("`trace`, `cut`, `file` or `set` must be given"),
+         "rough joints: traces: CSV with a head `x1,y1,x2,y2` and lengths in m or in the `unit`, or DXF with LINE, LWPOLYLINE and POLYLINE"},
         {"unit", text("a unit of length such as \"mm\""), words("CSV: m; DXF: that of its $INSUNITS, which must be there"), "of the lengths in the file"},
         {"layer", text("a layer of the DXF file, or what stands in a column `set` of the CSV file"), words("all"), "which traces of the file"},
-        {"set", table("material.joint.set"), words("`trace`, `file` or `set` must be given"), "parallel traces, drawn from the seed"},
+        {"set", table("material.joint.set"), words("`trace`, `cut`, `file` or `set` must be given"), "rough joints: parallel traces, drawn from the seed"},
         {"Kn", quantity(stiffness_gradient), words("that of `[material.contact]`"), "normal stiffness per area"},
         {"eta", number(positive), words("that of `[material.contact]`"), "shear over normal stiffness"},
         {"sigma_nt", quantity(stress, not_negative), words("0"), "tensile strength"},
@@ -688,9 +700,10 @@ std::vector<KeyTable> all_tables() {
         {"material.contact", "[material.contact]", contact_keys()},
         {"material.phase", "[[material.phase]]", phase_keys()},
         {"material.pair", "[[material.pair]]", pair_keys()},
+        {"material.crystal", "[material.crystal]", crystal_keys()},
         {"material.minerals", "[material.minerals]", minerals_keys()},
         {"material.scatter", "[material.scatter]", scatter_keys()},
-        {"material.scatter.quantity", "[material.scatter] strength, ...", distribution_keys()},
+        {"material.scatter.strength", "[material.scatter] strength, ...", distribution_keys()},
         {"material.initial_cracks", "[material.initial_cracks]", initial_cracks_keys()},
         {"material.joint", "[[material.joint]]", joint_keys()},
         {"material.joint.set", "[[material.joint]] set", joint_set_keys()},

@@ -43,6 +43,10 @@ NotchSpec read_notch(const JobTable& table) {
     notch.to_m = table.point("to");
     notch.width_m = table.quantity("width");
     notch.label = table.text("label", "");
+    notch.joined = table.flag("joined");
+    table.check({"width", "joined"}, [&] {
+        if (notch.joined && notch.width_m > 0.0) table.fail("joined", "a slit with a width has no faces that touch", "joined = true beside width = \"0 mm\"");
+    });
     table.check({"from", "to"}, [&] {
         if (notch.from_m == notch.to_m) table.fail("to", "the notch ends where it begins", "two different points");
     });

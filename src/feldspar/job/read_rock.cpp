@@ -35,6 +35,13 @@ std::filesystem::path file_of(const JobTable& table, std::string_view key) {
     return given.is_absolute() ? given : std::filesystem::path(table.file()).parent_path() / given;
 }
 
+// What stands in the file that the key names. @throws InputError at the key if there is none
+std::string contents_of(const JobTable& table, std::string_view key, const std::filesystem::path& file, const char* what) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) table.fail(key, "there is no file " + shown(*table.find(key)), table.allowed(key));
+    return read_toml_file(file, what);
+}
+
 std::uint32_t read_colour(const JobTable& table, std::uint32_t otherwise) {
     if (!table.has("colour")) return otherwise;
     const std::string given = table.text("colour");
@@ -56,6 +63,7 @@ public:
         read_phases();
         read_pairs();
         read_minerals();
+        if (material_.has("crystal")) rock_.crystal = read_changes(material_.table("crystal"));
         read_scatter();
         read_initial_cracks();
         read_joints();
@@ -128,17 +136,24 @@ private:
                 if (both.size() != 2) table.fail("phases", fmt::format("{} minerals make no pair", both.size()), "two names");
                 pair.a = both[0];
                 pair.b = both[1];
+                pair.inside = table.flag("inside");
+                if (pair.inside && pair.a != pair.b) table.fail("inside", "two minerals have no contact inside a crystal", "one mineral with itself");
                 for (const PhasePair& other : rock_.minerals.pairs)
-                    if (std::minmax(other.a, other.b) == std::minmax(pair.a, pair.b)) table.fail("phases", "the pair is given twice", "each pair once");
+                    if (std::minmax(other.a, other.b) == std::minmax(pair.a, pair.b) && other.inside == pair.inside) table.fail("phases", "the pair is given twice", "each pair once");
             });
-            ContactChanges& c = pair.changes;
-            for (const auto& [key, value] : {std::pair{"Kn", &c.Kn_Pa_m}, std::pair{"sigma_nt", &c.sigma_nt_Pa}, std::pair{"tau", &c.tau_Pa}, std::pair{"Gfn", &c.Gfn_J_m2}, std::pair{"Gfs", &c.Gfs_J_m2}})
-                if (table.has(key)) *value = table.quantity(key);
-            for (const auto& [key, value] : {std::pair{"eta", &c.eta}, std::pair{"mu", &c.mu}})
-                if (table.has(key)) *value = table.number(key);
-            if (contact_.law == ContactLaw::brittle) table.refuse({"Gfn", "Gfs"}, "law = \"brittle\"", "strengths");
+            pair.changes = read_changes(table);
             rock_.minerals.pairs.push_back(pair);
         }
+    }
+
+    ContactChanges read_changes(const JobTable& table) const {
+        ContactChanges c;
+        for (const auto& [key, value] : {std::pair{"Kn", &c.Kn_Pa_m}, std::pair{"sigma_nt", &c.sigma_nt_Pa}, std::pair{"tau", &c.tau_Pa}, std::pair{"Gfn", &c.Gfn_J_m2}, std::pair{"Gfs", &c.Gfs_J_m2}})
+            if (table.has(key)) *value = table.quantity(key);
+        for (const auto& [key, value] : {std::pair{"eta", &c.eta}, std::pair{"mu", &c.mu}})
+            if (table.has(key)) *value = table.number(key);
+        if (contact_.law == ContactLaw::brittle) table.refuse({"Gfn", "Gfs"}, "law = \"brittle\"", "strengths");
+        return c;
     }
 
     void read_minerals() {
@@ -156,13 +171,13 @@ private:
             if (minerals.unlike != UnlikeRule::given) return;
             for (int a = 0; a < std::ssize(minerals.phases); ++a)
                 for (int b = a; b < std::ssize(minerals.phases); ++b)
-                    if (std::none_of(minerals.pairs.begin(), minerals.pairs.end(), [&](const PhasePair& pair) { return std::minmax(pair.a, pair.b) == std::minmax(a, b); }))
+                    if (std::none_of(minerals.pairs.begin(), minerals.pairs.end(), [&](const PhasePair& pair) { return !pair.inside && std::minmax(pair.a, pair.b) == std::minmax(a, b); }))
                         table.fail("unlike", fmt::format("the pair of \"{}\" and \"{}\" has no law", minerals.phases[a].name, minerals.phases[b].name), "a [[material.pair]] for each pair of minerals, and of each with itself", "unlike = \"weaker\" makes the missing ones");
         });
         if (table.has("map"))
             table.check({"map"}, [&] {
                 const std::filesystem::path file = file_of(table, "map");
-                const std::string contents = read_toml_file(file, "map");
+                const std::string contents = contents_of(table, "map", file, "map");
                 minerals.map = read_phase_map(contents, file, minerals.phases);
                 minerals.map_file = std::filesystem::absolute(file).string();
                 note_file(contents);
@@ -170,7 +185,7 @@ private:
         if (table.has("list"))
             table.check({"list"}, [&] {
                 const std::filesystem::path file = file_of(table, "list");
-                const std::string contents = read_toml_file(file, "list");
+                const std::string contents = contents_of(table, "list", file, "list");
                 minerals.list = read_phase_list(contents, file, minerals.phases);
                 minerals.list_file = std::filesystem::absolute(file).string();
                 note_file(contents);
@@ -235,9 +250,9 @@ private:
                 for (const JointSpec& other : rock_.joints)
                     if (other.name == joint.name) table.fail("name", fmt::format("\"{}\" is given twice", joint.name), "each joint a name of its own");
             });
-            const int ways = (table.has("trace") ? 1 : 0) + (table.has("file") ? 1 : 0) + (table.has("set") ? 1 : 0);
-            table.check({"trace", "file", "set"}, [&] {
-                if (ways != 1) table.fail("trace", ways == 0 ? "the joint has no place" : "the joint has several places", "one of: trace, file, set");
+            const int ways = (table.has("trace") ? 1 : 0) + (table.has("cut") ? 1 : 0) + (table.has("file") ? 1 : 0) + (table.has("set") ? 1 : 0);
+            table.check({"trace", "cut", "file", "set"}, [&] {
+                if (ways != 1) table.fail("trace", ways == 0 ? "the joint has no place" : "the joint has several places", "one of: trace, cut, file, set");
             });
             if (table.has("trace")) {
                 std::vector<Vec2> line;
@@ -250,12 +265,13 @@ private:
                 });
                 joint.lines_m.push_back(std::move(line));
             }
+            if (table.has("cut")) joint.cut = table.text("cut");
             if (table.has("file"))
                 table.check({"file", "unit", "layer"}, [&] {
                     const std::filesystem::path file = file_of(table, "file");
                     joint.unit = table.text("unit", "");
                     joint.layer = table.text("layer", "");
-                    const std::string contents = read_toml_file(file, "trace");
+                    const std::string contents = contents_of(table, "file", file, "trace");
                     TraceFile read = read_traces(contents, file, joint.unit, joint.layer);
                     joint.lines_m = std::move(read.lines_m);
                     joint.file = std::filesystem::absolute(file).string();

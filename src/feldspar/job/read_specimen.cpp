@@ -109,12 +109,12 @@ void read_sieve(const JobTable& table, GrainSizeSpec& sizes) {
     });
 }
 
-GrainSizeSpec read_grain_sizes(const JobTable& grains) {
-    const JobTable table = grains.table("diameter");
+GrainSizeSpec read_grain_sizes(const JobTable& grains, std::string_view key) {
+    const JobTable table = grains.table(key);
     GrainSizeSpec sizes;
     sizes.kind = table.choice("distribution", grain_size_kinds);
     if (!table.sound({"distribution"})) {
-        for (const char* key : {"minimum", "maximum", "median"}) table.quantity(key, 0.0);
+        for (const char* size : {"minimum", "maximum", "median"}) table.quantity(size, 0.0);
         return sizes;
     }
     table.suit("distribution", name(sizes.kind));
@@ -245,7 +245,8 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     spec.thickness_m = table.quantity("thickness");
 
     const JobTable grains = table.table("grains");
-    spec.grain_sizes = read_grain_sizes(grains);
+    spec.grain_sizes = read_grain_sizes(grains, "diameter");
+    if (grains.has("crystals")) spec.crystal_sizes = read_grain_sizes(grains, "crystals");
     spec.porosity = grains.number("porosity");
     spec.triangles_per_grain = static_cast<int>(grains.integer("triangles_per_grain"));
     if (!filled)
@@ -255,6 +256,10 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     else
         grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with " + condition_text(grains.rows().key("particles_per_grain")));
     if (table.sound({"shape", "width", "height", "diameter", "hole_diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
+    grains.check({"diameter", "crystals"}, [&] {
+        if (spec.crystal_sizes && typical_diameter_m(*spec.crystal_sizes) < 1.5 * typical_diameter_m(spec.grain_sizes))
+            grains.fail("crystals", "crystals are hardly larger than the grains that they consist of", "a mean diameter of at least 1.5 times that of the grains; 3 times makes about ten grains a crystal");
+    });
     check_cutouts(table, spec);
     read_merge_length(grains, spec);
 

@@ -75,7 +75,7 @@ void write_cutouts(Lines& out, const OutlineSpec& outline) {
     if (!items.empty()) out.raw("holes", list(items));
     items.clear();
     for (const NotchSpec& notch : outline.notches)
-        items.push_back(fmt::format("{{ from = {}, to = {}, width = {}{} }}", point(notch.from_m), point(notch.to_m), si(notch.width_m, Dimension::length), label(notch.label)));
+        items.push_back(fmt::format("{{ from = {}, to = {}, width = {}{}{} }}", point(notch.from_m), point(notch.to_m), si(notch.width_m, Dimension::length), label(notch.label), notch.joined ? ", joined = true" : ""));
     if (!items.empty()) out.raw("notches", list(items));
 }
 
@@ -156,6 +156,7 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
     if (!specimen.packing_file.empty()) out.word("packing", std::filesystem::absolute(specimen.packing_file).string());
     out.head("specimen.grains");
     out.raw("diameter", grain_sizes(specimen.grain_sizes));
+    if (specimen.crystal_sizes) out.raw("crystals", grain_sizes(*specimen.crystal_sizes));
     out.number("porosity", specimen.porosity);
     if (!specimen.merge_length_m)
         out.word("merge_length", "auto");
@@ -208,6 +209,13 @@ void write_distribution(std::vector<std::string>& items, const Distribution& d) 
     if (d.correlation_length_m > 0.0) items.push_back("correlation_length = " + si(d.correlation_length_m, Dimension::length));
 }
 
+void write_changes(Lines& out, const ContactChanges& c) {
+    for (const auto& [key, value] : {std::pair{"Kn", c.Kn_Pa_m}, std::pair{"sigma_nt", c.sigma_nt_Pa}, std::pair{"tau", c.tau_Pa}, std::pair{"Gfn", c.Gfn_J_m2}, std::pair{"Gfs", c.Gfs_J_m2}})
+        if (value) out.quantity(key, *value);
+    for (const auto& [key, value] : {std::pair{"eta", c.eta}, std::pair{"mu", c.mu}})
+        if (value) out.number(key, *value);
+}
+
 void write_minerals(Lines& out, const Variant& variant, const std::string& place) {
     const MineralSpec& minerals = variant.rock.minerals;
     for (const Mineral& phase : minerals.phases) {
@@ -225,11 +233,12 @@ void write_minerals(Lines& out, const Variant& variant, const std::string& place
     for (const PhasePair& pair : minerals.pairs) {
         out.head("material.pair", "[[" + place + "material.pair]]");
         out.raw("phases", fmt::format("[{}, {}]", quote(minerals.phases[pair.a].name), quote(minerals.phases[pair.b].name)));
-        const ContactChanges& c = pair.changes;
-        for (const auto& [key, value] : {std::pair{"Kn", c.Kn_Pa_m}, std::pair{"sigma_nt", c.sigma_nt_Pa}, std::pair{"tau", c.tau_Pa}, std::pair{"Gfn", c.Gfn_J_m2}, std::pair{"Gfs", c.Gfs_J_m2}})
-            if (value) out.quantity(key, *value);
-        for (const auto& [key, value] : {std::pair{"eta", c.eta}, std::pair{"mu", c.mu}})
-            if (value) out.number(key, *value);
+        if (pair.inside) out.raw("inside", "true");
+        write_changes(out, pair.changes);
+    }
+    if (const ContactChanges& c = variant.rock.crystal; c.any()) {
+        out.head("material.crystal", "[" + place + "material.crystal]");
+        write_changes(out, c);
     }
     if (minerals.phases.empty()) return;
     out.head("material.minerals", "[" + place + "material.minerals]");
@@ -251,6 +260,8 @@ void write_joints(Lines& out, const Variant& variant, const std::string& place) 
             if (set.length_m > 0.0)
                 items.insert(items.end(), {"length = " + si(set.length_m, Dimension::length), "length_variation = " + format_exact(set.length_variation), "persistence = " + format_exact(set.persistence)});
             out.raw("set", fmt::format("{{ {} }}", fmt::join(items, ", ")));
+        } else if (!joint.cut.empty()) {
+            out.word("cut", joint.cut);
         } else if (!joint.file.empty()) {
             out.word("file", joint.file);
             if (!joint.unit.empty()) out.word("unit", joint.unit);

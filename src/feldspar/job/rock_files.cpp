@@ -191,6 +191,7 @@ TraceFile read_dxf(const std::string& contents, const std::filesystem::path& fil
             if (found != sizes.end()) scale = found->second;
         }
         if (group.code == 2 && i > 0 && groups[i - 1].value == "SECTION") in_entities = group.value == "ENTITIES";
+        if (group.code == 0 && group.value == "ENDSEC") in_entities = false;
         if (group.code != 0 || !in_entities || group.value == "ENDSEC" || group.value == "SECTION") continue;
         // the groups of this entity
         std::size_t end = i + 1;

@@ -37,9 +37,9 @@ void finish(AcousticEvent& event) {
     if (event.energy_J > 0.0) event.magnitude = 2.0 / 3.0 * (std::log10(event.energy_J) - 4.8);
     const Mat2& M = event.moment_Nm;
     const double mean = 0.5 * (M.xx + M.yy), radius = std::hypot(0.5 * (M.xx - M.yy), M.xy);
-    const double M0 = std::sqrt(0.5 * ((mean + radius) * (mean + radius) + (mean - radius) * (mean - radius)));
-    if (!(M0 > 0.0)) return;
-    event.moment_magnitude = 2.0 / 3.0 * std::log10(M0) - 6.07;
+    const double scalar_Nm = std::sqrt(0.5 * ((mean + radius) * (mean + radius) + (mean - radius) * (mean - radius)));
+    if (!(scalar_Nm > 0.0)) return;
+    event.moment_magnitude = 2.0 / 3.0 * std::log10(scalar_Nm) - 6.07;
     event.isotropy = 100.0 * 2.0 * mean / (2.0 * std::abs(mean) + 2.0 * radius);
 }
 

@@ -47,7 +47,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     result.contact = setup.contact;
     result.grain = setup.grain;
     result.rock = setup.rock;
-    if (setup.rock.any()) result.texture = Texture(*setup.specimen, setup.grain, setup.contact, setup.rock).summary();
+    if (setup.rock.any() || setup.specimen->quality.crystals > 0) result.texture = Texture(*setup.specimen, setup.grain, setup.contact, setup.rock).summary();
     result.numerics = setup.numerics;
     result.seed = setup.specimen->seed;
     result.specimen = setup.specimen;

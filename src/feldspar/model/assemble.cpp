@@ -190,10 +190,11 @@ void set_closing_distance(const Assembly& assembly, Contact& contact) {
     contact.closing_distance_m = std::max(radii, norm(assembly.centre(contact.b.body) - assembly.centre(contact.a.body)));
 }
 
-void add_bonded_contact(Assembly& assembly, ContactKind kind, int ga, int ka, int gb, int kb) {
+void add_bonded_contact(Assembly& assembly, ContactKind kind, int ga, int ka, int gb, int kb, bool smooth) {
     const GrainEdge& edge_a = assembly.edges[assembly.bodies[ga].edge_begin + ka];
     const GrainEdge& edge_b = assembly.edges[assembly.bodies[gb].edge_begin + kb];
     Contact contact;
+    contact.smooth = smooth;
     contact.a = side_of(assembly, ga, edge_a.node, assembly.bodies[ga].edge_begin + ka);
     contact.b = side_of(assembly, gb, edge_b.node, assembly.bodies[gb].edge_begin + kb);
     const Vec2 p0 = edge_a.from, p1 = edge_a.to;
@@ -257,7 +258,10 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
     }
     // From bottom to top, as the packs of grains are: a contiguous share is a band of the specimen (model/bands.hpp).
     std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return std::pair{l.place, l.height} < std::pair{r.place, r.height}; });
-    for (const Facing& f : facing) add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb);
+    for (const Facing& f : facing) {
+        const std::vector<int>& seams = cells.cells[f.ga].seams;
+        add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb, !seams.empty() && seams[f.ka] >= 0);
+    }
     lay_out_bonds(assembly);
 }
 
@@ -284,12 +288,12 @@ void add_inside_contact(Assembly& assembly, const InsideContact& pair) {
     add_contact(assembly, contact, {});
 }
 
-void add_across_contact(Assembly& assembly, const AcrossContact& across, ContactNormal normal) {
+void add_across_contact(Assembly& assembly, const AcrossContact& across, ContactNormal normal, bool smooth) {
     Contact contact;
     contact.a = side_of(assembly, across.a);
     contact.b = side_of(assembly, across.b);
     place_on_line(assembly, contact, across.from, across.to);
-    if (normal == ContactNormal::edge) {
+    if (normal == ContactNormal::edge || smooth) {
         const Vec2 line = across.to - across.from;
         contact.edge_normal = (-1.0 / norm(line)) * rot90(line);   // out of A's cell, which lies to the left of its edges
     }
@@ -297,13 +301,13 @@ void add_across_contact(Assembly& assembly, const AcrossContact& across, Contact
     contact.first_point = static_cast<std::int32_t>(assembly.points.size());
     contact.points = 1;
     assembly.add_point(0.0, norm(across.to - across.from) * assembly.thickness_m);
-    if (normal == ContactNormal::centres) assembly.points.back().free_gap_m = free_gap_between_circles(assembly, contact);
+    if (contact.edge_normal == Vec2{}) assembly.points.back().free_gap_m = free_gap_between_circles(assembly, contact);
     add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
 }
 
 // From the first particles to the last, so that a sweep over the contacts goes through the particles once; those inside grains and those
 // across edges in turn, a full pack of either.
-void add_contacts_of_particles(Assembly& assembly, Filling filling, ContactNormal normal) {
+void add_contacts_of_particles(Assembly& assembly, const Tessellation& cells, Filling filling, ContactNormal normal) {
     const auto in_order = [&](auto& all) {   // and from now on between bodies
         for (auto& contact : all) {
             contact.a = assembly.body_of_particle[contact.a];
@@ -319,7 +323,11 @@ void add_contacts_of_particles(Assembly& assembly, Filling filling, ContactNorma
         const bool inside_first = across == filling.across.end() || (inside != filling.inside.end() && inside->a + inside->b < across->a + across->b);
         for (int lane = 0; lane < kMostLanes; ++lane) {
             if (inside_first && inside != filling.inside.end()) add_inside_contact(assembly, *inside++);
-            if (!inside_first && across != filling.across.end()) add_across_contact(assembly, *across++, normal);
+            if (!inside_first && across != filling.across.end()) {
+                const std::vector<int>& seams = cells.cells[across->cell_a].seams;
+                add_across_contact(assembly, *across, normal, !seams.empty() && seams[across->edge_a] >= 0);
+                ++across;
+            }
         }
     }
 }
@@ -485,7 +493,7 @@ Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainM
                 throw InputError({.key = "specimen.grains.particles_per_grain"}, "the grains of this specimen are not filled with particles",
                                  "a number of particles per grain, such as 26");
             add_inner_particles(assembly, specimen);
-            add_contacts_of_particles(assembly, specimen.filling, model.normal);
+            add_contacts_of_particles(assembly, specimen.cells, specimen.filling, model.normal);
             break;
     }
     set_grains(assembly, texture, model, rock);

@@ -134,6 +134,7 @@ struct Contact {
     std::int32_t own_law = -1;       ///< into Assembly::own_laws; -1: that of its role
     bool plate = false;              ///< side B is a plate
     bool flexible = false;           ///< side A is a flexible grain, and side B if it is no plate
+    bool smooth = false;             ///< its normal is that of its edge, not of the line of centres: on a joint that is cut
     bool initial_shape = false;      ///< uses the shape functions of the undeformed state (fall-back)
     bool dropped = false;            ///< carries nothing any more
     bool new_contact = false;        ///< made after detachment
@@ -282,6 +283,19 @@ inline Mat2 displacement_gradient(std::span<const Vec2> u, const Triangle& trian
     return {uj.x * gj.x + uk.x * gk.x, uj.x * gj.y + uk.x * gk.y, uj.y * gj.x + uk.y * gk.x, uj.y * gj.y + uk.y * gk.y};
 }
 
+/// Outward normal of side A of a contact on a cut joint: of both edges' mean direction now.
+inline Vec2 normal_of_edges(const Assembly& assembly, const Contact& contact) {
+    Vec2 along;
+    if (contact.flexible) {
+        const auto edge = [&](const ContactSide& side) { return assembly.nodes.position(side.node[1]) - assembly.nodes.position(side.node[0]); };
+        along = edge(contact.a) - edge(contact.b);
+    } else {
+        const GrainEdge& edge = assembly.edges[contact.a.edge];
+        along = turned(edge.to - edge.from, 0.5 * (assembly.rotation(contact.a.body) + assembly.rotation(contact.b.body)));
+    }
+    return (-1.0 / norm(along)) * rot90(along);
+}
+
 /// Direction and length of a contact's frame in the current configuration.
 struct ContactFrame {
     Vec2 n;                    ///< of the law
@@ -304,6 +318,7 @@ inline ContactFrame contact_frame(const Assembly& assembly, const Contact& conta
     }
     f.reference_point = xa + s * f.n;
     f.edge_tangent = contact.tangent.x * f.n + contact.tangent.y * rot90(f.n);
+    if (contact.smooth) f.n = normal_of_edges(assembly, contact);
     if (contact.edge_normal != Vec2{})
         f.n = turned(contact.edge_normal, 0.5 * (assembly.rotation(contact.a.body) + assembly.rotation(contact.b.body)));
     return f;

@@ -93,13 +93,15 @@ struct Mineral {
 struct ContactChanges {
     std::optional<double> Kn_Pa_m, eta, sigma_nt_Pa, tau_Pa, mu, Gfn_J_m2, Gfs_J_m2;
 
+    bool any() const { return Kn_Pa_m || eta || sigma_nt_Pa || tau_Pa || mu || Gfn_J_m2 || Gfs_J_m2; }
     /// The material with these changes.
     ContactMaterial over(ContactMaterial material) const;
 };
 
 struct PhasePair {
     int a = 0, b = 0;                      ///< phases
-    ContactChanges changes;                ///< of [material.contact]
+    ContactChanges changes;                ///< of [material.contact]; inside crystals on top of Heterogeneity::crystal
+    bool inside = false;                   ///< inside crystals of phase a
 };
 
 /// The contact of two unlike phases that have no law of their own as a pair, by those of the like ones.
@@ -162,6 +164,7 @@ struct JointSpec {
     std::string name;
     std::vector<std::vector<Vec2>> lines_m;   ///< polylines; empty: a set
     std::string file, unit, layer;            ///< absolute, where they came from; empty: from the job
+    std::string cut;                          ///< label of a joined cut, whose faces it is; empty: it runs along grain edges
     std::optional<JointSet> set;
     ContactMaterial contact;                  ///< of the joint; no strength: it is open to sliding from the start
     double opening_m = 0.0;                   ///< its faces meet when the gap has closed by it
@@ -169,6 +172,7 @@ struct JointSpec {
 
 struct Heterogeneity {
     MineralSpec minerals;
+    ContactChanges crystal;                   ///< contacts inside crystals, against the others
     ScatterSpec scatter;
     InitialCracks initial_cracks;
     std::vector<JointSpec> joints;
@@ -185,7 +189,7 @@ struct Heterogeneity {
 inline bool Heterogeneity::contacts_differ() const {
     for (const Scattered quantity : scattered_quantities)
         if (quantity != Scattered::E && scatter[quantity].scatters()) return true;
-    return !minerals.phases.empty() || initial_cracks.any() || !joints.empty();
+    return !minerals.phases.empty() || crystal.any() || initial_cracks.any() || !joints.empty();
 }
 
 inline ContactMaterial ContactChanges::over(ContactMaterial m) const {

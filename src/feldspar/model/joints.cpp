@@ -74,6 +74,22 @@ std::vector<std::vector<Vec2>> traces_of(const JointSpec& joint, const Specimen&
 
 JointEdges::JointEdges(const Specimen& specimen, const JointSpec& joint) {
     const std::vector<Cell>& cells = specimen.cells.cells;
+    if (!joint.cut.empty()) {
+        std::string known;
+        for (int n = 0; n < std::ssize(specimen.outline.cutouts); ++n) {
+            const Cutout& cut = specimen.outline.cutouts[n];
+            if (!cut.joined) continue;
+            const std::string& label = specimen.outline.edge_labels[cut.first_edge];
+            known += (known.empty() ? "\"" : ", \"") + label + "\"";
+            if (label != joint.cut) continue;
+            for (int c = 0; c < std::ssize(cells); ++c)
+                for (std::size_t k = 0; k < cells[c].seams.size(); ++k)
+                    if (cells[c].seams[k] == n && cells[c].neighbours[k] > c) pairs_.insert({c, cells[c].neighbours[k]});
+        }
+        if (pairs_.empty())
+            throw InputError({.key = "material.joint.cut"}, fmt::format("the specimen has no cut \"{}\" whose faces are joined", joint.cut), known.empty() ? "a notch of width 0 with joined = true" : known);
+        return;
+    }
     const auto centre = [&](int c) { return specimen.mesh.nodes[specimen.mesh.centre_node[c]]; };
     for (const std::vector<Vec2>& trace : traces_of(joint, specimen)) {
         Box reach = bounding_box(trace);

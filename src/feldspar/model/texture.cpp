@@ -102,14 +102,14 @@ std::vector<int> at_random(const MineralSpec& minerals, const std::vector<double
 }
 
 // One phase after the other takes the grains where its own random field is highest, until it has its share; the last one takes the rest.
-std::vector<int> in_clusters(const MineralSpec& minerals, const Specimen& specimen, const std::vector<double>& area) {
+std::vector<int> in_clusters(const MineralSpec& minerals, std::uint64_t seed, const std::vector<double>& area, const std::vector<Vec2>& centre) {
     const double total = std::accumulate(area.begin(), area.end(), 0.0);
     std::vector<int> phase(area.size(), static_cast<int>(minerals.phases.size()) - 1), free(area.size());
     std::iota(free.begin(), free.end(), 0);
     for (std::size_t p = 0; p + 1 < minerals.phases.size(); ++p) {
-        const GaussianField field(specimen.seed, "mineral " + minerals.phases[p].name, minerals.cluster_length_m);
+        const GaussianField field(seed, "mineral " + minerals.phases[p].name, minerals.cluster_length_m);
         std::vector<double> height(area.size());
-        for (const int g : free) height[g] = field(specimen.mesh.nodes[specimen.mesh.centre_node[g]]);
+        for (const int g : free) height[g] = field(centre[g]);
         std::stable_sort(free.begin(), free.end(), [&](int l, int r) { return height[l] > height[r]; });
         double wanted = minerals.phases[p].share * total;
         std::size_t taken = 0;
@@ -129,7 +129,7 @@ bool contains(const std::vector<Vec2>& convex, Vec2 x) {
 }
 
 // The phase that has most of a cell's pixels, of equals the first. A cell without a pixel of its own takes the one at its centre.
-std::vector<int> by_map(const PhaseMap& map, const MineralSpec& minerals, const Specimen& specimen) {
+std::vector<int> by_map(const PhaseMap& map, const MineralSpec& minerals, const Specimen& specimen, const std::vector<int>& unit, const std::vector<Vec2>& centre_of) {
     Box box = bounding_box(specimen.mesh.nodes);
     const Vec2 size = box.upper - box.lower;
     const double pixel_x = size.x / map.width, pixel_y = size.y / map.height;
@@ -138,22 +138,24 @@ std::vector<int> by_map(const PhaseMap& map, const MineralSpec& minerals, const 
                          fmt::format("the map \"{}\" has {} x {} pixels, but the specimen is {:.4g} mm wide and {:.4g} mm high", minerals.map_file, map.width, map.height, 1e3 * size.x, 1e3 * size.y),
                          "a picture whose sides are as those of the specimen, within 2 %", fmt::format("cut it to {} x {} pixels", map.width, std::lround(map.width * size.y / size.x)));
     const auto at = [&](int column, int row) { return map.phase[static_cast<std::size_t>(row) * map.width + column]; };
-    std::vector<int> phase;
+    std::vector<std::vector<int>> votes(centre_of.size(), std::vector<int>(minerals.phases.size(), 0));
     for (int c = 0; c < std::ssize(specimen.cells.cells); ++c) {
         const std::vector<Vec2> corners = corners_of_cell(specimen.cells, c);
         const Box of_cell = bounding_box(corners);
         const int left = std::max(0, static_cast<int>((of_cell.lower.x - box.lower.x) / pixel_x)), right = std::min(map.width - 1, static_cast<int>((of_cell.upper.x - box.lower.x) / pixel_x));
         const int top = std::max(0, static_cast<int>((box.upper.y - of_cell.upper.y) / pixel_y)), bottom = std::min(map.height - 1, static_cast<int>((box.upper.y - of_cell.lower.y) / pixel_y));
-        std::vector<int> votes(minerals.phases.size(), 0);
         for (int row = top; row <= bottom; ++row)
             for (int column = left; column <= right; ++column)
-                if (contains(corners, {box.lower.x + (column + 0.5) * pixel_x, box.upper.y - (row + 0.5) * pixel_y}) && at(column, row) >= 0) ++votes[at(column, row)];
-        const auto most = std::max_element(votes.begin(), votes.end());
+                if (contains(corners, {box.lower.x + (column + 0.5) * pixel_x, box.upper.y - (row + 0.5) * pixel_y}) && at(column, row) >= 0) ++votes[unit[c]][at(column, row)];
+    }
+    std::vector<int> phase;
+    for (std::size_t u = 0; u < votes.size(); ++u) {
+        const auto most = std::max_element(votes[u].begin(), votes[u].end());
         if (*most > 0) {
-            phase.push_back(static_cast<int>(most - votes.begin()));
+            phase.push_back(static_cast<int>(most - votes[u].begin()));
             continue;
         }
-        const Vec2 centre = specimen.mesh.nodes[specimen.mesh.centre_node[c]];
+        const Vec2 centre = centre_of[u];
         const int column = std::clamp(static_cast<int>((centre.x - box.lower.x) / pixel_x), 0, map.width - 1), row = std::clamp(static_cast<int>((box.upper.y - centre.y) / pixel_y), 0, map.height - 1);
         if (at(column, row) < 0)
             throw InputError({.key = "material.minerals.map"}, fmt::format("no pixel of the map \"{}\" gives a mineral to the grain at ({:.4g} mm, {:.4g} mm)", minerals.map_file, 1e3 * centre.x, 1e3 * centre.y),
@@ -175,33 +177,7 @@ Texture::Texture(Texture&&) noexcept = default;
 
 Texture::Texture(const Specimen& specimen, const GrainMaterial& grain, const ContactMaterial& contact, const Heterogeneity& rock)
     : specimen_(&specimen), grain_(grain), contact_(contact), rock_(&rock), fields_(std::make_unique<Fields>()) {
-    const MineralSpec& minerals = rock.minerals;
-    if (!minerals.phases.empty()) {
-        const int cells = static_cast<int>(specimen.cells.cells.size());
-        if (!minerals.list.empty()) {
-            const int discs = static_cast<int>((specimen.packed.centres.empty() ? specimen.packing : specimen.packed).centres.size());
-            if (std::ssize(minerals.list) != discs)
-                throw InputError({.key = "material.minerals.list"}, fmt::format("a list of {} minerals for {} grains", minerals.list.size(), discs), "one a grain, in the order of the packing");
-            for (int c = 0; c < cells; ++c) phases_.push_back(minerals.list[disc_of(c)]);
-        } else if (minerals.map) {
-            phases_ = by_map(*minerals.map, minerals, specimen);
-        } else {
-            const std::vector<double> area = areas_of_cells(specimen);
-            if (minerals.cluster_length_m > 0.0) {
-                phases_ = in_clusters(minerals, specimen, area);
-            } else {
-                std::vector<int> order(area.size());
-                std::vector<double> turn, chance;
-                std::iota(order.begin(), order.end(), 0);
-                for (int c = 0; c < cells; ++c) {
-                    turn.push_back(hashed_uniform(specimen.seed, "turn of a grain", disc_of(c)));
-                    chance.push_back(hashed_uniform(specimen.seed, "mineral of a grain", disc_of(c)));
-                }
-                std::stable_sort(order.begin(), order.end(), [&](int l, int r) { return turn[l] < turn[r]; });
-                phases_ = at_random(minerals, area, order, chance);
-            }
-        }
-    }
+    if (!rock.minerals.phases.empty()) give_phases();
     for (const Scattered quantity : scattered_quantities)
         if (const Distribution& d = rock.scatter[quantity]; d.scatters() && d.correlation_length_m > 0.0)
             fields_->of[static_cast<std::size_t>(quantity)] = std::make_unique<GaussianField>(specimen.seed, std::string("field of ") + name(quantity), d.correlation_length_m);
@@ -211,10 +187,57 @@ Texture::Texture(const Specimen& specimen, const GrainMaterial& grain, const Con
     if (!edges.empty()) require_no_loose_grain(specimen, rock.joints, edges);
 }
 
+void Texture::give_phases() {
+    const MineralSpec& minerals = rock_->minerals;
+    const Specimen& specimen = *specimen_;
+    const int cells = static_cast<int>(specimen.cells.cells.size());
+    if (!minerals.list.empty()) {
+        const int discs = static_cast<int>((specimen.packed.centres.empty() ? specimen.packing : specimen.packed).centres.size()), units = specimen.quality.crystals > 0 ? specimen.quality.crystals : discs;
+        if (std::ssize(minerals.list) != units)
+            throw InputError({.key = "material.minerals.list"}, fmt::format("a list of {} minerals for {} {}", minerals.list.size(), units, specimen.quality.crystals > 0 ? "crystals" : "grains"), "one each, in the order of the packing");
+        for (int c = 0; c < cells; ++c) phases_.push_back(minerals.list[unit_of(c)]);
+        return;
+    }
+    // What has one mineral: a grain, or a crystal of several.
+    const bool crystals = !specimen.crystal_of_cell.empty();
+    std::vector<int> unit(cells);
+    for (int c = 0; c < cells; ++c) unit[c] = crystals ? specimen.crystal_of_cell[c] : c;
+    const std::vector<double> area = areas_of_cells(specimen);
+    const auto units = static_cast<std::size_t>(crystals ? specimen.quality.crystals : cells);
+    std::vector<double> area_of(units, 0.0);
+    std::vector<Vec2> centre_of(units);
+    std::vector<int> first(units, -1);
+    for (int c = 0; c < cells; ++c) {
+        area_of[unit[c]] += area[c];
+        centre_of[unit[c]] += area[c] * specimen.mesh.nodes[specimen.mesh.centre_node[c]];
+        if (first[unit[c]] < 0) first[unit[c]] = c;
+    }
+    for (std::size_t u = 0; u < units; ++u) centre_of[u] = (1.0 / area_of[u]) * centre_of[u];
+    std::vector<int> phase;
+    if (minerals.map) {
+        phase = by_map(*minerals.map, minerals, specimen, unit, centre_of);
+    } else if (minerals.cluster_length_m > 0.0) {
+        phase = in_clusters(minerals, specimen.seed, area_of, centre_of);
+    } else {
+        std::vector<int> order(units);
+        std::vector<double> turn, chance;
+        std::iota(order.begin(), order.end(), 0);
+        for (std::size_t u = 0; u < units; ++u) {
+            turn.push_back(hashed_uniform(specimen.seed, "turn of a grain", unit_of(first[u])));
+            chance.push_back(hashed_uniform(specimen.seed, "mineral of a grain", unit_of(first[u])));
+        }
+        std::stable_sort(order.begin(), order.end(), [&](int l, int r) { return turn[l] < turn[r]; });
+        phase = at_random(minerals, area_of, order, chance);
+    }
+    for (int c = 0; c < cells; ++c) phases_.push_back(phase[unit[c]]);
+}
+
+int Texture::unit_of(int cell) const { return specimen_->crystal_of_cell.empty() ? disc_of(cell) : specimen_->crystal_of_cell[cell]; }
+
 int Texture::disc_of(int cell) const { return specimen_->cells.disc_of_cell.empty() ? cell : specimen_->cells.disc_of_cell[cell]; }
 
 std::uint64_t Texture::key_of(int cell_a, int cell_b) const {
-    const int a = disc_of(cell_a), b = disc_of(cell_b), low = std::min(a, b), high = std::max(a, b);
+    const int a = unit_of(cell_a), b = unit_of(cell_b), low = std::min(a, b), high = std::max(a, b);
     return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
 }
 
@@ -228,7 +251,7 @@ double Texture::factor(Scattered quantity, std::uint64_t key, Vec2 place) const 
 
 GrainMaterial Texture::grain(int cell) const {
     GrainMaterial grain = phases_.empty() ? grain_ : rock_->minerals.phases[phases_[cell]].grain;
-    grain.E_Pa *= factor(Scattered::E, static_cast<std::uint64_t>(disc_of(cell)), specimen_->mesh.nodes[specimen_->mesh.centre_node[cell]]);
+    grain.E_Pa *= factor(Scattered::E, static_cast<std::uint64_t>(unit_of(cell)), specimen_->mesh.nodes[specimen_->mesh.centre_node[cell]]);
     return grain;
 }
 
@@ -236,7 +259,7 @@ ContactMaterial Texture::between(int a, int b) const {
     const MineralSpec& minerals = rock_->minerals;
     const auto given = [&](int p, int q) -> const PhasePair* {
         for (const PhasePair& pair : minerals.pairs)
-            if ((pair.a == p && pair.b == q) || (pair.a == q && pair.b == p)) return &pair;
+            if (!pair.inside && ((pair.a == p && pair.b == q) || (pair.a == q && pair.b == p))) return &pair;
         return nullptr;
     };
     if (const PhasePair* pair = given(a, b)) return pair->changes.over(contact_);
@@ -258,16 +281,28 @@ ContactMaterial Texture::between(int a, int b) const {
     return m;
 }
 
+ContactMaterial Texture::inside(int phase) const {
+    ContactMaterial m = rock_->crystal.over(phase < 0 ? contact_ : between(phase, phase));
+    for (const PhasePair& pair : rock_->minerals.pairs)
+        if (pair.inside && pair.a == phase) m = pair.changes.over(m);
+    return m;
+}
+
 GrainContact Texture::contact(int cell_a, int cell_b, Vec2 from, Vec2 to) const {
     GrainContact result;
     for (std::size_t j = 0; j < fields_->joints.size(); ++j)
         if (fields_->joints[j]->holds(cell_a, cell_b)) {   // the last joint that takes an edge counts
             const JointSpec& joint = rock_->joints[j];
-            result = {joint.contact, joint.contact.sigma_nt_Pa == 0.0 && joint.contact.tau_Pa == 0.0, joint.opening_m, static_cast<std::int32_t>(j)};
+            result = {.material = joint.contact, .broken = joint.contact.sigma_nt_Pa == 0.0 && joint.contact.tau_Pa == 0.0, .opening_m = joint.opening_m, .joint = static_cast<std::int32_t>(j)};
         }
     if (result.joint >= 0) return result;
 
     ContactMaterial& m = result.material;
+    result.inside = !specimen_->crystal_of_cell.empty() && unit_of(cell_a) == unit_of(cell_b);
+    if (result.inside) {   // neither scatter nor initial cracks: these are of grain boundaries
+        m = inside(phases_.empty() ? -1 : phases_[cell_a]);
+        return result;
+    }
     m = phases_.empty() ? contact_ : between(phases_[cell_a], phases_[cell_b]);
     const std::uint64_t key = key_of(cell_a, cell_b);
     const Vec2 place = 0.5 * (from + to);
@@ -313,7 +348,7 @@ TextureSummary Texture::summary() const {
         if (rock_->scatter[quantity].scatters()) factors[static_cast<std::size_t>(quantity)].push_back(factor(quantity, key, place));
     };
     for (int c = 0; c < std::ssize(cells); ++c) {
-        draw(Scattered::E, static_cast<std::uint64_t>(disc_of(c)), specimen_->mesh.nodes[specimen_->mesh.centre_node[c]]);
+        draw(Scattered::E, static_cast<std::uint64_t>(unit_of(c)), specimen_->mesh.nodes[specimen_->mesh.centre_node[c]]);
         const int edges = static_cast<int>(cells[c].vertices.size());
         for (int k = 0; k < edges; ++k) {
             const int other = cells[c].neighbours[k];
@@ -325,6 +360,10 @@ TextureSummary Texture::summary() const {
                 ++summary.joint_contacts[made.joint];
                 summary.joint_lengths_m[made.joint] += norm(to - from);
                 summary.joint_edges.push_back({from, to});
+                continue;
+            }
+            if (made.inside) {
+                ++summary.inside;
                 continue;
             }
             if (!phases_.empty()) {

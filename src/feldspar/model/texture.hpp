@@ -19,6 +19,7 @@ namespace feldspar {
 /// What joins two grains.
 struct GrainContact {
     ContactMaterial material;
+    bool inside = false;          ///< inside a crystal
     bool broken = false;          ///< it has no strength from the start
     double opening_m = 0.0;       ///< of a broken one: its faces meet when the gap has closed by it
     std::int32_t joint = -1;      ///< of the rock's joints; -1: none
@@ -39,7 +40,7 @@ struct TextureSummary {
     std::vector<double> area_shares;            ///< of each phase
     std::vector<std::pair<std::pair<int, int>, int>> contacts;   ///< number of contacts of each pair of phases that occurs
     std::vector<DrawSummary> draws;
-    int contacts_in_all = 0, broken = 0, weakened = 0;
+    int contacts_in_all = 0, inside = 0, broken = 0, weakened = 0;   ///< inside: crystals
     std::vector<int> joint_contacts;            ///< of each joint
     std::vector<double> joint_lengths_m;        ///< of the grain edges of each joint
 };
@@ -59,6 +60,8 @@ public:
     GrainContact contact(int cell_a, int cell_b, Vec2 from, Vec2 to) const;
     /// Contact material between two phases, or of the phase with itself, without draws.
     ContactMaterial between(int phase_a, int phase_b) const;
+    /// Contact material inside a crystal of this phase; -1: of a rock of one mineral.
+    ContactMaterial inside(int phase) const;
     TextureSummary summary() const;
 
 private:
@@ -67,6 +70,8 @@ private:
     double factor(Scattered quantity, std::uint64_t key, Vec2 place) const;
     std::uint64_t key_of(int cell_a, int cell_b) const;
     int disc_of(int cell) const;
+    int unit_of(int cell) const;    // its crystal, else its disc
+    void give_phases();
 
     const Specimen* specimen_;
     GrainMaterial grain_;

@@ -7,6 +7,7 @@
 //   vertex_count     int32    grains: the first so many nodes of a grain are its outline
 //   corners          uint16   three a triangle, counted from the grain's first node
 //   phase            uint8    grains: the mineral; only of a rock with minerals
+//   crystal          int32    grains: the crystal; only where crystals have several grains
 //   joint_ends       float32  x, y of both ends of the grain edges of joints (mm); only with joints
 //   crack_ends       float32  x, y of both ends (mm)
 //   crack_nodes      int32    two on face a, two on face b; -1 unknown
@@ -98,6 +99,7 @@ void add_texture(Block& block, Json& meta, const TestResult& result) {
         block.add("phase", "uint8", std::vector<std::uint8_t>(texture.phase_of_grain.begin(), texture.phase_of_grain.end()));
         for (const Mineral& mineral : result.rock.minerals.phases) meta["minerals"].push_back({{"name", mineral.name}, {"colour", fmt::format("#{:06x}", mineral.colour)}});
     }
+    if (!result.specimen->crystal_of_cell.empty()) block.add("crystal", "int32", result.specimen->crystal_of_cell);
     if (texture.joint_edges.empty()) return;
     std::vector<float> ends;
     for (const auto& [from, to] : texture.joint_edges)

@@ -19,6 +19,12 @@ nlohmann::ordered_json texture_json(const TestResult& result) {
     for (std::size_t p = 0; p < minerals.size() && p < texture.grains.size(); ++p)
         json["minerals"].push_back({{"name", minerals[p].name}, {"colour", fmt::format("#{:06x}", minerals[p].colour)}, {"grains", texture.grains[p]},
                                     {"area_share", rounded(texture.area_shares[p])}, {"wanted_share", rounded(minerals[p].share)}});
+    if (result.specimen && result.specimen->quality.crystals > 0) {
+        const std::vector<int>& crystal = result.specimen->crystal_of_cell;
+        const auto inside = std::ranges::count_if(result.cracks, [&](const Crack& crack) { return crystal[static_cast<std::size_t>(crack.grain_a)] == crystal[static_cast<std::size_t>(crack.grain_b)]; });
+        json["crystals"] = {{"crystals", result.specimen->quality.crystals}, {"grains_per_crystal", rounded(static_cast<double>(crystal.size()) / result.specimen->quality.crystals)},
+                            {"inside_contacts", texture.inside}, {"contacts", texture.contacts_in_all}, {"inside_cracks", inside}, {"cracks", result.cracks.size()}};
+    }
     for (const auto& [pair, count] : texture.contacts)
         json["pairs"].push_back({{"minerals", {minerals[static_cast<std::size_t>(pair.first)].name, minerals[static_cast<std::size_t>(pair.second)].name}}, {"contacts", count}});
     for (const DrawSummary& draw : texture.draws)

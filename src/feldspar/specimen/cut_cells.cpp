@@ -718,6 +718,7 @@ private:
 
     /// @throws InputError if the cells do not hang together
     void require_one_piece() const {
+        if (std::any_of(outline_.cutouts.begin(), outline_.cutouts.end(), [](const Cutout& cutout) { return cutout.joined; })) return;   // what it divides stays in contact
         std::vector<int> part(graph_.faces.size(), -1);
         int parts = 0;
         std::vector<std::pair<int, int>> sizes;   // grains, and one of them

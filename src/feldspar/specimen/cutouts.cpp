@@ -132,7 +132,10 @@ public:
         cutout.name = name;
         const std::array<Vec2, 2> ends = {notch.from_m, notch.to_m};
         for (int e = 0; e < 2; ++e) cutout.tips[e] = in_rock(ends[e]) && distance_to_rocks_boundary(ends[e]) > 0.5 * bridge_;
-        if (!cutout.tips[0] && !cutout.tips[1] && !at_hole(ends[0]) && !at_hole(ends[1]))
+        cutout.joined = notch.joined;
+        if (notch.joined && notch.width_m > 0.0)
+            throw InputError({"", 0, 0, notches_key}, fmt::format("{} is {} wide, but its faces are to stay in contact", name, in_mm(notch.width_m)), "width = \"0 mm\" beside joined = true");
+        if (!notch.joined && !cutout.tips[0] && !cutout.tips[1] && !at_hole(ends[0]) && !at_hole(ends[1]))
             throw InputError({"", 0, 0, notches_key}, fmt::format("{}, from {} to {}, cuts the specimen in two", name, in_mm(ends[0]), in_mm(ends[1])),
                              "a notch that ends in the rock", "move one end inwards");
         shape_notch(cutout, notch);

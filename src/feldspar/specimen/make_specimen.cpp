@@ -11,6 +11,7 @@
 #include "feldspar/base/mean.hpp"
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/specimen/crystals.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
@@ -299,6 +300,13 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     making.stage("cells", true);
     specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
     give_discs_to_pieces(specimen);
+    if (spec.crystal_sizes) {
+        SpecimenSpec crystals = spec;
+        crystals.grain_sizes = *spec.crystal_sizes;
+        constexpr std::uint64_t kOthers = 0x9E3779B97F4A7C15;   // the streams of another seed: crystals and grains have nothing to do with each other
+        specimen.crystal_of_cell = group_into_crystals(specimen.cells, make_packing(crystals, specimen.outline, seed ^ kOthers, making));
+        quality.crystals = 1 + *std::max_element(specimen.crystal_of_cell.begin(), specimen.crystal_of_cell.end());
+    }
     label_by_place(specimen.outline, specimen.cells, spec.outline);
     specimen.mesh = mesh_grains(specimen.cells, spec.triangles_per_grain, making.stage("mesh", true));
     if (spec.particles_per_grain > 0.0) {

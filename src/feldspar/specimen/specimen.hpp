@@ -31,6 +31,7 @@ struct NotchSpec {
     Vec2 from_m, to_m;      ///< the ends of its axis
     double width_m = 0.0;   ///< 0 = a cut that takes no rock away: its two faces touch, and nothing joins them
     std::string label;      ///< of its faces; empty = "notch-1", "notch-2", ... in the order of the notches
+    bool joined = false;    ///< of a cut: its faces stay in contact, a smooth joint; it may go through the specimen
 
     bool operator==(const NotchSpec&) const = default;
 };
@@ -105,6 +106,7 @@ struct SpecimenSpec {
     int triangles_per_grain = 0;                  ///< 0 = the fixed topology; otherwise a finer mesh of about so many
     std::filesystem::path packing_file;           ///< if not empty: load this packing instead of making one
     double particles_per_grain = 0.0;             ///< inner particles in a grain of mean area; 0 = grains are not filled
+    std::optional<GrainSizeSpec> crystal_sizes;   ///< crystals of several grains each, which can break between these; absent = each grain is one
 };
 
 /// What is cut out of the cells: a hole, a slit, or a cut without width.
@@ -113,6 +115,7 @@ struct Cutout {
     int first_edge = 0;            ///< into Outline::edge_labels: of the edge from vertex 0; the others follow. A cut has two: its left face and its right one, seen from its first end
     bool slit = false;             ///< edges 0 and 2 run along it, edge 1 is its end at `to`, edge 3 that at `from`
     std::array<bool, 2> tips{};    ///< slit or cut: whether its end at `from`, at `to` lies in the rock
+    bool joined = false;           ///< of a cut: its faces stay in contact
     bool packed_around = true;     ///< the discs keep clear of it; otherwise they are packed as if it were not there
     double area_m2 = 0.0;          ///< of the rock that it takes away
     std::string name;              ///< for messages: "notch 1"
@@ -150,6 +153,7 @@ struct Cell {
     std::vector<int> vertices;       ///< into Tessellation::vertices
     std::vector<int> neighbours;     ///< an edge: the cell on the other side, or -1 on the outline
     std::vector<int> outline_edges;  ///< an edge: the outline's edge (label index), or -1 inside
+    std::vector<int> seams{};        ///< an edge: the joined cut that it lies on, by its number among the outline's cutouts, or -1; empty: none of them
 };
 
 /// The cells on one shared vertex graph: two neighbours name the same two vertices, so no gap and no overlap is possible.
@@ -243,6 +247,7 @@ struct SpecimenQuality {
     double hexatic_order = 0.0;   ///< |mean of exp(6 i angle)| over the neighbours of a grain, mean over the inner grains: 1 for a honeycomb
     double width_over_largest_grain = 0.0;
     double area_error = 0.0;      ///< |sum of the cells - outline| / outline
+    int crystals = 0;             ///< of several grains each; 0: each grain is one
     int inner_particles = 0;      ///< small discs in all grains, if these are filled
     int inside_contacts = 0;      ///< between particles of one grain
     int across_contacts = 0;      ///< between particles of neighbouring grains
@@ -259,6 +264,7 @@ struct Specimen {
     Tessellation cells;
     GrainMesh mesh;
     Filling filling;          ///< empty unless the spec asks for inner particles
+    std::vector<int> crystal_of_cell;   ///< a cell: the crystal that it is a part of; empty if each is one
     SpecimenQuality quality;
 };
 

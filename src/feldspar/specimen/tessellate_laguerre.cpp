@@ -9,6 +9,7 @@
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/clip_cells.hpp"
 #include "feldspar/specimen/cut_cells.hpp"
+#include "feldspar/specimen/join_faces.hpp"
 #include "feldspar/specimen/join_pieces.hpp"
 #include "feldspar/specimen/merge_edges.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -62,6 +63,7 @@ Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline,
     drop_unused_vertices(graph);
     result.vertices = std::move(graph.vertices);
     for (const Face& face : graph.faces) result.cells.push_back(make_cell(face, result.vertices));
+    if (!outline.cutouts.empty()) join_faces(result, outline, 0.5 * least_length);
     check_conforming(result);
     return result;
 }

@@ -30,9 +30,8 @@ private:
 
 // Takes each struct apart by name: one that gets another member is not compiled until the member stands here.
 std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
-    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain] = spec;
+    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain, crystal_sizes] = spec;
     const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, arcs, flat_angle_rad, holes, notches, labels] = outline;
-    const auto& [kind, minimum_m, maximum_m, median_m, log_standard_deviation, sieve] = grain_sizes;
     Text text;
     text.add(std::to_string(seed));
     text.add(static_cast<int>(shape));
@@ -61,11 +60,12 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
         text.add(label);
     });
     text.add(notches, [&](const NotchSpec& notch) {
-        const auto& [from, to, width, label] = notch;
+        const auto& [from, to, width, label, joined] = notch;
         add_point(from);
         add_point(to);
         text.add(width);
         text.add(label);
+        if (joined) text.add(std::string("joined"));
     });
     text.add(labels, [&](const PlaceLabelSpec& label) {
         const auto& [name, place, a, b, within] = label;
@@ -75,13 +75,18 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
         add_point(b);
         text.add(within);
     });
-    text.add(static_cast<int>(kind));
-    for (const double number : {minimum_m, maximum_m, median_m, log_standard_deviation, porosity}) text.add(number);
-    text.add(sieve, [&](const SievePoint& point) {
-        const auto& [diameter, passing] = point;
-        text.add(diameter);
-        text.add(passing);
-    });
+    const auto add_sizes = [&](const GrainSizeSpec& sizes, double of_porosity) {
+        const auto& [kind, minimum_m, maximum_m, median_m, log_standard_deviation, sieve] = sizes;
+        text.add(static_cast<int>(kind));
+        for (const double number : {minimum_m, maximum_m, median_m, log_standard_deviation, of_porosity}) text.add(number);
+        text.add(sieve, [&](const SievePoint& point) {
+            const auto& [diameter, passing] = point;
+            text.add(diameter);
+            text.add(passing);
+        });
+    };
+    add_sizes(grain_sizes, porosity);
+    if (crystal_sizes) add_sizes(*crystal_sizes, 0.0);   // identities of specimens without crystals stay as they were
     if (merge_length_m) text.add(*merge_length_m);
     else text.add(std::string("usual"));
     text.add(triangles_per_grain);

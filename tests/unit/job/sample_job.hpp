@@ -178,6 +178,69 @@ membrane_plates = 12
 seeds = [1, 2]
 )";
 
+/// What makes a rock uneven, to stand before [numerics] of sample_job.
+inline const std::string uneven_material = R"([[material.phase]]
+name = "quartz"
+share = "60 %"
+E = "94.5 GPa"
+nu = 0.08
+colour = "#d9d4c7"
+[[material.phase]]
+name = "biotite"
+share = 0.4
+density = "3050 kg/m3"
+value = 7
+[[material.pair]]
+phases = ["quartz", "biotite"]
+sigma_nt = "3 MPa"
+Kn = "9e4 GPa/m"
+eta = 0.2
+tau = "11 MPa"
+mu = 0.3
+Gfn = "7 N/m"
+Gfs = "300 N/m"
+[[material.pair]]
+phases = ["quartz", "quartz"]
+inside = true
+sigma_nt = "44 MPa"
+[material.crystal]
+sigma_nt = "33 MPa"
+tau = "99 MPa"
+Kn = "30e4 GPa/m"
+eta = 0.3
+mu = 0.2
+Gfn = "55 N/m"
+Gfs = "2000 N/m"
+[material.minerals]
+unlike = "mean"
+unlike_strength = 0.6
+cluster_length = "7 mm"
+[material.scatter]
+strength = { modulus = 1.6, lowest = 0.1, highest = 4 }
+stiffness = { distribution = "log-normal", variation = "20 %", correlation_length = "9 mm" }
+E = { distribution = "normal", variation = 0.1 }
+energy_power = 1.5
+[material.initial_cracks]
+broken = "12 %"
+opening = "0.5 um"
+weakened = "7 %"
+weakened_strength = 0.4
+[[material.joint]]
+name = "fault"
+trace = [["0 mm", "20 mm"], ["40 mm", "60 mm"], ["80 mm", "70 mm"]]
+mu = 0.5
+opening = "1 um"
+[[material.joint]]
+name = "bedding"
+set = { dip = "30 deg", dip_deviation = "3 deg", spacing = "15 mm", spacing_variation = "20 %", length = "30 mm", length_variation = 0.3, persistence = "70 %" }
+Kn = "5e4 GPa/m"
+eta = 0.4
+sigma_nt = "1 MPa"
+tau = "2 MPa"
+Gfn = "3 N/m"
+Gfs = "90 N/m"
+[numerics])";
+
 /// The sample with one line (or part of one) replaced.
 inline std::string edited(const std::string& from, const std::string& to, std::string text = sample_job) {
     const std::size_t at = text.find(from);

@@ -33,8 +33,25 @@ std::string with_stages(const std::string& stages) {
     return with_test(edited("[[test.fixture]]\nname = \"lower end\"", "stages = [" + stages + "]\n[[test.fixture]]\nname = \"lower end\"", custom_test));
 }
 
+std::string uneven(const std::string& from, const std::string& to) { return edited(from, to, edited("[numerics]", uneven_material)); }
+
 std::vector<BadJob> bad_jobs() {
     return {
+        {"shares that do not add up", uneven("share = 0.4", "share = 0.3"), 28, {"material.phase", "add up to 0.9", "1 (100 %)"}},
+        {"an unknown mineral in a pair", uneven("[\"quartz\", \"biotite\"]", "[\"quarz\", \"biotite\"]"), 40, {"material.pair[1].phases", "did you mean 'quartz'?"}},
+        {"a pair without a law", uneven("unlike = \"mean\"", "unlike = \"given\""), 61, {"material.minerals.unlike", "the pair of \"quartz\" and \"quartz\" has no law", "unlike = \"weaker\""}},
+        {"two ways to lie", uneven("cluster_length = \"7 mm\"", "cluster_length = \"7 mm\"\nlist = \"minerals.txt\""), 64, {"minerals.list", "two ways"}},
+        {"a map that is not there", uneven("cluster_length = \"7 mm\"", "map = \"section.png\""), 63, {"material.minerals.map", "there is no file 'section.png'"}},
+        {"a modulus beside a variation", uneven("modulus = 1.6", "modulus = 1.6, variation = 0.3"), 65, {"material.scatter.strength.variation", "one of the two"}},
+        {"a distribution without a width", uneven("modulus = 1.6, ", ""), 65, {"missing key: modulus"}},
+        {"a modulus of a normal distribution", uneven("distribution = \"normal\", variation = 0.1", "distribution = \"normal\", modulus = 3"), 67, {"material.scatter.E.modulus", "weibull"}},
+        {"more cracks than contacts", uneven("broken = \"12 %\"", "broken = \"95 %\""), 72, {"more than all"}},
+        {"weakened by nothing", uneven("weakened_strength = 0.4\n", ""), 69, {"missing key: weakened_strength"}},
+        {"a joint without a place", uneven("trace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", \"70 mm\"]]\n", ""), 74, {"material.joint[1].trace", "no place", "trace, cut, file, set"}},
+        {"an open joint with cohesion", uneven("mu = 0.5\nopening", "mu = 0.5\ntau = \"1 MPa\"\nopening"), 79, {"cannot be open"}},
+        {"a set without persistence", uneven(", persistence = \"70 %\"", ""), 81, {"missing key: persistence"}},
+        {"scatter of E of rigid grains", edited("kind = \"flexible\"", "kind = \"rigid\"", edited("E = \"25.8 GPa\"\nnu = 0.23\n", "", edited("[numerics]", "[material.scatter]\nE = { modulus = 3 }\n[numerics]"))), 27, {"no Young's modulus", "stiffness"}},
+        {"pairs without minerals", edited("[numerics]", "[material.minerals]\nunlike = \"mean\"\n[numerics]"), 28, {"the rock has no minerals"}},
         {"empty file", "", 0, {"missing keys: specimen, material, test"}},
         {"lone bracket", "[", 1, {"syntax error", "table header"}},
         {"syntax", edited("width = \"80 mm\"", "width = 80 mm"), 3, {"syntax error"}},

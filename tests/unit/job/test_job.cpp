@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,9 +10,11 @@
 #include "feldspar/job/job.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/job/job_template.hpp"
+#include "feldspar/job/rock_files.hpp"
 #include "feldspar/methods/method.hpp"
 #include "../../switched_on.hpp"
 #include "../../table7.hpp"
+#include "../../temporary_folder.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {
@@ -409,6 +412,85 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
     expect_round_trip(edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
                              "{ distribution = \"log-normal\", median = \"3.14 mm\", log_standard_deviation = 0.217, minimum = "
                              "\"2 mm\", maximum = \"5 mm\" }"));
+}
+
+TEST(ResolvedJob, OfAnUnevenRockReadsBackToTheSameBits) {
+    const std::string uneven = edited("[numerics]", uneven_material);
+    expect_round_trip(uneven);
+    expect_round_trip(edited("modulus = 1.6", "variation = \"40 %\"", uneven));
+    const Job job = parse_job(uneven, "job.toml");
+    const Heterogeneity& rock = job.variants.front().rock;
+    ASSERT_EQ(rock.minerals.phases.size(), 2U);
+    EXPECT_EQ(rock.minerals.phases[1].grain.E_Pa, 25.8e9);   // that of [material.grain]
+    EXPECT_EQ(rock.minerals.phases[1].value, 7);
+    EXPECT_EQ(rock.scatter[Scattered::strength].highest, 4.0);
+    EXPECT_EQ(rock.scatter[Scattered::E].lowest, 0.05);
+    EXPECT_FALSE(rock.scatter[Scattered::tau].scatters());
+    ASSERT_EQ(rock.joints.size(), 2U);
+    EXPECT_EQ(rock.joints[0].contact.tau_Pa, 0.0);
+    EXPECT_EQ(rock.joints[0].contact.Kn_Pa_m, 18e13);
+    EXPECT_NEAR(rock.joints[1].set->dip_rad, 0.5235987755982988, 1e-15);
+    const double voigt = 0.6 * 94.5 + 0.4 * 25.8, reuss = 1.0 / (0.6 / 94.5 + 0.4 / 25.8);
+    EXPECT_NEAR(job.variants.front().grain.E_Pa / 1e9, 0.5 * (voigt + reuss), 1e-9);   // what estimates reckon with
+}
+
+TEST(ResolvedJob, OfARockFromFilesReadsBackToTheSameBits) {
+    const TemporaryFolder folder;
+    std::ofstream(folder.path() / "traces.csv") << "x1,y1,x2,y2,set\n10,10,40,60,a\n# a remark\n5,5,9,9,b\n0,20,30,20,a\n";
+    std::ofstream(folder.path() / "minerals.txt") << "quartz\nbiotite # dark\n\nquartz\n";
+    std::ofstream(folder.path() / "job.toml") << edited("cluster_length = \"7 mm\"", "list = \"minerals.txt\"", edited("trace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", \"70 mm\"]]", "file = \"traces.csv\"\nunit = \"mm\"\nlayer = \"a\"", edited("[numerics]", uneven_material)));
+    const Job job = read_job(folder.path() / "job.toml");
+    const Heterogeneity& rock = job.variants.front().rock;
+    EXPECT_EQ(rock.minerals.list, (std::vector<int>{0, 1, 0}));
+    ASSERT_EQ(rock.joints[0].lines_m.size(), 2U);
+    EXPECT_EQ(rock.joints[0].lines_m[1], (std::vector<Vec2>{{0.0, 0.02}, {0.03, 0.02}}));
+    ASSERT_EQ(rock.remarks.size(), 1U);   // the trace of the other set
+    EXPECT_FALSE(rock.files.empty());
+    EXPECT_EQ(resolved_toml(parse_job(resolved_toml(job), "resolved")), resolved_toml(job));
+}
+
+TEST(TraceFiles, OfDxfHaveLinesAndPolylines) {
+    const std::string head = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n";
+    const std::string line = "0\nLINE\n8\njoints\n10\n1.0\n20\n2.0\n11\n3.0\n21\n4.0\n";
+    const std::string lwpolyline = "0\nLWPOLYLINE\n8\nfaults\n90\n3\n70\n1\n10\n0\n20\n0\n10\n5\n20\n0\n10\n5\n20\n5\n";
+    const std::string polyline = "0\nPOLYLINE\n8\njoints\n70\n0\n0\nVERTEX\n10\n7\n20\n7\n0\nVERTEX\n10\n8\n20\n16\n0\nSEQEND\n";
+    const std::string end = "0\nENDSEC\n0\nEOF\n";
+    const TraceFile all = read_traces(head + line + lwpolyline + polyline + "0\nTEXT\n8\njoints\n1\nhello\n" + end, "a.dxf", "", "");
+    ASSERT_EQ(all.lines_m.size(), 3U);
+    EXPECT_EQ(all.lines_m[0], (std::vector<Vec2>{{0.001, 0.002}, {0.003, 0.004}}));
+    EXPECT_EQ(all.lines_m[1].size(), 4U);   // closed
+    EXPECT_EQ(all.lines_m[2], (std::vector<Vec2>{{0.007, 0.007}, {0.008, 0.016}}));
+    EXPECT_EQ(all.remarks.size(), 1U);
+    EXPECT_EQ(read_traces(head + line + lwpolyline + end, "a.dxf", "cm", "joints").lines_m, (std::vector<std::vector<Vec2>>{{{0.01, 0.02}, {0.03, 0.04}}}));
+    EXPECT_THROW(read_traces("0\nSECTION\n2\nENTITIES\n" + line + end, "a.dxf", "", ""), InputError);   // no unit
+    EXPECT_THROW(read_traces(head + end, "a.dxf", "", ""), InputError);                                       // no trace
+    EXPECT_THROW(read_traces("x1,y1,x2\n1,2,3\n", "a.csv", "", ""), InputError);
+    EXPECT_THROW(read_traces("x1,y1,x2,y2\n1,2,3,four\n", "a.csv", "", ""), InputError);
+    EXPECT_THROW(read_traces("", "a.txt", "", ""), InputError);
+}
+
+TEST(PhaseMaps, AreReadByColourOrByValue) {
+    const auto png = [](const std::vector<png_byte>& pixels, std::uint32_t width, std::uint32_t height, std::uint32_t format) {
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        image.width = width;
+        image.height = height;
+        image.format = format;
+        png_alloc_size_t size = 0;
+        EXPECT_NE(png_image_write_to_memory(&image, nullptr, &size, 0, pixels.data(), 0, nullptr), 0);
+        std::string text(size, '\0');
+        EXPECT_NE(png_image_write_to_memory(&image, text.data(), &size, 0, pixels.data(), 0, nullptr), 0);
+        return text;
+    };
+    std::vector<Mineral> minerals{{"a", 0.5, {}, 0x102030}, {"b", 0.5, {}, 0xff0000}};
+    const std::string coloured = png({0x10, 0x20, 0x30, 0xff, 0, 0, 0, 0, 0, 0x10, 0x20, 0x30}, 2, 2, PNG_FORMAT_RGB);
+    EXPECT_EQ(read_phase_map(coloured, "map.png", minerals)->phase, (std::vector<std::int8_t>{0, 1, -1, 0}));
+    minerals[1].colour = 0x00ff00;
+    EXPECT_THROW(read_phase_map(coloured, "map.png", minerals), InputError);   // a colour outside the legend
+    minerals[0].value = 1;
+    minerals[1].value = 2;
+    EXPECT_EQ(read_phase_map(png({1, 2, 0, 2}, 2, 2, PNG_FORMAT_GRAY), "map.png", minerals)->phase, (std::vector<std::int8_t>{0, 1, -1, 1}));
+    EXPECT_THROW(read_phase_map("no picture", "map.png", minerals), InputError);
 }
 
 TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {

@@ -73,6 +73,8 @@ const std::vector<std::string>& bases() {
                      "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\nedge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\n"
                      "arcs = [{ edge = 1, through = [\"60 mm\", \"80 mm\"] }]"),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"cyclic-compression\""),
+            replaced(sample_job, "[numerics]", uneven_material),
+            replaced(replaced(sample_job, "[numerics]", uneven_material), "[[material.joint]]\nname = \"fault\"\ntrace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", \"70 mm\"]]\nmu = 0.5\nopening = \"1 um\"\n", ""),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
         };
     }();

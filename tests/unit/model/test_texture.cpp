@@ -1,6 +1,7 @@
 // What a rock with minerals, scatter, initial cracks and joints comes to on a specimen.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -315,6 +316,53 @@ TEST(Joints, OfASetHaveItsSpacingAndPersistence) {
         inside += 4.0 * reach * reach;
     }
     EXPECT_NEAR(length / inside, 0.6 / 0.004, 0.05 * 0.6 / 0.004);   // length of traces per area: persistence over spacing; 40 draws
+}
+
+// Crystals: each one mineral, one draw a boundary, contacts inside of a class of their own.
+TEST(Crystals, HaveOneMineralAndContactsOfTheirOwnInside) {
+    SpecimenSpec spec = fixtures::rectangle(0.04, 0.08);
+    spec.grain_sizes.minimum_m = 0.0013;
+    spec.grain_sizes.maximum_m = 0.0023;
+    spec.crystal_sizes = spec.grain_sizes;
+    spec.crystal_sizes->minimum_m = 0.004;
+    spec.crystal_sizes->maximum_m = 0.0074;
+    const auto specimen = fixtures::make(spec);
+    const std::vector<int>& crystal = specimen->crystal_of_cell;
+    ASSERT_EQ(crystal.size(), specimen->cells.cells.size());
+    EXPECT_EQ(*std::max_element(crystal.begin(), crystal.end()) + 1, specimen->quality.crystals);
+    EXPECT_NEAR(static_cast<double>(crystal.size()) / specimen->quality.crystals, 10.0, 2.0);   // (5.7 / 1.8)^2
+
+    Heterogeneity rock;
+    rock.minerals.phases = {{"a", 0.5, fixtures::granite()}, {"b", 0.5, fixtures::granite()}};
+    rock.crystal.sigma_nt_Pa = 30e6;
+    PhasePair inside{1, 1, {}, true};
+    inside.changes.sigma_nt_Pa = 40e6;
+    rock.minerals.pairs = {inside};
+    rock.scatter[Scattered::strength] = {.kind = DistributionKind::weibull, .weibull_modulus = 2.0};
+    const Texture t(*specimen, fixtures::granite(), fixtures::table7(), rock);
+    std::map<std::pair<int, int>, double> drawn;   // of each boundary between crystals
+    int inner = 0, outer = 0;
+    for (int c = 0; c < std::ssize(specimen->cells.cells); ++c)
+        for (const int other : specimen->cells.cells[c].neighbours) {
+            if (other <= c) continue;
+            const GrainContact contact = t.contact(c, other, {}, {});
+            if (crystal[c] == crystal[other]) {
+                ++inner;
+                EXPECT_TRUE(contact.inside);
+                EXPECT_EQ(t.phases()[c], t.phases()[other]);
+                EXPECT_EQ(contact.material.sigma_nt_Pa, t.phases()[c] == 1 ? 40e6 : 30e6);
+            } else {
+                ++outer;
+                EXPECT_FALSE(contact.inside);
+                const auto pair = std::minmax({crystal[c], crystal[other]});
+                const auto [place, fresh] = drawn.emplace(pair, contact.material.sigma_nt_Pa);
+                EXPECT_EQ(place->second, contact.material.sigma_nt_Pa);
+            }
+        }
+    const TextureSummary summary = t.summary();
+    EXPECT_EQ(summary.inside, inner);
+    EXPECT_EQ(summary.contacts_in_all, inner + outer);
+    EXPECT_GT(outer, std::ssize(drawn));   // several edges a boundary
 }
 
 }  // namespace

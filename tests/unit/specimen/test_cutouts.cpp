@@ -447,5 +447,45 @@ TEST(OutlineSpec, IsScaledWithAllThatIsInIt) {
     EXPECT_EQ(scaled(spec, 2.0).notches[1].width_m, 0.002);
 }
 
+// A cut whose faces stay in contact: cells meet on its line exactly, the area is whole, and each of its edges is between a cell to the left and one to the right.
+TEST(JoinedCuts, DivideCellsOnAStraightLineAndLeaveThemNeighbours) {
+    for (const bool through : {true, false}) {
+        SpecimenSpec spec;
+        spec.outline.width_m = 0.04;
+        spec.outline.height_m = 0.06;
+        spec.grain_sizes.minimum_m = 0.002;
+        spec.grain_sizes.maximum_m = 0.004;
+        const Vec2 from = through ? Vec2{-0.005, 0.015} : Vec2{0.008, 0.022}, to = through ? Vec2{0.045, 0.045} : Vec2{0.032, 0.036};
+        spec.outline.notches = {{from, to, 0.0, "fault", true}};
+        for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+            const Specimen s = make_specimen(spec, seed);
+            EXPECT_LT(s.quality.area_error, 1e-9);
+            const Vec2 along = (1.0 / norm(to - from)) * (to - from);
+            double length = 0.0;
+            int edges = 0;
+            for (int c = 0; c < std::ssize(s.cells.cells); ++c) {
+                const Cell& cell = s.cells.cells[c];
+                ASSERT_EQ(cell.seams.size(), cell.vertices.size());
+                const std::vector<Vec2> corners = corners_of_cell(s.cells, c);
+                EXPECT_GT(signed_area(corners), 0.0);
+                for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
+                    EXPECT_FALSE(cell.outline_edges[k] >= 4) << "an edge of the cut is left open";
+                    if (cell.seams[k] < 0) continue;
+                    ++edges;
+                    ASSERT_GE(cell.neighbours[k], 0);
+                    const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+                    EXPECT_NEAR(cross(along, a - from), 0.0, 1e-12);
+                    EXPECT_NEAR(cross(along, b - from), 0.0, 1e-12);
+                    length += 0.5 * norm(b - a);
+                    const double here = cross(along, centroid(corners) - from), there = cross(along, centroid(corners_of_cell(s.cells, cell.neighbours[k])) - from);
+                    EXPECT_LT(here * there, 0.0);
+                }
+            }
+            EXPECT_EQ(edges % 2, 0);
+            EXPECT_NEAR(length, through ? 0.04 * norm(to - from) / (to - from).x : norm(to - from), 1e-9) << seed;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace feldspar

@@ -253,7 +253,8 @@ class Viewer {
       const minerals = (s.meta.minerals || []).map((m) => rgb(m.colour)), plain = rgb(theme.get("grain"));
       for (let t = 0; t < count; ++t) {
         const [r, g, b] = minerals.length ? minerals[s.parts.phase[s.grain[t]]] : plain;
-        const shade = 1 - 0.075 * (((s.grain[t] * 2654435761) >>> 0) / 4294967296);   // neighbours differ a little
+        const unit = s.parts.crystal ? s.parts.crystal[s.grain[t]] : s.grain[t];
+        const shade = 1 - (s.parts.crystal ? 0.15 : 0.075) * (((unit * 2654435761) >>> 0) / 4294967296);   // neighbours differ a little
         colors[t] = (255 << 24) | (Math.round(b * shade) << 16) | (Math.round(g * shade) << 8) | Math.round(r * shade);
       }
       return colors;
