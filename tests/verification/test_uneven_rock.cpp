@@ -204,6 +204,33 @@ TEST(Joints, ThatAreSmoothFollowJaeger) {
     }
 }
 
+// A notched beam in which only a smooth joint over the ligament can break: the work of fracture is the joint's fracture energy times the length of its path.
+TEST(Joints, OverTheLigamentOfABeamTakeTheirFractureEnergy) {
+    SpecimenSpec spec = fixtures::rectangle(0.176, 0.04);   // a smaller one snaps back more, and the branch behind its strength is then less quasi-static
+    const double middle = 0.088, notch = 0.02;
+    spec.outline.notches = {{{middle, 0.0}, {middle, notch}, 0.0, ""}, {{middle, notch}, {middle, 0.041}, 0.0, "ligament", true}};
+    TestSetup setup = fixtures::setup(fixtures::make(spec), methods::three_point_bend);
+    setup.test = usual_test(methods::three_point_bend);
+    const ContactMaterial weak = setup.contact;
+    setup.contact.sigma_nt_Pa *= 10.0;
+    setup.contact.tau_Pa *= 10.0;
+    setup.contact.Gfn_J_m2 *= 100.0;
+    setup.contact.Gfs_J_m2 *= 100.0;
+    JointSpec joint;
+    joint.name = joint.cut = "ligament";
+    joint.contact = weak;
+    setup.rock.joints = {joint};
+    setup.test.stop_fraction = 0.02;
+    const TestResult r = run_test(setup, fixtures::threads(2));
+    const std::span<const MethodProperty> own = method_of(setup.test).properties;
+    double work = std::nan("");
+    for (std::size_t i = 0; i < own.size(); ++i)
+        if (own[i].name == std::string_view("work_of_fracture")) work = r.properties.of_method.at(i);
+    EXPECT_NEAR(work / weak.Gfn_J_m2, 1.0, 0.05) << r.stop_reason;   // path and ligament are of one length
+    // At a fiftieth of the load the last grains before the upper side have not opened to the end.
+    EXPECT_NEAR(r.energy_at_end.fracture / (weak.Gfn_J_m2 * (spec.outline.height_m - notch) * 0.08), 0.95, 0.05);
+}
+
 // A smooth joint without cohesion in direct shear slides at its friction: mean forces along and across it while it slides.
 TEST(Joints, ThatAreSmoothSlideAtTheirFriction) {
     for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {

@@ -222,7 +222,10 @@ private:
                 {"material.contact.tau", 0.1 * UCS, 0.6 * UCS},
                 {"material.contact.mu", 0.1, 1.0, false, false},
                 {"material.contact.Gfn", brittle * energy, std::max(25.0 * energy, toughest)},
-                {"material.contact.Gfs", 12.0 * energy, 500.0 * energy}};
+                {"material.contact.Gfs", 12.0 * energy, 500.0 * energy},
+                {"material.scatter.strength.modulus", 1.2, 10.0},
+                {"material.initial_cracks.broken", 0.02, 0.4},
+                {"material.minerals.unlike_strength", 0.2, 1.0}};
     }
 
     // What multiplies another key is a ratio.

@@ -44,6 +44,7 @@ std::string mm(double m) { return fmt::format("{:.4g} mm", 1e3 * m); }
 NotchFromBelow notch_from_below(const Outline& outline, double middle_m, double bottom_m, double height_m) {
     NotchFromBelow notch;
     for (const Cutout& cutout : outline.cutouts) {
+        if (cutout.joined) continue;   // nothing is taken away
         const Box box = bounding_box(cutout.vertices);
         constexpr double kClose = 1e-6;   // of the height
         const double axis = 0.5 * (box.lower.x + box.upper.x), close = kClose * height_m, tall = box.upper.y - box.lower.y;

@@ -254,6 +254,13 @@ private:
             const NotchSpec& other = axes_[k];
             const std::array<Vec2, 2> a = {notch.from_m, notch.to_m}, b = {other.from_m, other.to_m};
             const double between = distance_between(a, false, b, false) - 0.5 * (notch.width_m + other.width_m);
+            const auto meet = [&] {   // a joint may go on where a notch or another joint ends
+                for (const Vec2 p : a)
+                    for (const Vec2 q : b)
+                        if (norm(p - q) < 1e-9 * size_) return true;
+                return false;
+            };
+            if ((notch.joined || other.joined) && meet()) continue;
             if (between < bridge_)
                 throw InputError({"", 0, 0, notches_key}, fmt::format("notch {} and {} touch, cross, or leave a bridge thinner than half a grain", k + 1, cutout.name),
                                  "notches with rock between them, half a mean grain or more", "move one, or draw both as one hole with vertices");

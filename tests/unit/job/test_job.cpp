@@ -365,8 +365,8 @@ void expect_same(const Job& a, const Job& b) {
     EXPECT_EQ(a.laboratory, b.laboratory);
 }
 
-void expect_round_trip(const std::string& text) {
-    const Job first = parse_job(text, "round trip");
+void expect_round_trip(const std::string& text, const std::string& name = "round trip") {
+    const Job first = parse_job(text, name);
     const std::string written = resolved_toml(first);
     SCOPED_TRACE(written);
     Job second;
@@ -564,7 +564,7 @@ TEST(Examples, AreJobs) {
         ++found;
         Job job;
         ASSERT_NO_THROW(job = read_job(entry.path()));
-        expect_round_trip(job.text);
+        expect_round_trip(job.text, entry.path().string());
     }
     EXPECT_GE(found, 5);
 }
