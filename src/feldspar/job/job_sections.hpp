@@ -34,6 +34,9 @@ struct Physics {
     Heterogeneity rock;
     NumericsSpec numerics;
 };
+/// A friction coefficient, given itself or by its angle; nothing without either.
+std::optional<double> read_friction(const JobTable& table);
+
 /// What makes grains and contacts of [material] differ. @param model_decided_at  level of the table that chose the kind of grains
 /// @param grain, contact  of [material.grain] and [material.contact], for what minerals, pairs and joints do not give
 Heterogeneity read_rock(const JobTable& material, const ModelSpec& model, bool model_known, int model_decided_at, const GrainMaterial& grain, const ContactMaterial& contact);

@@ -1,5 +1,6 @@
 // One variant's physics: its own tables lie over the job's, and each over the presets that it names.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "feldspar/job/job_sections.hpp"
@@ -189,6 +190,18 @@ double read_eta(const JobTable& table) {
     return inverse ? 1.0 / table.number("kratio") : table.number("eta");
 }
 
+}  // namespace
+
+std::optional<double> read_friction(const JobTable& table) {
+    table.check({"mu", "phi"}, [&] {
+        if (table.has("mu") && table.level_of("mu") == table.level_of("phi")) table.fail("phi", "given beside mu, of which it is the angle", "either mu or phi = arctan mu");
+    });
+    if (!table.has("mu") && !table.has("phi")) return std::nullopt;
+    return table.level_of("phi") < table.level_of("mu") ? std::tan(table.quantity("phi")) : table.number("mu");
+}
+
+namespace {
+
 void read_softening(const JobTable& table, ContactMaterial& contact) {
     contact.Gfn_J_m2 = table.quantity("Gfn");
     contact.Gfs_J_m2 = table.quantity("Gfs");
@@ -211,7 +224,11 @@ ContactMaterial read_contact(const MaterialTables& material) {
     contact.eta = read_eta(table);
     contact.sigma_nt_Pa = table.quantity("sigma_nt");
     contact.tau_Pa = table.quantity("tau");
-    contact.mu = table.number("mu");
+    const std::optional<double> mu = read_friction(table);
+    table.check({"mu", "phi"}, [&] {
+        if (!mu) table.fail("mu", "missing key: mu", "mu, or the friction angle phi");
+    });
+    contact.mu = mu.value_or(0.0);
     if (softens) read_softening(table, contact);
     return contact;
 }

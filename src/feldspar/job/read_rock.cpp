@@ -150,8 +150,8 @@ private:
         ContactChanges c;
         for (const auto& [key, value] : {std::pair{"Kn", &c.Kn_Pa_m}, std::pair{"sigma_nt", &c.sigma_nt_Pa}, std::pair{"tau", &c.tau_Pa}, std::pair{"Gfn", &c.Gfn_J_m2}, std::pair{"Gfs", &c.Gfs_J_m2}})
             if (table.has(key)) *value = table.quantity(key);
-        for (const auto& [key, value] : {std::pair{"eta", &c.eta}, std::pair{"mu", &c.mu}})
-            if (table.has(key)) *value = table.number(key);
+        if (table.has("eta")) c.eta = table.number("eta");
+        c.mu = read_friction(table);
         if (contact_.law == ContactLaw::brittle) table.refuse({"Gfn", "Gfs"}, "law = \"brittle\"", "strengths");
         return c;
     }
@@ -284,7 +284,7 @@ private:
             ContactMaterial& c = joint.contact;
             c.Kn_Pa_m = table.has("Kn") ? table.quantity("Kn") : contact_.Kn_Pa_m;
             c.eta = table.has("eta") ? table.number("eta") : contact_.eta;
-            c.mu = table.has("mu") ? table.number("mu") : contact_.mu;
+            c.mu = read_friction(table).value_or(contact_.mu);
             c.sigma_nt_Pa = table.quantity("sigma_nt", 0.0);
             c.tau_Pa = table.quantity("tau", 0.0);
             c.Gfn_J_m2 = table.quantity("Gfn", 0.0);

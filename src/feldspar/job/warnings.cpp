@@ -46,6 +46,29 @@ void look_at_softness(const Variant& variant, double grain_m, const std::string&
         look("sigma_nt d / E, by which a grain strains before a contact breaks,", contact.sigma_nt_Pa / variant.grain.E_Pa * grain_m, "Is E in the unit that you mean (rocks have 1 to 100 GPa)?");
 }
 
+// Values that no rock is known to have; more often a unit is wrong than the rock is odd.
+void look_at_plausibility(const Variant& variant, const std::string& of, std::vector<std::string>& sentences) {
+    const auto look = [&](const std::string& key, double value, double low, double high, const char* unit, const char* why) {
+        if (value < low || value > high) sentences.push_back(fmt::format("{}{} = {:.4g}{} lies outside what rocks have ({:g} to {:g}{}): {}", of, key, value, unit, low, high, unit, why));
+    };
+    const auto look_at = [&](const ContactMaterial& contact, const std::string& place) {
+        look(place + "mu", contact.mu, 0.0, 2.0, "", "joints and grain boundaries slide at 0.3 to 1; 2 is an angle of 63 degrees (phi takes an angle)");
+        look(place + "eta", contact.eta, 0.05, 1.5, "", "is it kn/ks? Then it is kratio");
+        if (contact.law == ContactLaw::brittle || contact.Gfn_J_m2 == 0.0) return;
+        look(place + "Gfn", contact.Gfn_J_m2, 0.05, 1000.0, " N/m", "grain boundaries of granite have 12 to 38 N/m (Zhou and others 2025)");
+        look(place + "Gfs", contact.Gfs_J_m2, 1.0, 1e5, " N/m", "in shear 5 to 300 times as much as in tension is usual here");
+    };
+    look_at(variant.contact, "");
+    for (const JointSpec& joint : variant.rock.joints) look_at(joint.contact, "joint \"" + joint.name + "\": ");
+    if (variant.model.kind == GrainKind::flexible) look("E", variant.grain.E_Pa / 1e9, 0.5, 200.0, " GPa", "is E in the unit that you mean?");
+    look("density", variant.grain.density_kg_m3, 1000.0, 6000.0, " kg/m3", "is it in the unit that you mean?");
+    for (const Scattered quantity : scattered_quantities)
+        if (const Distribution& d = variant.rock.scatter[quantity]; d.kind == DistributionKind::weibull && d.weibull_modulus < 1.5 && d.lowest < 0.02 && quantity != Scattered::E)
+            sentences.push_back(fmt::format("{}{} scatters with a Weibull modulus of {:.3g} and no cut-off: one contact in a hundred has less than {:.2g} of the mean. lowest = 0.1 leaves these out "
+                                            "(docs/theory/heterogeneity.md, section 6)", of, name(quantity), d.weibull_modulus, std::pow(0.01, 1.0 / d.weibull_modulus) / std::tgamma(1.0 + 1.0 / d.weibull_modulus)));
+    for (const std::string& remark : variant.rock.remarks) sentences.push_back(of + remark);
+}
+
 double known(const Job& job, const char* key, double otherwise) {
     const auto found = job.laboratory.find(key);
     return found == job.laboratory.end() ? otherwise : found->second;
@@ -99,6 +122,7 @@ std::vector<std::string> warnings(const Job& job) {
     for (const Variant& variant : job.variants) {
         const std::string of = variant.name.empty() ? "" : variant.name + ": ";
         look_at_softening(variant.contact, of, sentences);
+        look_at_plausibility(variant, of, sentences);
         look_at_softness(variant, typical_diameter_m(job.specimen.grain_sizes), of, sentences);
     }
     look_at_slenderness(job, sentences);

@@ -81,5 +81,16 @@ TEST(Targets, IntervalsOfPlainMeansAreThoseOfTheValues) {
     EXPECT_GT(ratio.half_width(), 0.0);
 }
 
+TEST(Targets, OfCrackInitiationAreReadFromTheCrackVolumetricStrain) {
+    const std::vector<Target> targets{{.name = "sigma_ci_over_UCS", .value = 0.45}, {.name = "sigma_cd_over_UCS", .value = 0.8}};
+    const std::vector<Observable> quantities = observables_for(targets, {});
+    ASSERT_EQ(quantities.size(), 3U);   // sigma_ci, UCS, sigma_cd, each once
+    EXPECT_EQ(quantities[0].column, "sigma_ci_crack_volume_Pa");
+    EXPECT_EQ(quantities[1].name, "UCS");
+    EXPECT_DOUBLE_EQ(value_of(targets[0], quantities, {50e6, 100e6, 80e6}), 0.5);
+    EXPECT_DOUBLE_EQ(value_of(targets[1], quantities, {50e6, 100e6, 80e6}), 0.8);
+    EXPECT_EQ(property_of({.name = "sigma_ci"}), "sigma_ci_crack_volume_Pa");
+}
+
 }  // namespace
 }  // namespace feldspar

@@ -37,6 +37,8 @@ std::string uneven(const std::string& from, const std::string& to) { return edit
 
 std::vector<BadJob> bad_jobs() {
     return {
+        {"mu and phi", edited("mu = 0.40", "mu = 0.40\nphi = \"22 deg\""), 26, {"material.contact.phi", "either mu or phi"}},
+        {"neither mu nor phi", edited("mu = 0.40\n", ""), 19, {"missing key: mu", "phi"}},
         {"shares that do not add up", uneven("share = 0.4", "share = 0.3"), 28, {"material.phase", "add up to 0.9", "1 (100 %)"}},
         {"an unknown mineral in a pair", uneven("[\"quartz\", \"biotite\"]", "[\"quarz\", \"biotite\"]"), 40, {"material.pair[1].phases", "did you mean 'quartz'?"}},
         {"a pair without a law", uneven("unlike = \"mean\"", "unlike = \"given\""), 61, {"material.minerals.unlike", "the pair of \"quartz\" and \"quartz\" has no law", "unlike = \"weaker\""}},
@@ -575,7 +577,8 @@ std::vector<BadJob> bad_particle_jobs() {
                     "\"29.75 MPa\"\nmu = 0.40\nGfn = \"20 N/m\"\nGfs = \"800 N/m\"\n",
                     ""),
          2,
-         {"material.contact", "missing keys: sigma_nt, tau, mu, Gfn, Gfs"}},
+         {"material.contact", "missing keys: sigma_nt, tau, Gfn, Gfs", "missing key: mu", "the friction angle phi"},
+         2},
     };
 }
 
@@ -631,7 +634,7 @@ std::vector<BadJob> bad_variant_jobs() {
          with("[material]\nelastic_preset = \"augig-rigid\"\nstrength_preset = \"augig-table2-bilinear\"\n", ""),
          9,
          {"variant[1]", "missing key: material"},
-         2},   // the second variant, which has a preset for stiffnesses only, misses strengths
+         3},   // the second variant, which has a preset for stiffnesses only, misses strengths and friction
         {"plates that no variant has",
          edited("kind = \"direct-tension\"", "kind = \"brazilian\"\nmembrane_plates = 3", variant_job),
          42,

@@ -525,6 +525,24 @@ TEST(ReadJob, ASlenderColumnIsWarnedOf) {
         EXPECT_NE(sentences.front().find(part), std::string::npos) << part << " in " << sentences.front();
 }
 
+TEST(Job, FrictionMayBeGivenByItsAngle) {
+    EXPECT_NEAR(parse_job(edited("mu = 0.40", "phi = \"30 deg\""), "job").variants.front().contact.mu, 0.5773502691896258, 1e-15);
+    EXPECT_NEAR(parse_job(edited("mu = 0.5\n", "phi = \"45 deg\"\n", edited("[numerics]", uneven_material)), "job").variants.front().rock.joints[0].contact.mu, 1.0, 1e-15);
+}
+
+TEST(Warnings, NameWhatNoRockHas) {
+    const auto told = [](const std::string& text, const char* key) {
+        const std::vector<std::string> all = warnings(parse_job(text, "job"));
+        return std::any_of(all.begin(), all.end(), [&](const std::string& sentence) { return sentence.find(key) != std::string::npos; });
+    };
+    EXPECT_TRUE(warnings(parse_job(sample_job, "job")).empty());
+    EXPECT_TRUE(told(edited("mu = 0.40", "mu = 30"), "mu = 30"));
+    EXPECT_TRUE(told(edited("eta = 0.28", "eta = 3"), "eta = 3"));
+    EXPECT_TRUE(told(edited("Gfn = \"20 N/m\"", "Gfn = \"5000 N/m\""), "Gfn = 5000 N/m"));
+    EXPECT_TRUE(told(edited("[numerics]", "[material.scatter]\nstrength = { modulus = 1.3 }\n[numerics]"), "cut-off"));
+    EXPECT_FALSE(told(edited("[numerics]", "[material.scatter]\nstrength = { modulus = 1.3, lowest = 0.1 }\n[numerics]"), "cut-off"));
+}
+
 TEST(Warnings, NameADirectionThatDoesNotSoften) {
     EXPECT_TRUE(warnings(parse_job(sample_job, "job")).empty());
     const auto said = [](const std::vector<std::string>& sentences, const char* what) {
