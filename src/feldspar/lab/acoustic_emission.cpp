@@ -1,9 +1,11 @@
 #include "feldspar/lab/acoustic_emission.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "feldspar/base/regression.hpp"
 
@@ -115,19 +117,32 @@ BValue b_value(std::vector<double> magnitudes, double completeness, double bin) 
 
 double correlation_dimension(const std::vector<Vec2>& places) {
     constexpr double kFrom = 0.05, kTo = 0.30;   // of the largest distance: below a few points decide, above the specimen's edge
-    constexpr int kRadii = 12;
-    std::vector<double> distances;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j) distances.push_back(norm(places[i] - places[j]));
-    if (distances.empty()) return nan;
-    std::sort(distances.begin(), distances.end());
+    constexpr std::size_t kRadii = 12, kMost = 2000;   // of more places every n-th, as the pairs grow with the square
+    std::vector<Vec2> sample(std::min(places.size(), kMost));
+    for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = places[i * places.size() / sample.size()];
+    const auto for_each_distance = [&](auto visit) {
+        for (std::size_t i = 0; i < sample.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j) {
+                const Vec2 d = sample[i] - sample[j];
+                visit(dot(d, d));
+            }
+    };
+    double largest = 0.0;
+    for_each_distance([&](double squared) { largest = std::max(largest, squared); });
+    std::array<double, kRadii> r{};
+    for (std::size_t k = 0; k < kRadii; ++k) r[k] = std::sqrt(largest) * kFrom * std::pow(kTo / kFrom, static_cast<double>(k) / (kRadii - 1));
+    std::array<double, kRadii> closer{};   // pairs nearer than r[k], and not nearer than r[k - 1]
+    for_each_distance([&](double squared) {
+        if (squared >= r.back() * r.back()) return;
+        ++closer[static_cast<std::size_t>(std::find_if(r.begin(), r.end(), [&](double radius) { return squared < radius * radius; }) - r.begin())];
+    });
+    std::partial_sum(closer.begin(), closer.end(), closer.begin());
+    const double pairs = 0.5 * static_cast<double>(sample.size()) * (static_cast<double>(sample.size()) - 1.0);
     std::vector<double> log_r, log_C;
-    for (int k = 0; k < kRadii; ++k) {
-        const double r = distances.back() * kFrom * std::pow(kTo / kFrom, static_cast<double>(k) / (kRadii - 1));
-        const auto closer = std::lower_bound(distances.begin(), distances.end(), r) - distances.begin();
-        if (closer == 0) continue;
-        log_r.push_back(std::log(r));
-        log_C.push_back(std::log(static_cast<double>(closer) / static_cast<double>(distances.size())));
+    for (std::size_t k = 0; k < kRadii; ++k) {
+        if (closer[k] == 0.0) continue;
+        log_r.push_back(std::log(r[k]));
+        log_C.push_back(std::log(closer[k] / pairs));
     }
     return log_r.size() < 3 ? nan : regression_line(log_r, log_C).slope;
 }

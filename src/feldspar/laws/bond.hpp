@@ -199,8 +199,8 @@ FELDSPAR_LAW BondUpdate<Real> update_damaged(const BondLawOf<Number>& law, Real 
     Real damage = larger(s.damage, smaller(one, law.normal.damage(s.max_un_m) + law.shear.damage(s.max_us_m)));
     const Real tension_limit = (1.0 - damage) * law.sigma_nt_Pa * area;
     Real cohesion_limit = (1.0 - damage) * law.tau_Pa * area;
-    damage = where(Fn_trial < -tension_limit, law.normal.brittle) ? one : damage;
-    damage = where(NumberOf<Real>::absolute(Fs_trial) > cohesion_limit + law.mu * pressed, law.shear.brittle) ? one : damage;
+    if (maybe(law.normal.brittle)) damage = where(Fn_trial < -tension_limit, law.normal.brittle) ? one : damage;
+    if (maybe(law.shear.brittle)) damage = where(NumberOf<Real>::absolute(Fs_trial) > cohesion_limit + law.mu * pressed, law.shear.brittle) ? one : damage;
     s.damage = broken_before ? s.damage : damage;
     Real Fn = larger(Fn_trial, -tension_limit);
     if (law.secant_unloading) Fn = (s.un_m > none) & (s.max_un_m > law.normal.x0) ? -tension_limit * s.un_m / s.max_un_m : Fn;

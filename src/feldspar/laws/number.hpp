@@ -34,6 +34,12 @@ template <class Mask>
     requires(!std::is_same_v<Mask, bool>)
 FELDSPAR_LAW Mask where(Mask mask, Mask condition) { return mask & condition; }
 
+/// Whether a condition may hold: of one for all lanes itself, so that what hangs on it is left out; of one a lane always, as a look would cost more.
+FELDSPAR_LAW bool maybe(bool condition) { return condition; }
+template <class Mask>
+    requires(!std::is_same_v<Mask, bool>)
+FELDSPAR_LAW bool maybe(Mask) { return true; }
+
 /// The same value in all lanes.
 template <class Real>
 FELDSPAR_LAW Real number(double value) { return value - Real{}; }

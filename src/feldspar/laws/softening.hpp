@@ -41,8 +41,9 @@ struct SofteningEnvelopeOf {
     template <class Real>
     FELDSPAR_LAW Real damage(Real x) const {
         const Real none{}, one = number<Real>(1.0);
-        const Real softened = x <= none + x_y ? first_slope * (x - x0) : 1.0 - second_slope * (x_f - x);
-        const Real damage = x <= none + x0 ? none : x < none + x_f ? softened : one;
+        if (!maybe(first_slope != Number{})) return none;
+        const Real softened = x <= x_y - none ? first_slope * (x - x0) : 1.0 - second_slope * (x_f - x);
+        const Real damage = x <= x0 - none ? none : x < x_f - none ? softened : one;
         return first_slope == Number{} ? none : damage;
     }
 };

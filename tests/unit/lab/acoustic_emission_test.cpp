@@ -113,7 +113,7 @@ TEST(BValue, OfFewEventsIsNotTold) {
 TEST(FractalDimension, IsTwoInThePlaneAndOneOnALine) {
     RandomStream random(5, "places");
     std::vector<Vec2> plane, line;
-    for (int i = 0; i < 2000; ++i) {
+    for (int i = 0; i < 5000; ++i) {
         plane.push_back({random.uniform(), random.uniform()});
         line.push_back({random.uniform(), 0.0});
     }
