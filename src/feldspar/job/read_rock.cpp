@@ -176,23 +176,23 @@ private:
         });
         if (table.has("map"))
             table.check({"map"}, [&] {
-                const std::filesystem::path file = file_of(table, "map");
-                const std::string contents = contents_of(table, "map", file, "map");
-                minerals.map = read_phase_map(contents, file, minerals.phases);
-                minerals.map_file = std::filesystem::absolute(file).string();
-                note_file(contents);
+                minerals.map_file = read_file(table, "map", "map", [&](const std::string& contents, const std::filesystem::path& file) { minerals.map = read_phase_map(contents, file, minerals.phases); });
             });
         if (table.has("list"))
             table.check({"list"}, [&] {
-                const std::filesystem::path file = file_of(table, "list");
-                const std::string contents = contents_of(table, "list", file, "list");
-                minerals.list = read_phase_list(contents, file, minerals.phases);
-                minerals.list_file = std::filesystem::absolute(file).string();
-                note_file(contents);
+                minerals.list_file = read_file(table, "list", "list", [&](const std::string& contents, const std::filesystem::path& file) { minerals.list = read_phase_list(contents, file, minerals.phases); });
             });
     }
 
-    void note_file(const std::string& contents) { rock_.files += fmt::format("{:016x}\n", XXH3_64bits(contents.data(), contents.size())); }
+    // Has the file of a key read, and notes what is in it for the identity of runs. @return its absolute path
+    template <class Read>
+    std::string read_file(const JobTable& table, std::string_view key, const char* what, Read read) {
+        const std::filesystem::path file = file_of(table, key);
+        const std::string contents = contents_of(table, key, file, what);
+        read(contents, file);
+        rock_.files += fmt::format("{:016x}\n", XXH3_64bits(contents.data(), contents.size()));
+        return std::filesystem::absolute(file).string();
+    }
 
     Distribution read_distribution(const JobTable& table) const {
         Distribution d;
@@ -268,15 +268,13 @@ private:
             if (table.has("cut")) joint.cut = table.text("cut");
             if (table.has("file"))
                 table.check({"file", "unit", "layer"}, [&] {
-                    const std::filesystem::path file = file_of(table, "file");
                     joint.unit = table.text("unit", "");
                     joint.layer = table.text("layer", "");
-                    const std::string contents = contents_of(table, "file", file, "trace");
-                    TraceFile read = read_traces(contents, file, joint.unit, joint.layer);
-                    joint.lines_m = std::move(read.lines_m);
-                    joint.file = std::filesystem::absolute(file).string();
-                    rock_.remarks.insert(rock_.remarks.end(), read.remarks.begin(), read.remarks.end());
-                    note_file(contents);
+                    joint.file = read_file(table, "file", "trace", [&](const std::string& contents, const std::filesystem::path& file) {
+                        TraceFile read = read_traces(contents, file, joint.unit, joint.layer);
+                        joint.lines_m = std::move(read.lines_m);
+                        rock_.remarks.insert(rock_.remarks.end(), read.remarks.begin(), read.remarks.end());
+                    });
                 });
             else table.refuse({"unit", "layer"}, "a joint without a file");
             if (table.has("set")) joint.set = read_set(table.table("set"));

@@ -258,10 +258,7 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
     }
     // From bottom to top, as the packs of grains are: a contiguous share is a band of the specimen (model/bands.hpp).
     std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return std::pair{l.place, l.height} < std::pair{r.place, r.height}; });
-    for (const Facing& f : facing) {
-        const std::vector<int>& seams = cells.cells[f.ga].seams;
-        add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb, !seams.empty() && seams[f.ka] >= 0);
-    }
+    for (const Facing& f : facing) add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb, cells.cells[f.ga].on_seam(f.ka));
     lay_out_bonds(assembly);
 }
 
@@ -324,8 +321,7 @@ void add_contacts_of_particles(Assembly& assembly, const Tessellation& cells, Fi
         for (int lane = 0; lane < kMostLanes; ++lane) {
             if (inside_first && inside != filling.inside.end()) add_inside_contact(assembly, *inside++);
             if (!inside_first && across != filling.across.end()) {
-                const std::vector<int>& seams = cells.cells[across->cell_a].seams;
-                add_across_contact(assembly, *across, normal, !seams.empty() && seams[across->edge_a] >= 0);
+                add_across_contact(assembly, *across, normal, cells.cells[across->cell_a].on_seam(across->edge_a));
                 ++across;
             }
         }

@@ -168,6 +168,8 @@ struct JointSpec {
     std::optional<JointSet> set;
     ContactMaterial contact;                  ///< of the joint; no strength: it is open to sliding from the start
     double opening_m = 0.0;                   ///< its faces meet when the gap has closed by it
+
+    bool without_strength() const { return contact.sigma_nt_Pa == 0.0 && contact.tau_Pa == 0.0; }
 };
 
 struct Heterogeneity {

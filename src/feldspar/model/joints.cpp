@@ -128,7 +128,7 @@ void require_no_loose_grain(const Specimen& specimen, const std::vector<JointSpe
             bool open = false;
             for (std::size_t j = 0; j < joints.size(); ++j) {
                 if (!edges[j]->holds(c, other)) continue;
-                open = joints[j].contact.sigma_nt_Pa == 0.0 && joints[j].contact.tau_Pa == 0.0;
+                open = joints[j].without_strength();
                 if (open && names.find("\"" + joints[j].name + "\"") == std::string::npos) names += (names.empty() ? "\"" : ", \"") + joints[j].name + "\"";
             }
             held = held || !open;

@@ -293,7 +293,7 @@ GrainContact Texture::contact(int cell_a, int cell_b, Vec2 from, Vec2 to) const 
     for (std::size_t j = 0; j < fields_->joints.size(); ++j)
         if (fields_->joints[j]->holds(cell_a, cell_b)) {   // the last joint that takes an edge counts
             const JointSpec& joint = rock_->joints[j];
-            result = {.material = joint.contact, .broken = joint.contact.sigma_nt_Pa == 0.0 && joint.contact.tau_Pa == 0.0, .opening_m = joint.opening_m, .joint = static_cast<std::int32_t>(j)};
+            result = {.material = joint.contact, .broken = joint.without_strength(), .opening_m = joint.opening_m, .joint = static_cast<std::int32_t>(j)};
         }
     if (result.joint >= 0) return result;
 
@@ -312,7 +312,8 @@ GrainContact Texture::contact(int cell_a, int cell_b, Vec2 from, Vec2 to) const 
     const double u = cracks.any() ? hashed_uniform(specimen_->seed, "initial cracks", key) : 1.0;
     result.broken = u < cracks.broken;
     if (result.broken) result.opening_m = cracks.opening_m;
-    else if (u < cracks.broken + cracks.weakened) strength *= cracks.weakened_strength;
+    result.weakened = !result.broken && u < cracks.broken + cracks.weakened;
+    if (result.weakened) strength *= cracks.weakened_strength;
     const double tension = strength * drawn(Scattered::sigma_nt), shear = strength * drawn(Scattered::tau);
     m.sigma_nt_Pa *= tension;
     m.tau_Pa *= shear;
@@ -371,9 +372,8 @@ TextureSummary Texture::summary() const {
                 ++pairs[{low, high}];
             }
             const std::uint64_t key = key_of(c, other);
-            const double u = rock_->initial_cracks.any() ? hashed_uniform(specimen_->seed, "initial cracks", key) : 1.0;
             summary.broken += made.broken;
-            summary.weakened += !made.broken && u < rock_->initial_cracks.broken + rock_->initial_cracks.weakened;
+            summary.weakened += made.weakened;
             for (const Scattered quantity : scattered_quantities)
                 if (quantity != Scattered::E) draw(quantity, key, 0.5 * (from + to));
         }

@@ -21,6 +21,7 @@ struct GrainContact {
     ContactMaterial material;
     bool inside = false;          ///< inside a crystal
     bool broken = false;          ///< it has no strength from the start
+    bool weakened = false;        ///< of the initial cracks; not of broken ones
     double opening_m = 0.0;       ///< of a broken one: its faces meet when the gap has closed by it
     std::int32_t joint = -1;      ///< of the rock's joints; -1: none
 };

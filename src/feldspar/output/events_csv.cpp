@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <iterator>
 
+#include "feldspar/output/csv_table.hpp"
 #include "feldspar/output/event_columns.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
@@ -37,24 +37,8 @@ void write_events_csv(const RunDirectory& directory, const TestResult& result) {
     if (emission.events.empty()) return;
     std::string text = fmt::format("# acoustic events of {}: cracks within {:.6g} m and {:.6g} steps of each other (P64)\n# signs: {}\n", test_stem(result),
                                    emission.radius_m, emission.window_steps, sign_convention);
-    auto out = std::back_inserter(text);
-    for (const EventColumn& column : event_columns()) fmt::format_to(out, "#   {} [{}] {}\n", column.name, column.unit, column.meaning);
-    const char* between = "";
-    for (const EventColumn& column : event_columns()) {
-        fmt::format_to(out, "{}{}", between, column.name);
-        between = ",";
-    }
-    text += '\n';
-    for (const AcousticEvent& event : emission.events) {
-        between = "";
-        for (const EventColumn& column : event_columns()) {
-            const double value = column.value(event);
-            if (column.whole) fmt::format_to(out, "{}{}", between, static_cast<long long>(value));
-            else fmt::format_to(out, "{}{}", between, value);
-            between = ",";
-        }
-        text += '\n';
-    }
+    append_meanings(text, event_columns());
+    append_csv(text, event_columns(), emission.events);
     directory.write_text("events-" + test_stem(result) + ".csv", text);
 }
 

@@ -7,6 +7,7 @@
 
 #include "feldspar/base/printable.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/output/csv_table.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -25,9 +26,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
                    name(result.model.contact), name(result.contact.law), name(result.numerics.kind), name(result.model.plane));
     fmt::format_to(line, "# feldspar {}, commit {}\n# columns: name [unit] meaning\n", provenance.version, provenance.commit);
-    for (const FileColumn& column : history_columns(result)) {
-        fmt::format_to(line, "#   {} [{}] {}\n", column.name, column.unit, column.meaning);
-    }
+    append_meanings(text, history_columns(result));
     return text;
 }
 
@@ -43,23 +42,7 @@ std::string test_stem(const TestResult& result) { return test_stem(result.varian
 
 void write_history_csv(const RunDirectory& directory, const TestResult& result, const Provenance& provenance) {
     std::string text = header(result, provenance);
-    auto out = std::back_inserter(text);
-    const std::vector<FileColumn> columns = history_columns(result);
-    for (std::size_t c = 0; c < columns.size(); ++c) fmt::format_to(out, "{}{}", c == 0 ? "" : ",", columns[c].name);
-    text += '\n';
-    for (const HistoryRow& row : result.history) {
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-            if (c > 0) text += ',';
-            const double value = columns[c].value(row);
-            // {} prints the shortest decimal that reads back as the same double, whatever the locale
-            if (columns[c].whole) {
-                fmt::format_to(out, "{}", static_cast<long long>(value));
-            } else {
-                fmt::format_to(out, "{}", value);
-            }
-        }
-        text += '\n';
-    }
+    append_csv(text, history_columns(result), result.history);
     directory.write_text("history-" + test_stem(result) + ".csv", text);
 }
 

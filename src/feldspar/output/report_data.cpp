@@ -200,7 +200,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     add(test["post_peak"], result, QuantityGroup::post_peak);
     add(test, result, QuantityGroup::elastic);
     add(test["sigma_ci"], result, QuantityGroup::initiation);
-    if (result.rock.any() || (result.specimen && result.specimen->quality.crystals > 0)) test["rock"] = texture_json(result);
+    if (has_texture(result)) test["rock"] = texture_json(result);
     test["emission"] = acoustic_emission_json(result);
     test["crack_initiation"] = rounded(result.properties.sigma_ci_crack_volume_Pa * MPa);
     for (const QuantityGroup group : {QuantityGroup::damage, QuantityGroup::cracks, QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence,

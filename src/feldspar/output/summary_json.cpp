@@ -171,7 +171,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     test["quasi_static"] = std::string(1, result.evidence.grade);
     test["verdict"] = result.evidence.verdict;
     add(test, result, QuantityGroup::repeats);
-    if (result.rock.any() || (result.specimen && result.specimen->quality.crystals > 0)) test["rock"] = texture_json(result);
+    if (has_texture(result)) test["rock"] = texture_json(result);
     test["acoustic_emission"] = acoustic_emission_json(result);
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;

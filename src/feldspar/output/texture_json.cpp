@@ -11,6 +11,8 @@
 
 namespace feldspar {
 
+bool has_texture(const TestResult& result) { return result.rock.any() || (result.specimen && result.specimen->quality.crystals > 0); }
+
 nlohmann::ordered_json texture_json(const TestResult& result) {
     using Json = nlohmann::ordered_json;
     Json json = Json::object();
@@ -52,7 +54,7 @@ nlohmann::ordered_json acoustic_emission_json(const TestResult& result) {
     }
     Json counts = Json::array();
     for (const double radius : {2.0, 3.0, usual_event_radius}) {
-        const AcousticEmission other = acoustic_emission(result, radius);
+        const AcousticEmission other = radius == usual_event_radius ? emission : acoustic_emission(result, radius);
         counts.push_back({{"radius_grains", radius}, {"events", other.events.size()}, {"b_value", rounded(other.b_value.b)}});
     }
     const double count = static_cast<double>(emission.events.size());

@@ -7,6 +7,9 @@
 
 namespace feldspar {
 
+/// Whether the rock differs from place to place, or has crystals of several grains.
+bool has_texture(const TestResult& result);
+
 /// minerals, pairs, draws, initial cracks, joints: what the rock has of them; an empty object of an even rock.
 nlohmann::ordered_json texture_json(const TestResult& result);
 

@@ -154,6 +154,8 @@ struct Cell {
     std::vector<int> neighbours;     ///< an edge: the cell on the other side, or -1 on the outline
     std::vector<int> outline_edges;  ///< an edge: the outline's edge (label index), or -1 inside
     std::vector<int> seams{};        ///< an edge: the joined cut that it lies on, by its number among the outline's cutouts, or -1; empty: none of them
+
+    bool on_seam(int edge) const { return !seams.empty() && seams[static_cast<std::size_t>(edge)] >= 0; }
 };
 
 /// The cells on one shared vertex graph: two neighbours name the same two vertices, so no gap and no overlap is possible.
