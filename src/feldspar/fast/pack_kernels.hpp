@@ -301,16 +301,18 @@ FELDSPAR_INLINE void chunks_of_pack(const KernelArrays& a, const KernelStep& ste
     }
 }
 
-template <Frame frame, bool central>
+template <Frame frame, bool central, bool uneven>
 FELDSPAR_INLINE void contacts_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
-    if (pack.first_law >= 0) {
-        chunks_of_pack<frame, central, true>(a, step, pack, index);
-    } else {
-        chunks_of_pack<frame, central, false>(a, step, pack, index);
+    if constexpr (uneven) {
+        if (pack.first_law >= 0) return chunks_of_pack<frame, central, true>(a, step, pack, index);
     }
+    chunks_of_pack<frame, central, false>(a, step, pack, index);
 }
 
-void contacts(const KernelArrays& a, const KernelStep& step, int begin, int end) {
+// A function for each kind of rock: the code of laws by lane, in one function with the other, would slow that down.
+// @tparam uneven  whether there are packs whose contacts have laws of their own
+template <bool uneven>
+[[gnu::noinline]] void contacts_of_packs(const KernelArrays& a, const KernelStep& step, int begin, int end) {
     SideLine* const lines = a.lines;
     const std::uint32_t *line_a = a.line_a + kMostLanes * (begin + kFetchAhead), *line_b = a.line_b + kMostLanes * (begin + kFetchAhead);
     for (int i = begin; i < end; ++i) {
@@ -322,14 +324,22 @@ void contacts(const KernelArrays& a, const KernelStep& step, int begin, int end)
         line_a += kMostLanes;
         line_b += kMostLanes;
         if (!pack.rigid) {
-            contacts_of_pack<Frame::triangles, false>(a, step, pack, i);
+            contacts_of_pack<Frame::triangles, false, uneven>(a, step, pack, i);
         } else if (pack.first_normal >= 0) {
-            contacts_of_pack<Frame::rigid_own_normal, true>(a, step, pack, i);
+            contacts_of_pack<Frame::rigid_own_normal, true, uneven>(a, step, pack, i);
         } else if (pack.central) {
-            contacts_of_pack<Frame::rigid, true>(a, step, pack, i);
+            contacts_of_pack<Frame::rigid, true, uneven>(a, step, pack, i);
         } else {
-            contacts_of_pack<Frame::rigid, false>(a, step, pack, i);
+            contacts_of_pack<Frame::rigid, false, uneven>(a, step, pack, i);
         }
+    }
+}
+
+void contacts(const KernelArrays& a, const KernelStep& step, int begin, int end) {
+    if (a.own.Kn_Pa_m != nullptr) {
+        contacts_of_packs<true>(a, step, begin, end);
+    } else {
+        contacts_of_packs<false>(a, step, begin, end);
     }
 }
 
