@@ -46,6 +46,12 @@ public:
     /// Extent along the loaded diameter of the longest path so far, as a share of the distance between the plates.
     double span() const { return longest_ < 0 ? 0.0 : span_of(longest_); }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [disc, pieces, cracks, squares, longest, split_begin, split_step] = *this;
+        archive(disc, pieces, cracks, squares, longest, split_begin, split_step);
+    }
+
 private:
     struct Piece {
         Vec2 from, to;

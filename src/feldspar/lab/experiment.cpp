@@ -95,15 +95,15 @@ double mean_body_diameter(const Assembly& assembly) {
 }
 
 Experiment::Experiment(const TestSetup& s, const RunControl& c)
-    : setup(s),
+    : ExperimentState{.assembly = assemble(*s.specimen, s.model, s.grain, s.contact, s.rock)},
+      setup(s),
       method(method_of(s.test)),
       control(c),
-      assembly(assemble(*s.specimen, s.model, s.grain, s.contact, s.rock)),
       team(c.threads),
       gauge(assembly, *s.specimen),
       direction(method.loading.sign),
-      elastic_guess(guess(s, assembly)),
       stages(stages_of(s.test)) {
+    elastic_guess = guess(s, assembly);
     const MethodInput input = input_of(s);
     attach(assembly, *s.specimen, method.build.fixtures(input));
     length_m = method.build.length_m(input);

@@ -22,42 +22,49 @@ struct ElasticGuess {
     double nu = 0.0;
 };
 
-/// Everything that the stages of a test share. Each stage (prepare, load) is a function of its own.
-struct Experiment {
-    Experiment(const TestSetup& setup, const RunControl& control);
-
-    const TestSetup& setup;
-    const TestMethod& method;
-    const RunControl& control;
+/// What changes in the course of a test, beside its record: a copy of it is a state to which the test may go back.
+struct ExperimentState {
     Assembly assembly;
-    Team team;
-    StrainGauge gauge;
-    Gauges gauges;                ///< of the method
-    StepSettings settings;
-
-    double length_m = 0.0;        ///< strain = loading motion / length (MethodBuild)
-    double section_m2 = 0.0;      ///< stress = load / section
-    double direction = 1.0;       ///< +1 compression, -1 tension
-    ElasticGuess elastic_guess;
+    StepSettings settings{};
+    ElasticGuess elastic_guess{};
     double mass_factor = 0.0;     ///< of the scaled masses; 0 with real masses
     double omega2 = 0.0;          ///< largest omega^2 dt^2 of the initial state
     double omega2_bound = 4.0;    ///< its limit
     double travel_time = 0.0;     ///< of a wave over the length, units of dt
     double platen_travel_m = 0.0; ///< loading motion since the start
-    const std::vector<StageGroup> stages; ///< of the method or the job; empty: it loads until the test ends
     int stage = 0;                ///< number of the one under way, from 1; 0 without stages
     double axial_stiffness = 0.0; ///< N per m of platen travel, of the intact body (an estimate until the elastic start)
     long long step = 0;
     bool stepped = false;         ///< the velocities are those of a step that was made, not set since
     long long preparation_steps = 0;
-    PlatenWork platen_work;
+    PlatenWork platen_work{};
     double elastic_start_J = 0.0;
     double rate_control_J = 0.0;
     bool computed_start = false;  ///< the elastic phase was passed over in closed form
-    Array<Vec2> full_weight;      ///< of each node, N; empty without gravity
+    Array<Vec2> full_weight{};    ///< of each node, N; empty without gravity
     double dead_load_N = 0.0;     ///< what presses and weighs in all, beside the loading; 0 of a confined specimen, whose platens bear the pressure too
     double weight_start_J = 0.0;  ///< work of gravity before the account of the energy begins
-    HistoryRow consolidated;      ///< the state under dead loads, when the loading starts
+    HistoryRow consolidated{};    ///< the state under dead loads, when the loading starts
+};
+
+/// Everything that the stages of a test share. Each stage (prepare, load) is a function of its own.
+struct Experiment : ExperimentState {
+    Experiment(const TestSetup& setup, const RunControl& control);
+
+    const TestSetup& setup;
+    const TestMethod& method;
+    const RunControl& control;
+    Team team;
+    StrainGauge gauge;
+    Gauges gauges;                ///< of the method
+
+    double length_m = 0.0;        ///< strain = loading motion / length (MethodBuild)
+    double section_m2 = 0.0;      ///< stress = load / section
+    double direction = 1.0;       ///< +1 compression, -1 tension
+    const std::vector<StageGroup> stages; ///< of the method or the job; empty: it loads until the test ends
+
+    ExperimentState& state() { return *this; }
+    const ExperimentState& state() const { return *this; }
 
     bool stopped() const { return control.stop != nullptr && control.stop->load(); }
     bool confined() const { return is_confined(setup.test); }   ///< a pressure acts on the sides, and first on all
@@ -91,9 +98,11 @@ void choose_step(Experiment& experiment);
 void prepare(Experiment& experiment);
 
 class Recorder;
+class TestKeeping;
 
-/// Loads until a stop rule, the user or a force that is not a number ends it (@throws NumericalError for the last).
-void load(Experiment& experiment, Recorder& recorder, TestResult& result);
+/// Loads until a stop rule, the user or a force that is not a number ends it (@throws NumericalError for the last). Keeps the state of the test when it is due, and goes on
+/// from a kept one if there is one: the experiment is then in its base state (@throws StateError if it is another test's).
+void load(Experiment& experiment, Recorder& recorder, TestResult& result, TestKeeping& keeping);
 
 /// Loading steps that a test of this kind typically takes, for estimates of time only.
 double typical_steps(const Experiment& experiment);

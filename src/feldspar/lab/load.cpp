@@ -11,6 +11,7 @@
 #include "feldspar/base/stopwatch.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
@@ -27,7 +28,8 @@ using Clock = std::chrono::steady_clock;
 // Tells the caller how the loading goes, at most a few times a second.
 class ProgressReporter {
 public:
-    explicit ProgressReporter(const Experiment& e) : e_(e), usual_(typical_steps(e)) {}
+    /// @param steps_before  made before this began
+    ProgressReporter(const Experiment& e, long long steps_before) : e_(e), usual_(typical_steps(e)), steps_before_(steps_before) {}
 
     /// @param steps   of all passages so far
     /// @param in_all  that the test is now expected to take; 0: as is usual
@@ -36,7 +38,7 @@ public:
         const double elapsed = seconds_since(start_);
         if (elapsed - last_ < 0.2) return;
         last_ = elapsed;
-        const double steps = static_cast<double>(steps_made), rate = elapsed > 0.0 ? steps / elapsed : 0.0, expected = in_all > 0.0 ? in_all : usual_;
+        const double steps = static_cast<double>(steps_made), rate = elapsed > 0.0 ? static_cast<double>(steps_made - steps_before_) / elapsed : 0.0, expected = in_all > 0.0 ? in_all : usual_;
         TestProgress p;
         p.stage = "loading";
         p.step = steps_made;
@@ -52,6 +54,7 @@ public:
 private:
     const Experiment& e_;
     double usual_;
+    long long steps_before_;
     Clock::time_point start_ = Clock::now();
     double last_ = -1.0;
 };
@@ -93,28 +96,40 @@ double typical_steps(const Experiment& e) {
 
 namespace {
 
-// Everything that loading changes: a test may go back to it and pass the strength again, more slowly.
-struct Loading {
-    Assembly assembly;
-    double platen_travel_m, rate_control_J, speed;
-    long long step;
-    bool stepped;
-    PlatenWork platen_work;
+// What leads the loading, and goes back with the body.
+struct Lead {
     ContactFinder finder;
     ShapeWatch watch;
     LoadingModeUpdate mode_update;
     RateControl control;
-    Servo servo, arrest;
+    Servo servo;
+    Servo arrest;                    // of a test with stages, while it does not load
     StopRule stop;
     StageCursor stages;
-    int stage;
+    double largest_travel_m = 0.0;   // of a test with stages, so far
+};
+
+// Everything that loading changes: a test may go back to it and pass the strength again, more slowly.
+struct Loading {
+    ExperimentState body;
+    Lead lead;
     std::vector<StageRecord> stage_records;
-    double largest_travel_m;
     Recorder::Mark record;
     int new_contacts;
     long long shape_fallbacks;
     double angular_momentum_loss;
     double load_Pa;   // magnitude
+};
+
+// The passages of the strength so far: what does not go back.
+struct Passages {
+    double settled_Pa = 0.0;        // the peak whose passage was judged last
+    long long first_steps = 0;      // of the first passage
+    long long passage_start = 0;    // TestResult::steps when the passage under way began
+    double passed_Pa = 0.0;         // strength of the passage before, and its limits
+    PassageLimits passed_with{};
+    PassageLimits strict{};         // of the passage under way, until its peak
+    long long balanced_step = 0;    // when the typical body was within the target last
 };
 
 constexpr double kBetweenStates = 1.1;      // growth of the load between states that are kept
@@ -146,94 +161,129 @@ constexpr double kPatience = 100.0;   // travel times after which it goes on fas
 class Loader {
 public:
     Loader(Experiment& e, Recorder& recorder, TestResult& result)
-        : e_(e), recorder_(recorder), result_(result), finder_(e.assembly, 0.1 * mean_body_diameter(e.assembly)), watch_(e.assembly),
-          mode_update_(e.travel_time), control_(first_passage(e.setup.numerics, e.setup.test.kind), e.travel_time),
-          servo_(branch_is_followed(result) ? e.setup.test.control : LoadControl::displacement, kServoShare * wanted_, e.travel_time,
-                 static_cast<std::size_t>(std::max(0, e.gauges.find(e.setup.test.control_gauge)))),
-          arrest_(LoadControl::dissipation, kServoShare * wanted_, e.travel_time), stop_(e, result), stages_(e), progress_(e) {}
+        : e_(e), recorder_(recorder), result_(result),
+          lead_{ContactFinder(e.assembly, 0.1 * mean_body_diameter(e.assembly)), ShapeWatch(e.assembly), LoadingModeUpdate(e.travel_time), RateControl(first_, e.travel_time),
+                Servo(branch_is_followed(result) ? e.setup.test.control : LoadControl::displacement, kServoShare * wanted_, e.travel_time,
+                      static_cast<std::size_t>(std::max(0, e.gauges.find(e.setup.test.control_gauge)))),
+                Servo(LoadControl::dissipation, kServoShare * wanted_, e.travel_time), StopRule(e, result), StageCursor(e)} {}
 
-    void run() {
+    void run(TestKeeping& keeping) {
         const int block = adaptive_ ? 10 : 50;   // steps between records
-        if (adaptive_ && stages_.loads()) e_.change_speed(control_.start(e_.platen_travel_m));
-        const HistoryRow& first = recorder_.record(Phase::loading);
-        if (stages_.staged()) begin_stage(first_row());
-        if (const auto reason = stop_.ended(first, stages_.loads())) {   // the computed start may end at the maximum stress
-            result_.stop_reason = *reason;
-            return;
+        if (keeping.goes_on()) {
+            keeping.go_on([&](StateReader& reader) { go_on(reader); });
+        } else {
+            if (adaptive_ && lead_.stages.loads()) e_.change_speed(lead_.control.start(e_.platen_travel_m));
+            const HistoryRow& first = recorder_.record(Phase::loading);
+            if (lead_.stages.staged()) begin_stage(first_row());
+            if (const auto reason = lead_.stop.ended(first, lead_.stages.loads())) {   // the computed start may end at the maximum stress
+                result_.stop_reason = *reason;
+                return;
+            }
         }
+        progress_.emplace(e_, result_.steps);
         const Clock::time_point start = Clock::now();
+        const double before_s = loading_s_;
         for (;;) {
+            const bool stopped = e_.stopped();
+            if (keeping.due(stopped)) {
+                loading_s_ = before_s + seconds_since(start);
+                keeping.keep([&](StateWriter& writer) { keep(writer); });
+            }
+            if (stopped) {
+                result_.interrupted = true;
+                result_.stop_reason = "interrupted by the user";
+                break;
+            }
             e_.run(block);
             result_.steps += block;
             try {
-                maintain_contacts(e_, finder_, watch_, result_, block);
+                maintain_contacts(e_, lead_.finder, lead_.watch, result_, block);
             } catch (const NumericalError& error) {
                 throw NumericalError(fmt::format("{} at step {} (platen travel {:.3g} m): the motion has become unstable", error.what(), e_.step, e_.platen_travel_m));
             }
             const HistoryRow& row = recorder_.record(Phase::loading);
             if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa))
                 throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g})", e_.step, row.axial_strain));
-            servo_.observe(row, block);
-            std::optional<std::string> reason = stop_.ended(row, stages_.loads(), servo_.unloading());
-            if (!reason && stages_.staged()) reason = stages_.stuck(row);
-            progress_.loading(row, stop_.peak(), result_.steps, kUsualPassages * static_cast<double>(first_steps_));
-            if (e_.stopped()) {
-                result_.interrupted = true;
-                result_.stop_reason = "interrupted by the user";
-                break;
-            }
+            lead_.servo.observe(row, block);
+            std::optional<std::string> reason = lead_.stop.ended(row, lead_.stages.loads(), lead_.servo.unloading());
+            if (!reason && lead_.stages.staged()) reason = lead_.stages.stuck(row);
+            progress_->loading(row, lead_.stop.peak(), result_.steps, kUsualPassages * static_cast<double>(passages_.first_steps));
             const double load = e_.direction * row.axial_stress_Pa;
-            const bool past_peak = stages_.loads() && stop_.past_peak(load);
-            if (adaptive_ && stages_.loads() && !stop_.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && e_.method.reading != Reading::disc)) && passed_too_fast()) continue;
+            const bool past_peak = lead_.stages.loads() && lead_.stop.past_peak(load);
+            if (adaptive_ && lead_.stages.loads() && !lead_.stop.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && e_.method.reading != Reading::disc)) && passed_too_fast()) continue;
             if (reason) {
                 result_.stop_reason = *reason;
                 break;
             }
             if (!adaptive_) continue;
-            if (stages_.loads()) keep_state(load);
-            mode_update_.observe(e_.assembly, e_.step, e_.platen_travel_m, stages_.staged());
+            if (lead_.stages.loads()) keep_state(load);
+            lead_.mode_update.observe(e_.assembly, e_.step, e_.platen_travel_m, lead_.stages.staged());
             const bool known = past_peak && settled();
-            control_.set_limits(known ? first_ : limits(load));
-            if (stages_.staged()) {
+            lead_.control.set_limits(known ? first_ : limits(load));
+            if (lead_.stages.staged()) {
                 if (!go_on_in_stages(row, block, known)) break;
                 continue;
             }
-            double speed = control_.next(std::max(0.0, e_.settings.speed), recorder_.unbalanced(), force_scale(row),
+            double speed = lead_.control.next(std::max(0.0, e_.settings.speed), recorder_.unbalanced(), force_scale(row),
                                          e_.platen_travel_m, slowest_growth());
-            if (known && servo_.on()) {   // in balance the body takes what the rate control gives; out of balance it fails, and the servo leads
-                const double allowed = servo_.speed(e_.platen_travel_m);
-                speed = control_.balanced() ? std::max(speed, allowed) : allowed;
+            if (known && lead_.servo.on()) {   // in balance the body takes what the rate control gives; out of balance it fails, and the servo leads
+                const double allowed = lead_.servo.speed(e_.platen_travel_m);
+                speed = lead_.control.balanced() ? std::max(speed, allowed) : allowed;
             }
-            if (control_.balanced()) balanced_step_ = e_.step;
+            if (lead_.control.balanced()) passages_.balanced_step = e_.step;
             if (speed != e_.settings.speed) e_.change_speed(speed);
         }
         if (!result_.stages.empty()) result_.stages.back().last_row = result_.history.size() - 1;
-        result_.steps_to_peak = result_.steps - (e_.step - stop_.peak_step());
-        result_.ms_per_step = result_.steps > 0 ? 1e3 * seconds_since(start) / static_cast<double>(result_.steps) : 0.0;
+        result_.steps_to_peak = result_.steps - (e_.step - lead_.stop.peak_step());
+        result_.ms_per_step = result_.steps > 0 ? 1e3 * (before_s + seconds_since(start)) / static_cast<double>(result_.steps) : 0.0;
     }
 
 private:
+    // Everything that changes here and in what this leads; between two blocks of steps. The states to go back to stand first: they are read over the base state too.
+    void keep(StateWriter& writer) {
+        writer.write(states_.size());
+        for (const Loading& state : states_)
+            writer.write(state.body, state.lead, state.stage_records, state.record, state.new_contacts, state.shape_fallbacks, state.angular_momentum_loss, state.load_Pa);
+        writer.write(e_.state(), lead_, passages_, loading_s_, recorder_);
+        keep_course(writer, result_);
+    }
+
+    void go_on(StateReader& reader) {
+        std::size_t states = 0;
+        reader.read(states);
+        if (states > kStates) throw StateError("it has more states to go back to than a test keeps");
+        for (std::size_t i = 0; i < states; ++i) {
+            states_.push_back(present(0.0));
+            Loading& state = states_.back();
+            reader.read(state.body, state.lead, state.stage_records, state.record, state.new_contacts, state.shape_fallbacks, state.angular_momentum_loss, state.load_Pa);
+        }
+        reader.read(e_.state(), lead_, passages_, loading_s_, recorder_);
+        keep_course(reader, result_);
+    }
+
+    Loading present(double load_Pa) const {
+        return {e_.state(), lead_, result_.stages, recorder_.mark(), result_.new_contacts, result_.shape_fallbacks, result_.angular_momentum_loss, load_Pa};
+    }
+
     // Keeps the states at which the load has grown by a tenth: the last ones, so that one lies before the peak, whenever that comes.
     void keep_state(double load_Pa) {
-        if (stages_.staged() && load_Pa < kKeptFrom * stop_.peak()) return;
+        if (lead_.stages.staged() && load_Pa < kKeptFrom * lead_.stop.peak()) return;
         if (!(load_Pa > 0.0) || load_Pa < kBetweenStates * (states_.empty() ? 0.0 : states_.back().load_Pa)) return;
         if (states_.size() == kStates) states_.erase(states_.begin());
-        states_.push_back({e_.assembly, e_.platen_travel_m, e_.rate_control_J, e_.settings.speed, e_.step, e_.stepped, e_.platen_work, finder_, watch_,
-                           mode_update_, control_, servo_, arrest_, stop_, stages_, e_.stage, result_.stages, largest_travel_m_, recorder_.mark(), result_.new_contacts, result_.shape_fallbacks,
-                           result_.angular_momentum_loss, load_Pa});
+        states_.push_back(present(load_Pa));
     }
 
     // Of the passage under way. On the plateau of a confined specimen, below a strength that is known, it may be out of balance by as much as the
     // load is below it, and the load may grow by that in a travel time: more would be needed to show a strength that is none.
     PassageLimits limits(double load_Pa) const {
-        if (stages_.staged() && !stages_.loads()) return first_;   // no strength is passed
-        if (stages_.staged() && stages_.now().end == StageEnd::reversal) return {strict_.residual, std::min(strict_.growth, kGrowthSeen)};
-        if (stages_.staged() && settled_Pa_ > 0.0 && settled()) return first_;   // below a strength that is known
-        if (first_steps_ == 0) return strict_;
-        const double wider = std::max(1.0, static_cast<double>(result_.steps - passage_start_) / (kLongPassage * static_cast<double>(first_steps_)));
-        const double below = e_.confined() && settled() ? std::max(0.0, 1.0 - load_Pa / stop_.peak()) : 0.0;
-        return {std::min(first_.residual, wider * strict_.residual + below / e_.method.rate.residual_share),
-                std::min(first_.growth, wider * strict_.growth + below)};
+        if (lead_.stages.staged() && !lead_.stages.loads()) return first_;   // no strength is passed
+        if (lead_.stages.staged() && lead_.stages.now().end == StageEnd::reversal) return {passages_.strict.residual, std::min(passages_.strict.growth, kGrowthSeen)};
+        if (lead_.stages.staged() && passages_.settled_Pa > 0.0 && settled()) return first_;   // below a strength that is known
+        if (passages_.first_steps == 0) return passages_.strict;
+        const double wider = std::max(1.0, static_cast<double>(result_.steps - passages_.passage_start) / (kLongPassage * static_cast<double>(passages_.first_steps)));
+        const double below = e_.confined() && settled() ? std::max(0.0, 1.0 - load_Pa / lead_.stop.peak()) : 0.0;
+        return {std::min(first_.residual, wider * passages_.strict.residual + below / e_.method.rate.residual_share),
+                std::min(first_.growth, wider * passages_.strict.growth + below)};
     }
 
     // How fast the platen goes on at least, as a growth of its travel in a travel time of a wave: while the specimen fails by itself, and
@@ -241,45 +291,45 @@ private:
     // the limits stricter than that, and the wait for them would be without end.
     double slowest_growth() const {
         const double slow = kGrowthFailing * wanted_;
-        if (e_.confined() && e_.method.rate.residual_share * control_.residual() < kAim * wanted_) return slow;
-        return control_.residual() > kFailsByItself && unrest() > kRunOut ? slow * std::max(1.0, unrest() / kPatience) : 0.0;
+        if (e_.confined() && e_.method.rate.residual_share * lead_.control.residual() < kAim * wanted_) return slow;
+        return lead_.control.residual() > kFailsByItself && unrest() > kRunOut ? slow * std::max(1.0, unrest() / kPatience) : 0.0;
     }
 
     // Beside which unbalanced forces are small, N. What the dead loads leave out of balance says nothing while the load is small beside them.
     double force_scale(const HistoryRow& row) const { return std::max(std::abs(row.axial_stress_Pa) * e_.section_m2, 0.5 * e_.dead_load_N); }
 
     // How long the typical body has been out of balance, in travel times of a wave.
-    double unrest() const { return static_cast<double>(e_.step - balanced_step_) / e_.travel_time; }
+    double unrest() const { return static_cast<double>(e_.step - passages_.balanced_step) / e_.travel_time; }
 
     // Goes back before the peak, with stricter limits, if the estimated error of the strength is larger than what is wanted.
     bool passed_too_fast() {
-        if (stages_.staged() && !stop_.peak_in_stage()) settled_Pa_ = stop_.peak();   // where the stage turned, not where the rock failed
+        if (lead_.stages.staged() && !lead_.stop.peak_in_stage()) passages_.settled_Pa = lead_.stop.peak();   // where the stage turned, not where the rock failed
         if (settled() || states_.empty()) return false;
-        settled_Pa_ = stop_.peak();
-        if (result_.passages == 1) first_steps_ = result_.steps;
+        passages_.settled_Pa = lead_.stop.peak();
+        if (result_.passages == 1) passages_.first_steps = result_.steps;
         QuasiStaticEvidence& evidence = result_.evidence;
         evidence.confirmed = false;
         const QuasiStaticEvidence seen = judge(result_);
         if (seen.error_estimate <= wanted_) return false;
         const auto by = [](const PassageLimits& l, const PassageLimits& r) { return std::max(l.residual / r.residual, l.growth / r.growth); };
-        if (passed_Pa_ > 0.0 && by(strict_, passed_with_) <= kRepeat) {   // a repeat: what did not change the strength is no error of it
-            evidence.peak_change_at_third = stop_.peak() / passed_Pa_ - 1.0;
+        if (passages_.passed_Pa > 0.0 && by(passages_.strict, passages_.passed_with) <= kRepeat) {   // a repeat: what did not change the strength is no error of it
+            evidence.peak_change_at_third = lead_.stop.peak() / passages_.passed_Pa - 1.0;
             evidence.confirmed = std::abs(evidence.peak_change_at_third) < kSame * wanted_;
         }
         if (evidence.confirmed) return false;
-        if (result_.passages >= kMostPassages || result_.steps > kMostSteps * first_steps_) return false;
-        passed_Pa_ = stop_.peak();
-        passed_with_ = strict_;
+        if (result_.passages >= kMostPassages || result_.steps > kMostSteps * passages_.first_steps) return false;
+        passages_.passed_Pa = lead_.stop.peak();
+        passages_.passed_with = passages_.strict;
         const double of_residual = e_.method.rate.residual_share * seen.residual_median, of_growth = seen.error_estimate - of_residual;
-        strict_.residual = std::max(kStrictest * first_.residual, strict_.residual * std::clamp(kAim * wanted_ / of_residual, kMostStricter, 1.0));
-        strict_.growth = std::max(kStrictest * first_.growth, strict_.growth * std::clamp(kAim * wanted_ / of_growth, kMostStricter, 1.0));
+        passages_.strict.residual = std::max(kStrictest * first_.residual, passages_.strict.residual * std::clamp(kAim * wanted_ / of_residual, kMostStricter, 1.0));
+        passages_.strict.growth = std::max(kStrictest * first_.growth, passages_.strict.growth * std::clamp(kAim * wanted_ / of_growth, kMostStricter, 1.0));
         pass_again();
         return true;
     }
 
     void pass_again() {
         ++result_.passages;
-        while (states_.size() > 1 && states_.back().load_Pa > kBeforePeak * stop_.peak()) states_.pop_back();
+        while (states_.size() > 1 && states_.back().load_Pa > kBeforePeak * lead_.stop.peak()) states_.pop_back();
         go_back_to(states_.back());
     }
 
@@ -292,132 +342,104 @@ private:
 
     // @param row  in whose state the stage begins; of the first one that from which the start was computed
     void begin_stage(std::size_t row) {
-        result_.stages.push_back({stages_.kind(), stages_.group_number(), stages_.pass(), row, row, {}});
-        stages_.begin(result_.history[row]);
-        stop_.stage_began();
+        result_.stages.push_back({lead_.stages.kind(), lead_.stages.group_number(), lead_.stages.pass(), row, row, {}});
+        lead_.stages.begin(result_.history[row]);
+        lead_.stop.stage_began();
         states_.clear();
     }
 
     // What the loading motion does until the next row of a test with stages. @return false when the last stage has ended
     bool go_on_in_stages(const HistoryRow& row, int block, bool known) {
         const double load = e_.direction * row.axial_stress_Pa;
-        largest_travel_m_ = std::max(largest_travel_m_, e_.platen_travel_m);
-        double pace = control_.next(std::max(0.0, stages_.sense() * e_.settings.speed), recorder_.unbalanced(), force_scale(row),
-                                    largest_travel_m_, slowest_growth());
-        if (control_.balanced()) balanced_step_ = e_.step;
-        const bool past_peak = stages_.loads() && stop_.past_peak(load);
-        arrest_.observe(row, block);
-        if (const auto why = stages_.ended(row, stop_.peak(), past_peak, control_.residual() / first_.residual)) {
+        lead_.largest_travel_m = std::max(lead_.largest_travel_m, e_.platen_travel_m);
+        double pace = lead_.control.next(std::max(0.0, lead_.stages.sense() * e_.settings.speed), recorder_.unbalanced(), force_scale(row),
+                                    lead_.largest_travel_m, slowest_growth());
+        if (lead_.control.balanced()) passages_.balanced_step = e_.step;
+        const bool past_peak = lead_.stages.loads() && lead_.stop.past_peak(load);
+        lead_.arrest.observe(row, block);
+        if (const auto why = lead_.stages.ended(row, lead_.stop.peak(), past_peak, lead_.control.residual() / first_.residual)) {
             // A stage that ends while its specimen fails, as by its widening, has passed a strength too.
-            const bool fails = stages_.loads() && (!control_.balanced() || load < (1.0 - kSame * wanted_) * stop_.stage_peak());
+            const bool fails = lead_.stages.loads() && (!lead_.control.balanced() || load < (1.0 - kSame * wanted_) * lead_.stop.stage_peak());
             if (fails && passed_too_fast()) return true;
             result_.stages.back().ended = *why;
             result_.stages.back().last_row = result_.history.size() - 1;
-            if (stages_.failed(stop_.stage_peak(), e_.setup.test.stop_fraction * stop_.peak())) {
+            if (lead_.stages.failed(lead_.stop.stage_peak(), e_.setup.test.stop_fraction * lead_.stop.peak())) {
                 e_.change_speed(0.0);
-                result_.stop_reason = stop_.fallen();
+                result_.stop_reason = lead_.stop.fallen();
                 return false;
             }
-            if (!stages_.next()) {
+            if (!lead_.stages.next()) {
                 e_.change_speed(0.0);
                 result_.stop_reason = "the last stage is done: " + *why;
                 return false;
             }
             ++e_.stage;
             begin_stage(result_.history.size() - 1);
-            mode_update_.forget();
-            pace = control_.start(largest_travel_m_);
+            lead_.mode_update.forget();
+            pace = lead_.control.start(lead_.largest_travel_m);
             known = false;
         }
-        double speed = stages_.sense() * pace;
-        if (known && servo_.on()) {
-            const double allowed = servo_.speed(e_.platen_travel_m);
-            speed = control_.balanced() ? std::max(speed, allowed) : allowed;
+        double speed = lead_.stages.sense() * pace;
+        if (known && lead_.servo.on()) {
+            const double allowed = lead_.servo.speed(e_.platen_travel_m);
+            speed = lead_.control.balanced() ? std::max(speed, allowed) : allowed;
         }
-        if (stages_.kind() == StageKind::confine) speed = confine(row, block);
+        if (lead_.stages.kind() == StageKind::confine) speed = confine(row, block);
         // What fails while it is unloaded, or pressed, is taken back by the loading motion: at rest it would run away.
-        if (stages_.kind() == StageKind::unload || stages_.kind() == StageKind::confine) speed = std::min(speed, -arrest_.arrest(largest_travel_m_));
-        const double most = stages_.approach_m(stop_.peak()) / (block * e_.settings.dt);
-        if (std::abs(speed) > most && stages_.sense() != 0.0 && speed * stages_.sense() > 0.0) speed = stages_.sense() * most;
+        if (lead_.stages.kind() == StageKind::unload || lead_.stages.kind() == StageKind::confine) speed = std::min(speed, -lead_.arrest.arrest(lead_.largest_travel_m));
+        const double most = lead_.stages.approach_m(lead_.stop.peak()) / (block * e_.settings.dt);
+        if (std::abs(speed) > most && lead_.stages.sense() != 0.0 && speed * lead_.stages.sense() > 0.0) speed = lead_.stages.sense() * most;
         if (speed != e_.settings.speed) e_.change_speed(speed);
         return true;
     }
 
     // A part of the change of pressure, unless the body is out of balance. @return the speed with which the loading motion follows
     double confine(const HistoryRow& row, int block) {
-        const StageSpec& stage = stages_.now();
+        const StageSpec& stage = lead_.stages.now();
         for (std::size_t i = 0; i < e_.assembly.dead_loads.size(); ++i) {
             double& pressure = e_.assembly.dead_loads[i].pressure_Pa;
-            const double change = stage.sigma3_Pa - stages_.begun_Pa(i), whole = std::max(stage.sigma3_Pa, stages_.begun_Pa(i));
-            if (change == 0.0 || !stages_.changes(i)) continue;
+            const double change = stage.sigma3_Pa - lead_.stages.begun_Pa(i), whole = std::max(stage.sigma3_Pa, lead_.stages.begun_Pa(i));
+            if (change == 0.0 || !lead_.stages.changes(i)) continue;
             const double times = std::max(kLeastConfining, kConfining * std::abs(change) / whole);
-            const double share = control_.balanced() ? 1.0 : unrest() > kRunOut ? kGrowthFailing : 0.0;
+            const double share = lead_.control.balanced() ? 1.0 : unrest() > kRunOut ? kGrowthFailing : 0.0;
             const double next = pressure + share * change * block * e_.settings.dt / (times * e_.travel_time);
             pressure = change > 0.0 ? std::min(next, stage.sigma3_Pa) : std::max(next, stage.sigma3_Pa);
         }
         if (stage.keep == ConfineKeep::motion) return 0.0;
-        const double missing_N = (stages_.begun_load_Pa() - e_.direction * row.axial_stress_Pa) * e_.section_m2, most = 1e-3 * largest_travel_m_;
+        const double missing_N = (lead_.stages.begun_load_Pa() - e_.direction * row.axial_stress_Pa) * e_.section_m2, most = 1e-3 * lead_.largest_travel_m;
         return std::clamp(missing_N / e_.axial_stiffness / (2.0 * e_.travel_time), -most, most);
     }
 
-    bool settled() const { return stop_.peak() <= (1.0 + kSame * wanted_) * settled_Pa_; }
+    bool settled() const { return lead_.stop.peak() <= (1.0 + kSame * wanted_) * passages_.settled_Pa; }
 
     void go_back_to(const Loading& state) {
-        e_.assembly = state.assembly;
-        e_.platen_travel_m = state.platen_travel_m;
-        e_.rate_control_J = state.rate_control_J;
-        e_.settings.speed = state.speed;
-        e_.step = state.step;
-        e_.stepped = state.stepped;
-        e_.platen_work = state.platen_work;
-        finder_ = state.finder;
-        watch_ = state.watch;
-        mode_update_ = state.mode_update;
-        control_ = state.control;
-        servo_ = state.servo;
-        arrest_ = state.arrest;
-        stop_ = state.stop;
-        stages_ = state.stages;
-        e_.stage = state.stage;
+        e_.state() = state.body;
+        lead_ = state.lead;
         result_.stages = state.stage_records;
-        largest_travel_m_ = state.largest_travel_m;
         recorder_.go_back_to(state.record);
         result_.new_contacts = state.new_contacts;
         result_.shape_fallbacks = state.shape_fallbacks;
         result_.angular_momentum_loss = state.angular_momentum_loss;
-        balanced_step_ = e_.step;
-        passage_start_ = result_.steps;
-        settled_Pa_ = 0.0;
+        passages_.balanced_step = e_.step;
+        passages_.passage_start = result_.steps;
+        passages_.settled_Pa = 0.0;
     }
 
     Experiment& e_;
     Recorder& recorder_;
     TestResult& result_;
     const bool adaptive_ = e_.setup.numerics.kind == NumericsKind::adaptive;
-    ContactFinder finder_;
-    ShapeWatch watch_;
-    LoadingModeUpdate mode_update_;
-    RateControl control_;
     const double wanted_ = accuracy_of(residual_target(e_.setup.numerics, e_.setup.test.kind), e_.setup.test.kind);
-    Servo servo_;
-    Servo arrest_;   // of a test with stages, while it does not load
-    StopRule stop_;
-    StageCursor stages_;
-    double largest_travel_m_ = 0.0;   // of a test with stages, so far
-    ProgressReporter progress_;
-    std::vector<Loading> states_;   // the oldest first
-    double settled_Pa_ = 0.0;       // the peak whose passage was judged last
-    long long first_steps_ = 0;     // of the first passage
-    long long passage_start_ = 0;   // result_.steps when the passage under way began
-    double passed_Pa_ = 0.0;        // strength of the passage before, and its limits
-    PassageLimits passed_with_;
     const PassageLimits first_ = first_passage(e_.setup.numerics, e_.setup.test.kind);
-    PassageLimits strict_ = first_;   // of the passage under way, until its peak
-    long long balanced_step_ = e_.step;   // when the typical body was within the target last
+    Lead lead_;
+    std::vector<Loading> states_;   // the oldest first
+    Passages passages_{.strict = first_, .balanced_step = e_.step};
+    double loading_s_ = 0.0;        // before the program was ended, if it was
+    std::optional<ProgressReporter> progress_;
 };
 
 }  // namespace
 
-void load(Experiment& e, Recorder& recorder, TestResult& result) { Loader(e, recorder, result).run(); }
+void load(Experiment& e, Recorder& recorder, TestResult& result, TestKeeping& keeping) { Loader(e, recorder, result).run(keeping); }
 
 }  // namespace feldspar

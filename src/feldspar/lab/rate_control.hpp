@@ -59,6 +59,12 @@ public:
 
     void set_limits(PassageLimits limits) { limits_ = limits; }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [limits, travel_time, largest_force, residual, recent] = *this;
+        archive(limits, travel_time, largest_force, residual, recent);
+    }
+
 private:
     double fastest(double platen_travel_m) const;
 
@@ -84,6 +90,12 @@ public:
 
     /// The window under way does not count: the loading turns.
     void forget() { start_step_ = -1; }
+
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [window, start_step, start_travel, start_displacement] = *this;
+        archive(window, start_step, start_travel, start_displacement);
+    }
 
 private:
     void begin(const Assembly& assembly, long long step, double platen_travel_m);

@@ -28,6 +28,12 @@ public:
     Mark mark() const;
     void go_back_to(const Mark& mark);
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [experiment, result, now] = *this;
+        archive(now);
+    }
+
     /// Puts the snapshots in order and adds the end and the peak. @param last_row  the last row of the history
     void finish();
 

@@ -8,6 +8,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/stopwatch.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/memory.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
@@ -39,8 +40,8 @@ double largest_energy_residual(const std::vector<HistoryRow>& history) {
     return largest;
 }
 
-TestResult run_once(const TestSetup& setup, const RunControl& control) {
-    const Clock::time_point start = Clock::now();
+// With what the setup gives.
+TestResult begin_result(const TestSetup& setup) {
     TestResult result;
     result.test = setup.test;
     result.model = setup.model;
@@ -51,6 +52,12 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     result.numerics = setup.numerics;
     result.seed = setup.specimen->seed;
     result.specimen = setup.specimen;
+    return result;
+}
+
+TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeeping& keeping) {
+    TestResult result = begin_result(setup);
+    if (keeping.take_finished(result)) return result;
 
     Experiment e(setup, control);
     result.gauges = e.gauges.specs();
@@ -60,21 +67,24 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     result.stable_omega2 = e.omega2;
     result.stable_limit = e.omega2_bound;
     Recorder recorder(e, result);
+    keeping.begin(e.state());
     try {
-        prepare(e);
-        HistoryRow from;   // where the computed start began: nothing, or the state under dead loads
-        if (e.has_dead_loads()) {
-            from = e.consolidated;
-            from.phase = Phase::consolidation;
-            HistoryRow unloaded;
-            unloaded.phase = Phase::consolidation;
-            result.history.push_back(unloaded);
-            result.history.push_back(from);
+        if (!keeping.goes_on()) {
+            prepare(e);
+            HistoryRow from;   // where the computed start began: nothing, or the state under dead loads
+            if (e.has_dead_loads()) {
+                from = e.consolidated;
+                from.phase = Phase::consolidation;
+                HistoryRow unloaded;
+                unloaded.phase = Phase::consolidation;
+                result.history.push_back(unloaded);
+                result.history.push_back(from);
+            }
+            if (setup.numerics.kind == NumericsKind::adaptive && e.computed_start) recorder.elastic_phase(from);
+            result.travel_time = e.travel_time;
+            result.travel_steps = e.travel_time / e.settings.dt;
         }
-        if (setup.numerics.kind == NumericsKind::adaptive && e.computed_start) recorder.elastic_phase(from);
-        result.travel_time = e.travel_time;
-        result.travel_steps = e.travel_time / e.settings.dt;
-        load(e, recorder, result);
+        load(e, recorder, result, keeping);
     } catch (const Interrupted&) {
         result.interrupted = true;
         result.stop_reason = "interrupted by the user";
@@ -89,7 +99,8 @@ TestResult run_once(const TestSetup& setup, const RunControl& control) {
     result.energy_residual = largest_energy_residual(result.history);
     result.properties = measure(result);
     result.evidence = judge(result);
-    result.wall_s = seconds_since(start);
+    result.wall_s = keeping.seconds();
+    if (!result.interrupted) keeping.add_finished(result);
     return result;
 }
 
@@ -107,34 +118,46 @@ TestSetup at_a_third(TestSetup setup) {
 // Another damping than the test's own, as far from it as 0.5 is from the usual 0.7.
 double other_damping(double damping) { return damping > 0.6 ? damping - 0.2 : damping + 0.2; }
 
+// Once, and again where the numerics ask for it.
+TestResult run_with_repeats(const TestSetup& setup, const RunControl& control) {
+    TestKeeping keeping(control.keeper);
+    TestResult result = run_once(setup, control, keeping);
+    if (!setup.numerics.confirm || result.interrupted) return result;
+    bool interrupted = false;
+    const auto peak_change = [&](const TestSetup& changed) -> std::optional<double> {   // none if the repeat shows no strength
+        const TestResult repeat = run_once(changed, control, keeping);
+        result.wall_s += repeat.wall_s;
+        interrupted = repeat.interrupted;
+        if (repeat.interrupted || !(repeat.properties.peak_stress_Pa > 0.0)) return std::nullopt;
+        return repeat.properties.peak_stress_Pa / result.properties.peak_stress_Pa - 1.0;
+    };
+    if (const auto change = peak_change(at_a_third(setup))) {
+        result.evidence.confirmed = true;
+        result.evidence.peak_change_at_third = *change;
+    }
+    if (setup.numerics.kind != NumericsKind::dynamic && !interrupted) {
+        TestSetup damped = setup;
+        damped.numerics.damping = other_damping(setup.numerics.damping);
+        if (const auto change = peak_change(damped)) {
+            result.evidence.other_damping = damped.numerics.damping;
+            result.evidence.peak_change_at_other_damping = *change;
+        }
+    }
+    result.evidence = judge(result);   // the repeats are part of the evidence
+    result.interrupted = interrupted;
+    return result;
+}
+
 }  // namespace
 
 TestResult run_test(const TestSetup& setup, const RunControl& control) {
-    TestResult result = run_once(setup, control);
-    if (setup.numerics.confirm && !result.interrupted) {
-        bool interrupted = false;
-        const auto peak_change = [&](const TestSetup& changed) -> std::optional<double> {   // none if the repeat shows no strength
-            const TestResult repeat = run_once(changed, control);
-            result.wall_s += repeat.wall_s;
-            interrupted = repeat.interrupted;
-            if (repeat.interrupted || !(repeat.properties.peak_stress_Pa > 0.0)) return std::nullopt;
-            return repeat.properties.peak_stress_Pa / result.properties.peak_stress_Pa - 1.0;
-        };
-        if (const auto change = peak_change(at_a_third(setup))) {
-            result.evidence.confirmed = true;
-            result.evidence.peak_change_at_third = *change;
+    for (;;) {
+        try {
+            return run_with_repeats(setup, control);
+        } catch (const StateError& error) {   // from what was kept: without that there is none
+            control.keeper->refuse(error.what());
         }
-        if (setup.numerics.kind != NumericsKind::dynamic && !interrupted) {
-            TestSetup damped = setup;
-            damped.numerics.damping = other_damping(setup.numerics.damping);
-            if (const auto change = peak_change(damped)) {
-                result.evidence.other_damping = damped.numerics.damping;
-                result.evidence.peak_change_at_other_damping = *change;
-            }
-        }
-        result.evidence = judge(result);   // the repeats are part of the evidence
     }
-    return result;
 }
 
 TestPreview preview_test(const TestSetup& setup, const RunControl& control) {

@@ -5,7 +5,9 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "feldspar/base/state_archive.hpp"
 #include "feldspar/methods/result.hpp"
 #include "feldspar/model/heterogeneity_spec.hpp"
 
@@ -23,12 +25,31 @@ struct TestProgress {
     double seconds_left = 0.0;      ///< an estimate; < 0 when there is none
 };
 
+/// Where a running test keeps its state, so that it goes on where it was after the program was ended.
+class StateKeeper {
+public:
+    virtual ~StateKeeper() = default;
+
+    /// Whether the state is to be kept now; asked at every record. @param stopped  the test ends here
+    virtual bool due(bool stopped) = 0;
+
+    /// Keeps what `write` puts. What was kept before stays until this is whole. A state that cannot be kept is no reason to end the test.
+    virtual void keep(const std::function<void(const StatePut&)>& write) = 0;
+
+    /// What was kept last; empty if nothing was.
+    virtual std::vector<char> kept() = 0;
+
+    /// What kept() gave is not a state of this test: it is not to be given again.
+    virtual void refuse(const std::string& reason) = 0;
+};
+
 /// What the caller decides about the running itself; none of it changes a result.
 struct RunControl {
     int threads = 1;
     const std::atomic<int>* more_threads = nullptr;      ///< may grow while the test runs: so many threads from then on
     std::function<void(const TestProgress&)> progress;   ///< may be empty
     const std::atomic<bool>* stop = nullptr;             ///< becomes true when the user interrupts: the test ends at the next record
+    StateKeeper* keeper = nullptr;                       ///< if it has the state of this test, the test goes on from there
 };
 
 /// Everything that defines a test.
@@ -42,7 +63,7 @@ struct TestSetup {
     Heterogeneity rock{};   ///< what of grains and contacts differs from these
 };
 
-/// Runs the test; the result has its properties and evidence filled in. With NumericsSpec::confirm the test is run again at a
+/// Runs the test, or the rest of it; the result has its properties and evidence filled in. With NumericsSpec::confirm the test is run again at a
 /// third of the target. @throws InputError for an unstable setting, NumericalError when a force is not a number.
 TestResult run_test(const TestSetup& setup, const RunControl& control);
 

@@ -34,6 +34,12 @@ public:
     /// Whether the specimen fails so slowly that a low stress is that of an unloaded body, not of a failed one.
     bool unloading() const;
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [control, share, travel_time, gauge, observed, lateral_origin, before, growth] = *this;
+        archive(control, share, travel_time, gauge, observed, lateral_origin, before, growth);
+    }
+
 private:
     LoadControl control_;
     double share_, travel_time_;

@@ -56,6 +56,12 @@ public:
     /// Stress at which the stage began, positive in the sense of the loading.
     double begun_load_Pa() const { return begun_load_Pa_; }
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [experiment, group, pass, stage, begun_step, begun_value, begun_load, begun, value, travel, slope, top, loaded_before, loads, first_volume, largest_volume] = *this;
+        archive(group, pass, stage, begun_step, begun_value, begun_load, begun, value, travel, slope, top, loaded_before, loads, first_volume, largest_volume);
+    }
+
 private:
     const StageGroup& group() const { return e_->stages[static_cast<std::size_t>(group_)]; }
     double target(double largest_load_Pa) const;

@@ -45,6 +45,12 @@ public:
     /// That the stress has fallen to the share of the peak at which the test ends, in words.
     std::string fallen() const;
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [experiment, result, splitting, cracks_seen, gauge, peak_strain, peak, stage_peak, stage_step, peak_step] = *this;   // the first two are whose rule it is
+        archive(splitting, cracks_seen, gauge, peak_strain, peak, stage_peak, stage_step, peak_step);
+    }
+
 private:
     bool split() const { return splitting_ && splitting_->split(); }
     bool peak_counts() const;

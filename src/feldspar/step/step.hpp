@@ -115,6 +115,12 @@ public:
     /// @throws NumericalError if a body's position is not a finite number
     Changes update(Assembly& assembly, double mass_factor);
 
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [skin, centres, candidates, overlapping, overlaps] = *this;
+        archive(skin, centres, candidates, overlapping, overlaps);
+    }
+
 private:
     struct Candidate {
         int a, b;
@@ -146,6 +152,12 @@ class ShapeWatch {
 public:
     explicit ShapeWatch(const Assembly& assembly) { measure(assembly, 0); }
     ShapeChoice look(Assembly& assembly, double mass_factor);
+
+    template <class Archive>
+    void keep(Archive& archive) {
+        auto& [looks, allowed, seen] = *this;
+        archive(looks, allowed, seen);
+    }
 
 private:
     void measure(const Assembly& assembly, std::size_t first_contact);
