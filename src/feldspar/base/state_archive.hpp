@@ -260,7 +260,7 @@ public:
     template <class... T>
     static StateBase of(const T&... values) {
         StateBase base;
-        base(const_cast<T&>(values)...);
+        base(const_cast<T&>(values)...);   // it only looks at them
         return base;
     }
 
@@ -270,15 +270,26 @@ public:
         return found != columns_.end() && found->second == std::pair{bytes, hash};
     }
 
-    void bytes(const void*, std::size_t) {}
-    void count(std::size_t&) {}
+    /// Of all of it.
+    std::uint64_t fingerprint() const { return fingerprint_; }
+
+    void bytes(const void* data, std::size_t count) { note(hash_of_bytes(data, count)); }
+    void count(std::size_t& count) { note(count); }
     void column(const char* data, std::size_t bytes) {
-        if (bytes > 0) columns_[path()] = {bytes, hash_of_bytes(data, bytes)};
+        const std::uint64_t hash = hash_of_bytes(data, bytes);
+        if (bytes > 0) columns_[path()] = {bytes, hash};
+        note(hash);
     }
     std::size_t number_of(const void*) { return 0; }
     bool is_new(std::size_t) { return false; }
 
 private:
+    void note(std::uint64_t value) {
+        const std::array<std::uint64_t, 2> both{fingerprint_, value};
+        fingerprint_ = hash_of_bytes(both.data(), sizeof both);
+    }
+
+    std::uint64_t fingerprint_ = 0;
     std::unordered_map<std::uint64_t, std::pair<std::size_t, std::uint64_t>> columns_;
 };
 

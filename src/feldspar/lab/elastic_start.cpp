@@ -74,8 +74,9 @@ double first_damage(const Assembly& assembly, const BodyState& base, const BodyS
 }
 
 Relaxation relax(Assembly& assembly, Team& team, Strength strength, double tolerance, long long maximum_steps,
-                 const std::function<bool()>& stop) {
+                 const std::function<bool()>& stop, double dt) {
     StepSettings settings;
+    settings.dt = dt;
     settings.strength = strength;
     Nodes& nodes = assembly.nodes;
     std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
@@ -99,7 +100,7 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
             inertia += nodes.mass[n] * dot(v, v);
             force += norm({fx * nodes.force[n].x, fy * nodes.force[n].y});
         }
-        if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9, kOfCritical * 2.0 * std::sqrt(stiffness / inertia));
+        if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9 / dt, kOfCritical * 2.0 * std::sqrt(stiffness / (dt * inertia)));
         if (result.steps % 10 == 0) {
             constexpr double kNothing = 1e-6;   // of the largest: a body that nothing holds together, behind an open joint, has come to rest without force
             const double contacts = mean_contact_force(assembly);

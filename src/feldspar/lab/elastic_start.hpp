@@ -36,7 +36,8 @@ struct Relaxation {
 /// Dynamic relaxation with the platens at rest and adaptive viscous damping: critical for the slowest mode that is still
 /// moving, whose frequency is the Rayleigh quotient of the last step (after Underwood 1983).
 /// @param stop  asked every step; the relaxation ends early when it returns true
+/// @param dt    stable with the masses of the nodes: 1 with scaled masses, else s
 Relaxation relax(Assembly& assembly, Team& team, Strength strength, double tolerance, long long maximum_steps,
-                 const std::function<bool()>& stop);
+                 const std::function<bool()>& stop, double dt = 1.0);
 
 }  // namespace feldspar

@@ -49,7 +49,9 @@ public:
     template <class Read>
     void go_on(Read read) {
         under_way_ = false;
-        reader_->read(before_s_);
+        std::uint64_t fingerprint = 0;
+        reader_->read(fingerprint, before_s_);
+        if (fingerprint != base_.fingerprint()) throw StateError("it is of another specimen or material, or of another version of the program");
         read(*reader_);
         if (!reader_->at_end()) throw StateError("more follows than belongs to it");
         reader_.reset();
@@ -63,7 +65,7 @@ public:
             StateWriter writer(put, base_);
             writer.write(finished_.size());
             for (const TestResult& result : finished_) keep_course(writer, const_cast<TestResult&>(result));
-            writer.write(true, seconds());
+            writer.write(true, base_.fingerprint(), seconds());
             write(writer);
         });
     }

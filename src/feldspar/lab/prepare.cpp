@@ -22,7 +22,7 @@ constexpr long long kMaximumSteps = 20000;
 
 void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
     if (e.control.progress) e.control.progress({.stage = "elastic start", .step = e.preparation_steps});
-    const Relaxation r = relax(e.assembly, e.team, Strength::unlimited, tolerance, kMaximumSteps, [&] { return e.stopped(); });
+    const Relaxation r = relax(e.assembly, e.team, Strength::unlimited, tolerance, kMaximumSteps, [&] { return e.stopped(); }, e.settings.dt);
     e.preparation_steps += r.steps;
     if (e.stopped()) throw Interrupted();
     if (!r.converged)
