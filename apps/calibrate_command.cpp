@@ -54,6 +54,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     control.keep = Keep::numbers;
     control.retry_failed = options.retry_failed;
     control.stop = &stop_requested();
+    control.checkpoints = checkpoint_settings();
     control.provenance = collect_provenance(options.command_line, control.threads);
     const RunLaboratory* running = nullptr;
     control.progress = [&](const Run& run, const TestProgress& state) { progress.report(running->number_of(run), run, state); };

@@ -25,6 +25,7 @@ struct JobOptions {
 
 struct RunOptions : JobOptions {
     std::optional<std::string> out;
+    bool fresh = false;        ///< never goes on with an unfinished run
     std::string command_line;  ///< for provenance
 };
 

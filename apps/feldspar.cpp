@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 #include "feldspar/base/printable.hpp"
+#include "feldspar/base/units.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/output/results.hpp"
 
@@ -78,9 +80,25 @@ void add_thread_options(CLI::App& command, Options& options, const std::string& 
     add("--at-once", options.at_once, "at most so many side by side (default: " + at_once + ")", "K");
 }
 
+double checkpoint_interval_s(const std::string& text) {
+    if (text == "never") return std::numeric_limits<double>::infinity();
+    try {
+        if (const double seconds = parse_quantity(text, Dimension::time); seconds > 0.0) return seconds;
+    } catch (const InputError&) {   // said below, with what is allowed here
+    }
+    throw CLI::ValidationError("--checkpoint-every", fmt::format("'{}' is not a time greater than zero; allowed: such as \"5 min\" or \"30 s\", or never", text));
+}
+
 template <class Options>
 void add_retry_option(CLI::App& command, Options& options) {
     command.add_flag("--retry-failed", options.retry_failed, "run again what failed for good: of its input or numerically, with this version of the program");
+}
+
+// How often running tests keep their states.
+void add_checkpoint_option(CLI::App& command) {
+    command.add_option_function<std::string>("--checkpoint-every", [](const std::string& text) { checkpoint_settings().every_s = checkpoint_interval_s(text); },
+                                             "running tests keep their states so often, so that the same command goes on where it was ended (default: \"5 min\"; \"never\": only when it is asked to end)")
+        ->type_name("TIME");
 }
 
 constexpr const char* all_cores = "one for each core";
@@ -141,6 +159,7 @@ void add_made_study_options(CLI::App& command, Options& options, const char* pac
     command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")->type_name("NAME")->allow_extra_args(false);
     add_thread_options(command, options, job_or_all_cores, by_size);
     add_retry_option(command, options);
+    add_checkpoint_option(command);
 }
 
 // The commands, each with what it does. What follows from the command line lives in the action, as long as it may be called.
@@ -191,7 +210,9 @@ void add_run(CommandLine& line) {
     const auto options = line.options<RunOptions>();
     CLI::App& command = line.add("run", "run all tests of a job");
     add_job_options(command, *options);
-    command.add_option("--out", options->out, "a new directory for the results (default: results/<job>-<n>)")->type_name("DIR");
+    command.add_option("--out", options->out, "a new directory for the results (default: results/<job>-<n>); one with an unfinished run of this job is gone on with")->type_name("DIR");
+    command.add_flag("--fresh", options->fresh, "begin in a new directory, even if there is an unfinished run of this job");
+    add_checkpoint_option(command);
     line.does(command, [options] { return run_command(*options); });
 }
 
@@ -209,6 +230,7 @@ void add_study(CommandLine& line) {
     add_thread_options(command, *options, all_cores, by_size);
     add_slurm_options(command, *options);
     add_retry_option(command, *options);
+    add_checkpoint_option(command);
     add_study_options(command, *options);
     const auto inside = [&](const char* name, const char* what, ExitCode (*does)(const StudyOptions&)) -> CLI::App& {
         CLI::App& own = *command.add_subcommand(name, what);
@@ -277,6 +299,7 @@ void add_calibrate(CommandLine& line) {
     command.add_option("--budget", options->budget, "at most so many runs (default: as the file says)")->type_name("N")->check(CLI::Range(20, 100'000));
     add_thread_options(command, *options, all_cores, by_size);
     add_retry_option(command, *options);
+    add_checkpoint_option(command);
     command.add_flag("--insist", options->insist, "run even if the targets contradict each other");
     line.does(command, [options] { return calibrate_command(*options); });
 }

@@ -50,8 +50,10 @@ ExitCode run_command(const RunOptions& options) {
     JobControl control;
     control.threads = thread_count(job.threads);
     control.out = options.out;
+    control.fresh = options.fresh;
     control.provenance = collect_provenance(options.command_line, control.threads);
     control.stop = &stop_requested();
+    control.checkpoints = checkpoint_settings();
     control.listener = &progress;
     const JobOutcome outcome = run_job(job, control);
     print_results(job, outcome);
@@ -63,7 +65,7 @@ ExitCode run_command(const RunOptions& options) {
                                          first.reason, outcome.failed.size(), outcome.tests));
     }
     if (!outcome.interrupted) return ExitCode::success;
-    say(stderr, "interrupted; the results so far are in {}\n", outcome.directory.string());
+    say(stderr, "interrupted; the results so far are in {}, and the same command goes on there\n", outcome.directory.string());
     return ExitCode::interrupted;
 }
 

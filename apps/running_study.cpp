@@ -93,6 +93,7 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
     control.at_once = running.at_once;
     control.keep = study.keep;
     control.stop = &stop_requested();
+    control.checkpoints = checkpoint_settings();
     control.progress = [&](const Run& run, const TestProgress& state) { progress.report(run, state); };
     control.ended = [&](const Run& run, const RunRecord& record) { progress.ended(run, record); };
     control.note = [&](const std::string& line) { progress.note(line); };

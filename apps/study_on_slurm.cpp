@@ -139,6 +139,7 @@ ExitCode study_element_command(const ElementOptions& options) {
     ExecuteControl control;
     control.threads = plan.cpus;
     control.stop = &stop_requested();
+    control.checkpoints = checkpoint_settings();
     control.provenance = collect_provenance(options.command_line, control.threads);
     Progress progress;
     control.ended = [&](const Run&, const RunRecord& record) {

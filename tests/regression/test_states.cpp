@@ -25,7 +25,6 @@
 #include "../verification/fixtures.hpp"
 #include "feldspar/fast/choose_kernels.hpp"
 #include "feldspar/lab/experiment.hpp"
-#include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/recorder.hpp"
 #include "feldspar/model/state_hash.hpp"
 #include "golden.hpp"
@@ -147,8 +146,7 @@ std::string state_after(const Case& one, long long steps, int threads = 1) {
     choose_step(e);
     Recorder recorder(e, result);
     prepare(e);
-    TestKeeping nothing_kept(nullptr);
-    if (steps > 0) load(e, recorder, result, nothing_kept);
+    if (steps > 0) load(e, recorder, result);
     const StateHash hash = hash_state(e.assembly);
     const Reactions reactions = feldspar::reactions(e.assembly);
     int damaged = 0;

@@ -22,6 +22,14 @@ struct ElasticGuess {
     double nu = 0.0;
 };
 
+/// How far dead loads have been brought up on a body with the real law.
+struct Ramp {
+    bool under_way = false;
+    long long step = 0;
+    double already = 0.0;      ///< share that acts at its beginning
+    double travel_m = 0.0;     ///< loading motion at the first damage of the elastic body, where that is known
+};
+
 /// What changes in the course of a test, beside its record: a copy of it is a state to which the test may go back.
 struct ExperimentState {
     Assembly assembly;
@@ -45,7 +53,10 @@ struct ExperimentState {
     double dead_load_N = 0.0;     ///< what presses and weighs in all, beside the loading; 0 of a confined specimen, whose platens bear the pressure too
     double weight_start_J = 0.0;  ///< work of gravity before the account of the energy begins
     HistoryRow consolidated{};    ///< the state under dead loads, when the loading starts
+    Ramp ramp{};
 };
+
+class TestKeeping;
 
 /// Everything that the stages of a test share. Each stage (prepare, load) is a function of its own.
 struct Experiment : ExperimentState {
@@ -54,6 +65,7 @@ struct Experiment : ExperimentState {
     const TestSetup& setup;
     const TestMethod& method;
     const RunControl& control;
+    TestKeeping* keeping = nullptr;   ///< keeps the state of the test, and brings it back; may be null
     Team team;
     StrainGauge gauge;
     Gauges gauges;                ///< of the method
@@ -94,15 +106,15 @@ double mean_body_diameter(const Assembly& assembly);
 /// Damping, masses and time step as the numerics ask; refuses an unstable setting (@throws InputError).
 void choose_step(Experiment& experiment);
 
-/// From the unloaded body to the first moment of loading: elastic start (adaptive), consolidation (biaxial), initial velocities.
+/// From the unloaded body to the first moment of loading: elastic start (adaptive), consolidation (biaxial), initial velocities. Keeps the state of the test while dead loads
+/// are brought up, and goes on from there; a computed start is made anew.
 void prepare(Experiment& experiment);
 
 class Recorder;
-class TestKeeping;
 
 /// Loads until a stop rule, the user or a force that is not a number ends it (@throws NumericalError for the last). Keeps the state of the test when it is due, and goes on
 /// from a kept one if there is one: the experiment is then in its base state (@throws StateError if it is another test's).
-void load(Experiment& experiment, Recorder& recorder, TestResult& result, TestKeeping& keeping);
+void load(Experiment& experiment, Recorder& recorder, TestResult& result);
 
 /// Loading steps that a test of this kind typically takes, for estimates of time only.
 double typical_steps(const Experiment& experiment);

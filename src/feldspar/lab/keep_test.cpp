@@ -28,7 +28,7 @@ void TestKeeping::begin(const ExperimentState& base) {
     before_s_ = 0.0;
     if (keeper_ == nullptr) return;
     base_ = StateBase::of(base);
-    if (reader_) reader_->read(under_way_);
+    if (reader_) reader_->read(waiting_);
 }
 
 double TestKeeping::seconds() const { return before_s_ + seconds_since(start_); }

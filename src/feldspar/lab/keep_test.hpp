@@ -31,6 +31,9 @@ void keep_course(Archive& archive, TestResult& result) {
             stable_limit);
 }
 
+/// The parts of a run in which states are kept.
+enum class TestPart { none, preparation, loading };
+
 /// Keeps the state of a test under way by a StateKeeper, and brings it back. A test may be several runs: the repeats that confirm it.
 class TestKeeping {
 public:
@@ -44,11 +47,11 @@ public:
 
     /// The state of the next run's experiment before its preparation, which is made anew whenever the test goes on.
     void begin(const ExperimentState& base);
-    /// Whether a kept state of this run is waiting.
-    bool goes_on() const { return under_way_; }
+    /// Whether a kept state of this run is waiting, and of which part of it.
+    bool goes_on(TestPart part) const { return waiting_ == part; }
     template <class Read>
     void go_on(Read read) {
-        under_way_ = false;
+        waiting_ = TestPart::none;
         std::uint64_t fingerprint = 0;
         reader_->read(fingerprint, before_s_);
         if (fingerprint != base_.fingerprint()) throw StateError("it is of another specimen or material, or of another version of the program");
@@ -60,12 +63,12 @@ public:
 
     bool due(bool stopped) const { return keeper_ != nullptr && keeper_->due(stopped); }
     template <class Write>
-    void keep(Write write) const {
+    void keep(TestPart part, Write write) const {
         keeper_->keep([&](const StatePut& put) {
             StateWriter writer(put, base_);
             writer.write(finished_.size());
             for (const TestResult& result : finished_) keep_course(writer, const_cast<TestResult&>(result));
-            writer.write(true, base_.fingerprint(), seconds());
+            writer.write(part, base_.fingerprint(), seconds());
             write(writer);
         });
     }
@@ -78,7 +81,7 @@ private:
     std::vector<char> data_;
     std::optional<StateReader> reader_;
     std::size_t finished_before_ = 0;
-    bool under_way_ = false;
+    TestPart waiting_ = TestPart::none;
     std::vector<TestResult> finished_;
     StateBase base_;
     double before_s_ = 0.0;

@@ -167,10 +167,11 @@ public:
                       static_cast<std::size_t>(std::max(0, e.gauges.find(e.setup.test.control_gauge)))),
                 Servo(LoadControl::dissipation, kServoShare * wanted_, e.travel_time), StopRule(e, result), StageCursor(e)} {}
 
-    void run(TestKeeping& keeping) {
+    void run() {
         const int block = adaptive_ ? 10 : 50;   // steps between records
-        if (keeping.goes_on()) {
-            keeping.go_on([&](StateReader& reader) { go_on(reader); });
+        TestKeeping* const keeping = e_.keeping;
+        if (keeping != nullptr && keeping->goes_on(TestPart::loading)) {
+            keeping->go_on([&](StateReader& reader) { go_on(reader); });
         } else {
             if (adaptive_ && lead_.stages.loads()) e_.change_speed(lead_.control.start(e_.platen_travel_m));
             const HistoryRow& first = recorder_.record(Phase::loading);
@@ -185,9 +186,9 @@ public:
         const double before_s = loading_s_;
         for (;;) {
             const bool stopped = e_.stopped();
-            if (keeping.due(stopped)) {
+            if (keeping != nullptr && keeping->due(stopped)) {
                 loading_s_ = before_s + seconds_since(start);
-                keeping.keep([&](StateWriter& writer) { keep(writer); });
+                keeping->keep(TestPart::loading, [&](StateWriter& writer) { keep(writer); });
             }
             if (stopped) {
                 result_.interrupted = true;
@@ -440,6 +441,6 @@ private:
 
 }  // namespace
 
-void load(Experiment& e, Recorder& recorder, TestResult& result, TestKeeping& keeping) { Loader(e, recorder, result).run(keeping); }
+void load(Experiment& e, Recorder& recorder, TestResult& result) { Loader(e, recorder, result).run(); }
 
 }  // namespace feldspar

@@ -10,6 +10,7 @@
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/stages.hpp"
 
 namespace feldspar {
@@ -287,19 +288,22 @@ void consolidate_elastically(Experiment& e) {
 }
 
 // Dead loads with the real law: they follow a ramp of many travel times, then wait for rest. Of a confined specimen the platens follow by a servo, so
-// that the stress is isotropic; else the fixtures rest. @param already  share that acts already
-void consolidate_by_ramp(Experiment& e, double already = 0.0) {
+// that the stress is isotropic; else the fixtures rest. From where the ramp stands.
+void bring_up_dead_loads(Experiment& e) {
     const double target = e.confined() ? e.setup.test.sigma3_Pa * e.section_m2 : e.dead_load_N;
     const double period = e.travel_time / e.settings.dt;                    // in steps
     const long long ramp = std::llround(30.0 * period), most = 40 * ramp;
-    for (long long k = 0;; k += 10) {
+    const double already = e.ramp.already;
+    for (long long& k = e.ramp.step;; k += 10) {
+        const bool stopped = e.stopped();
+        if (e.keeping != nullptr && e.keeping->due(stopped)) e.keeping->keep(TestPart::preparation, [&](StateWriter& writer) { writer.write(e.state()); });
+        if (stopped) throw Interrupted();
         const double share = std::min(1.0, already + (1.0 - already) * static_cast<double>(k) / static_cast<double>(ramp));
         e.set_dead_loads(share);
         const double force = platen_force(e);
         if (e.confined()) e.change_speed((share * target - force) / e.axial_stiffness / (2.0 * e.travel_time));
         e.run(10);
         e.preparation_steps += 10;
-        if (e.stopped()) throw Interrupted();
         if (!std::isfinite(force)) throw NumericalError("a force is not a number during the consolidation");
         if (e.control.progress && k % 100 == 0) e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
         const auto [loading, rest] = reactions(e.assembly);
@@ -311,6 +315,13 @@ void consolidate_by_ramp(Experiment& e, double already = 0.0) {
                                               : "the specimen does not come to rest under its pressures and its weight: it fails before it is loaded");
     }
     e.change_speed(0.0);
+    e.ramp.under_way = false;
+}
+
+// @param already  share of the dead loads that acts already
+void consolidate_by_ramp(Experiment& e, double already = 0.0) {
+    e.ramp = {.under_way = true, .step = 0, .already = already, .travel_m = e.ramp.travel_m};
+    bring_up_dead_loads(e);
 }
 
 // The state when the loading starts, for the history.
@@ -377,6 +388,11 @@ bool press_elastically(Experiment& e) {
     return elastic;
 }
 
+void rest_under_dead_loads(Experiment& e) {
+    hold_springs(e);
+    note_consolidated(e);
+}
+
 // From the unloaded body, with the real law.
 void press_by_ramp(Experiment& e) {
     for (DeadLoad& load : e.assembly.dead_loads) load.springs = false;
@@ -385,8 +401,7 @@ void press_by_ramp(Experiment& e) {
     forget_relaxation_work(e);
     if (!e.has_dead_loads()) return;
     consolidate_by_ramp(e);
-    hold_springs(e);
-    note_consolidated(e);
+    rest_under_dead_loads(e);
 }
 
 // A first motion along the mode: rates are shares of the motion so far. @param elastic_m  motion at the first damage of the elastic body
@@ -399,6 +414,16 @@ void set_out(Experiment& e, double elastic_m) {
     });
 }
 
+// Of a confined specimen that its consolidation has damaged: B from an affine guess.
+void begin_damaged(Experiment& e) {
+    note_consolidated(e);
+    const double travel = e.platen_travel_m;
+    add_affine(e, 1e-9 * e.length_m);
+    const BodyState moved = capture(e.assembly, e.platen_travel_m);
+    add_affine(e, travel - e.platen_travel_m);
+    set_loading_mode(e, capture(e.assembly, travel), moved);
+}
+
 void prepare_adaptive(Experiment& e) {
     if (!e.method.start.stays_in_touch) {
         const BodyState unloaded = capture(e.assembly, 0.0);
@@ -407,10 +432,10 @@ void prepare_adaptive(Experiment& e) {
         if (e.has_dead_loads() && elastic) note_consolidated(e);
         elastic_contacts(e);
         if (!elastic) {   // the mode is that of the whole body; the loading begins where the dead loads have left it
-            const double travel_m = e.platen_travel_m;
+            e.ramp.travel_m = e.platen_travel_m;
             go_to(e, unloaded);
             press_by_ramp(e);
-            return set_out(e, travel_m);
+            return set_out(e, e.ramp.travel_m);
         }
     } else {
         const BodyState unloaded = capture(e.assembly, 0.0);
@@ -430,13 +455,7 @@ void prepare_adaptive(Experiment& e) {
             const StoredEnergy before = stored_energy(e.assembly, 0.0);
             e.elastic_start_J = before.grains_J + before.contacts_J;
             consolidate_by_ramp(e, consolidated);
-            note_consolidated(e);
-            const double travel = e.platen_travel_m;   // B from an affine guess on the damaged body
-            add_affine(e, 1e-9 * e.length_m);
-            const BodyState moved = capture(e.assembly, e.platen_travel_m);
-            add_affine(e, travel - e.platen_travel_m);
-            set_loading_mode(e, capture(e.assembly, travel), moved);
-            return;
+            return begin_damaged(e);
         }
     }
     forget_relaxation_work(e);
@@ -452,25 +471,29 @@ void forget_mode(Experiment& e) {
     e.impose_motion();
 }
 
+double fixed_speed(const Experiment& e) { return e.setup.numerics.speed_m.value_or(kPaperSpeed); }
+
+// At the velocities of the mode.
+void set_going(Experiment& e) {
+    e.change_speed(fixed_speed(e));
+    forget_mode(e);
+}
+
 // A specimen that is not strained evenly begins with the velocities of its elastic answer: pushed at one place only, it would swing.
-void begin_in_mode(Experiment& e, double speed) {
+void begin_in_mode(Experiment& e) {
     const BodyState unloaded = capture(e.assembly, 0.0);
     press_elastically(e);
     elastic_contacts(e);
     go_to(e, unloaded);
     press_by_ramp(e);
-    e.change_speed(speed);
-    forget_mode(e);
+    set_going(e);
 }
 
-// The paper's own way, and that of real masses: no computed start; rows of nodes begin with an affine velocity field.
-void prepare_plainly(Experiment& e) {
-    const double speed = e.setup.numerics.speed_m.value_or(kPaperSpeed);
-    if (!e.method.start.strained_evenly) return begin_in_mode(e, speed);
-    if (e.confined()) consolidate_by_ramp(e);
+// Rows of nodes begin with an affine velocity field.
+void begin_affinely(Experiment& e) {
     note_consolidated(e);
     if (!e.method.start.stays_in_touch) {
-        e.change_speed(speed);
+        e.change_speed(fixed_speed(e));
         return;
     }
     const double travel = e.platen_travel_m, unit = 1e-6 * e.length_m;
@@ -481,13 +504,34 @@ void prepare_plainly(Experiment& e) {
     go_to(e, before);
     e.assembly.nodes.velocity = velocity;
     set_loading_mode(e, before, moved);
-    e.change_speed(speed);
-    forget_mode(e);
+    set_going(e);
+}
+
+// The paper's own way, and that of real masses: no computed start.
+void prepare_plainly(Experiment& e) {
+    if (!e.method.start.strained_evenly) return begin_in_mode(e);
+    if (e.confined()) consolidate_by_ramp(e);
+    begin_affinely(e);
+}
+
+// What follows when the dead loads have been brought up, as above.
+void begin_behind_ramp(Experiment& e) {
+    const bool adaptive = e.setup.numerics.kind == NumericsKind::adaptive;
+    if (adaptive && e.method.start.stays_in_touch) return begin_damaged(e);
+    if (!adaptive && e.method.start.strained_evenly) return begin_affinely(e);
+    rest_under_dead_loads(e);
+    if (adaptive) set_out(e, e.ramp.travel_m);
+    else set_going(e);
 }
 
 }  // namespace
 
 void prepare(Experiment& e) {
+    if (e.keeping != nullptr && e.keeping->goes_on(TestPart::preparation)) {
+        e.keeping->go_on([&](StateReader& reader) { reader.read(e.state()); });
+        bring_up_dead_loads(e);
+        return begin_behind_ramp(e);
+    }
     if (e.setup.numerics.kind == NumericsKind::adaptive) {
         prepare_adaptive(e);
     } else {

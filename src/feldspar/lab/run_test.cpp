@@ -68,8 +68,9 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     result.stable_limit = e.omega2_bound;
     Recorder recorder(e, result);
     keeping.begin(e.state());
+    e.keeping = &keeping;
     try {
-        if (!keeping.goes_on()) {
+        if (!keeping.goes_on(TestPart::loading)) {
             prepare(e);
             HistoryRow from;   // where the computed start began: nothing, or the state under dead loads
             if (e.has_dead_loads()) {
@@ -84,7 +85,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
             result.travel_time = e.travel_time;
             result.travel_steps = e.travel_time / e.settings.dt;
         }
-        load(e, recorder, result, keeping);
+        load(e, recorder, result);
     } catch (const Interrupted&) {
         result.interrupted = true;
         result.stop_reason = "interrupted by the user";
@@ -158,6 +159,20 @@ TestResult run_test(const TestSetup& setup, const RunControl& control) {
             control.keeper->refuse(error.what());
         }
     }
+}
+
+void keep_result(const TestResult& result, const StatePut& put) {
+    const StateBase nothing;
+    StateWriter writer(put, nothing);
+    keep_course(writer, const_cast<TestResult&>(result));   // it only looks at it
+}
+
+TestResult kept_result(const TestSetup& setup, std::span<const char> kept) {
+    TestResult result = begin_result(setup);
+    StateReader reader(kept);
+    keep_course(reader, result);
+    if (!reader.at_end()) throw StateError("more follows than belongs to it");
+    return result;
 }
 
 TestPreview preview_test(const TestSetup& setup, const RunControl& control) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,12 @@ struct TestSetup {
 /// Runs the test, or the rest of it; the result has its properties and evidence filled in. With NumericsSpec::confirm the test is run again at a
 /// third of the target. @throws InputError for an unstable setting, NumericalError when a force is not a number.
 TestResult run_test(const TestSetup& setup, const RunControl& control);
+
+/// What a finished test leaves, so that it need not be run again.
+void keep_result(const TestResult& result, const StatePut& put);
+
+/// The result that keep_result() has put. @param setup  of the same test  @throws StateError
+TestResult kept_result(const TestSetup& setup, std::span<const char> kept);
 
 /// What `feldspar check` prints: built, judged and timed for a moment, but not run.
 struct TestPreview {

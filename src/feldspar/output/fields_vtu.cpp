@@ -190,6 +190,9 @@ void write_vtu(const RunDirectory& directory, const TestResult& result, int thre
         collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"2\" file=\"{}\"/>\n", time.values[n], events_file(n));
     }
     directory.write_text(stem + ".pvd", collection + "</Collection>\n</VTKFile>\n");
+    std::error_code ignored;   // what an attempt that was ended has left beyond these
+    for (std::size_t n = result.snapshots.size(); std::filesystem::remove(directory.path() / grains_file(n), ignored); ++n)
+        for (const std::string& file : {cracks_file(n), events_file(n)}) std::filesystem::remove(directory.path() / file, ignored);
 }
 
 }  // namespace feldspar

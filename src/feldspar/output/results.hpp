@@ -38,6 +38,9 @@ public:
     /// Only checks what create() would do; makes nothing. @throws InputError as create().
     static void check(const std::optional<std::filesystem::path>& wanted, const std::string& job_name);
 
+    /// The existing `results/<job name>-<n>` with the largest n.
+    static std::optional<std::filesystem::path> newest(const std::string& job_name);
+
     /// A directory that is there. What programs that were killed have left of files that they wrote aside is removed.
     static RunDirectory open(std::filesystem::path path);
 

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -222,6 +223,23 @@ RunDirectory RunDirectory::create(const std::optional<fs::path>& wanted, const s
         if (errno != EEXIST) refuse(fmt::format("cannot make the directory '{}': {}", path.string(), reason(errno)));
         if (wanted) refuse_existing(path);
     }
+}
+
+std::optional<fs::path> RunDirectory::newest(const std::string& job_name) {
+    const std::string stem = file_name_of(job_name) + "-";
+    std::optional<fs::path> newest;
+    unsigned long long largest = 0;
+    std::error_code error;
+    for (fs::directory_iterator entry(results_directory, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        unsigned long long number = 0;
+        if (!name.starts_with(stem)) continue;
+        const auto [behind, problem] = std::from_chars(name.data() + stem.size(), name.data() + name.size(), number);
+        if (problem != std::errc() || behind != name.data() + name.size() || number <= largest) continue;
+        largest = number;
+        newest = entry->path();
+    }
+    return newest;
 }
 
 RunDirectory RunDirectory::open(fs::path path) {

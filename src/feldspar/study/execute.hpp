@@ -7,6 +7,7 @@
 #include <string>
 
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/output/checkpoints.hpp"
 #include "feldspar/study/ledger.hpp"
 
 namespace feldspar {
@@ -18,6 +19,7 @@ struct ExecuteControl {
     Keep keep = Keep::histories;
     bool retry_failed = false;                ///< also runs that failed for good: of their input or numerically, with this version of the program
     std::atomic<bool>* stop = nullptr;        ///< becomes true when the user interrupts
+    CheckpointSettings checkpoints;
     Provenance provenance;
     std::function<void(const Run&, const TestProgress&)> progress;          ///< a run tells how far it is; may be empty
     std::function<void(const Run&, const RunRecord&)> ended;                ///< done or failed; may be empty

@@ -11,27 +11,40 @@ namespace fs = std::filesystem;
 
 const fs::path record_file = "run.json";
 
-void remove_directory(const fs::path& directory) {
+const std::string state_file = "test.state";
+
+// An empty directory, but for the state of the test.
+RunDirectory cleared(const fs::path& path) {
     std::error_code error;
-    fs::remove_all(directory, error);
-    if (error) throw OutputError("cannot remove what an earlier attempt left in '" + directory.string() + "': " + error.message());
+    fs::create_directories(path, error);
+    if (error) throw OutputError("cannot make the directory '" + path.string() + "': " + error.message());
+    std::vector<fs::path> left;
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+        if (!entry->path().filename().string().starts_with(state_file)) left.push_back(entry->path());
+    for (const fs::path& one : left)
+        if (!error) fs::remove_all(one, error);
+    if (error) throw OutputError("cannot remove what an earlier attempt left in '" + path.string() + "': " + error.message());
+    return RunDirectory::open(path);
 }
 
 }  // namespace
 
 TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path, Keep keep, const Provenance& provenance,
-                        const RunControl& control) {
+                        const RunControl& control, const CheckpointSettings& settings) {
+    const bool finished = finished_record(path, run).has_value();
+    const RunDirectory directory = finished ? RunDirectory::open(path) : cleared(path);
     TestResult result;
     {
         const auto specimen = packings.get(specimen_of(run.job, run.test()), run.seed(), control.threads);
         const Variant& variant = run.job.variants.front();
         TestSpec test = run.test();
         if (keep != Keep::all) test.snapshots = 0;
-        result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock}, control);
+        TestCheckpoints checkpoints(directory, state_file, CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings, {});
+        RunControl own_control = control;
+        own_control.keeper = &checkpoints;
+        result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock}, own_control);
     }
     if (result.interrupted) return result;
-    if (!finished_record(path, run)) remove_directory(path);
-    const RunDirectory directory = RunDirectory::create(path, run.job.name);
     directory.write_text("job.toml", resolved_toml(run.job));
     if (keep != Keep::numbers) write_history_csv(directory, result, provenance);
     if (keep == Keep::all) write_events_csv(directory, result);
@@ -49,6 +62,7 @@ void finish_files(const Run& run, const TestResult& result, const fs::path& path
         write_report(directory, run.job, one, properties, provenance, true);
     }
     directory.write_text(record_file.string(), to_json(record_of(run, result, provenance)));
+    remove_checkpoint(path, state_file);
 }
 
 namespace {

@@ -5,15 +5,16 @@
 #include <optional>
 
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/output/checkpoints.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_record.hpp"
 
 namespace feldspar {
 
 /// Makes the specimen, runs the test and writes job.toml and what `keep` asks for, but for what finish_files() writes. May run on any thread.
-/// What an earlier attempt left unfinished in the directory is replaced. Of an interrupted test nothing is left.
+/// Goes on from the last state that an earlier attempt has kept in the directory; all else that it left there is replaced. An interrupted test leaves its state alone.
 TestResult run_to_files(const Run& run, Packings& packings, const std::filesystem::path& directory, Keep keep, const Provenance& provenance,
-                        const RunControl& control);
+                        const RunControl& control, const CheckpointSettings& checkpoints = {});
 
 /// Writes the rest, run.json at the end. On the main thread only: the HDF5 library is not made for several.
 void finish_files(const Run& run, const TestResult& result, const std::filesystem::path& directory, Keep keep, const Provenance& provenance);

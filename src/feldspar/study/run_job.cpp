@@ -6,6 +6,7 @@
 #include <chrono>
 #include <exception>
 #include <map>
+#include <mutex>
 #include <new>
 #include <set>
 #include <utility>
@@ -13,8 +14,10 @@
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/parallel.hpp"
+#include "feldspar/study/job_place.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/schedule.hpp"
+#include "feldspar/study/study.hpp"
 
 namespace feldspar {
 namespace {
@@ -121,11 +124,20 @@ std::string reason_of(const std::exception_ptr& error) {
 // Takes what tests leave into the job's directory.
 class DirectorySink final : public RunSink {
 public:
-    DirectorySink(const Job& job, PreparedRuns& runs, const JobControl& control)
-        : job_(job), runs_(runs), control_(control), tell_(*control.listener), directory_(RunDirectory::create(control.out, job.name)) {
-        tell_.note(fmt::format("results go to {}", directory_.path().string()));
+    /// @param found  where an unfinished run of the job is gone on with
+    DirectorySink(const Job& job, PreparedRuns& runs, const JobControl& control, FoundPlace found)
+        : job_(job), runs_(runs), control_(control), tell_(*control.listener),
+          directory_(found.unfinished ? RunDirectory::open(*found.unfinished) : RunDirectory::create(control.out, job.name)),
+          lock_(found.unfinished ? std::move(*found.lock) : begin_unfinished(directory_, job)) {
         directory_.write_text("job.toml", job_.text);
         directory_.write_text("job-resolved.toml", resolved_toml(job_));
+        if (!found.unfinished) {
+            tell_.note(fmt::format("results go to {}", directory_.path().string()));
+            return;
+        }
+        (void)RunDirectory::open(directory_.path() / kCheckpoints);   // removes what was half written
+        for (std::size_t i = 0; i < runs_.count(); ++i) take_found(i);
+        tell_.note(fmt::format("going on with the unfinished run in {}: {} of {} are done (--fresh begins anew)", directory_.path().string(), results_.size(), counted(runs_.count(), "test")));
     }
 
     const fs::path& path() const { return directory_.path(); }
@@ -135,20 +147,36 @@ public:
     int bodies(std::size_t i) override { return runs_.bodies(i); }
 
     RunningTests::Work begin(std::size_t i) override {
+        if (found_.contains(i)) return {};
         const PlannedRun& run = runs_[i];
         const std::shared_ptr<const Specimen> specimen = runs_.specimen(run);
         const std::string packing = packing_stem(run) + ".txt";
         if (packings_.insert(packing).second) directory_.write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
-        return [this, &run, specimen](const RunControl& run_control) {
-            TestResult result = run_test(setup_of(run, specimen), run_control);
+        return [this, i, &run, specimen](const RunControl& run_control) {
+            const CheckpointOwner owner = owner_of(run);
+            TestCheckpoints checkpoints(directory_, kept_as(run, ".state"), owner, control_.checkpoints,
+                                        [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
+            RunControl own_control = run_control;
+            own_control.keeper = &checkpoints;
+            TestResult result = run_test(setup_of(run, specimen), own_control);
             result.variant = run.variant->name;
-            if (!result.history.empty()) {   // else interrupted before the first row
-                write_history_csv(directory_, result, control_.provenance);
-                write_events_csv(directory_, result);
-                write_vtu(directory_, result, *run_control.more_threads);
+            if (result.history.empty()) return result;   // interrupted before the first row
+            write_history_csv(directory_, result, control_.provenance);
+            write_events_csv(directory_, result);
+            write_vtu(directory_, result, *run_control.more_threads);
+            if (result.interrupted) return result;
+            try {
+                write_checkpoint(directory_, kept_as(run, ".result"), owner, [&](const StatePut& put) { keep_result(result, put); });
+                remove_checkpoint(directory_.path(), kept_as(run, ".state"));
+            } catch (const OutputError& error) {   // its results are there
+                notes_.add(fmt::format("{}: if this run is ended, this test is made again: {}", numbered_label(i), error.what()));
             }
             return result;
         };
+    }
+
+    void beat() override {
+        for (const std::string& line : notes_.take()) tell_.note(line);
     }
 
     void progress(std::size_t i, const TestProgress& state) override {
@@ -159,12 +187,10 @@ public:
 
     // Writes what only this thread may write: the HDF5 library is not made for several, and the overview holds all tests.
     void finished(std::size_t i, TestResult ended) override {
+        beat();
         tell_.finished(numbered_label(i), ended);
         if (ended.history.empty()) return;
-        const auto place = std::upper_bound(order_.begin(), order_.end(), i) - order_.begin();
-        order_.insert(order_.begin() + place, i);
-        const auto result = results_.insert(results_.begin() + place, std::move(ended));
-        write_hdf5(directory_, *result, job_, control_.provenance);
+        write_hdf5(directory_, add(i, std::move(ended)), job_, control_.provenance);
         if (results_.size() < runs_.count()) write_overview(false, false);
     }
 
@@ -185,6 +211,7 @@ public:
 
     /// The last overview, when all have ended.
     JobOutcome outcome() {
+        beat();
         tell_.clear();
         JobOutcome outcome;
         outcome.directory = directory_.path();
@@ -195,10 +222,60 @@ public:
         outcome.failed = failures();
         outcome.results = std::move(results_);
         outcome.properties = std::move(properties_);
+        if (!outcome.interrupted && outcome.failed.empty()) end_unfinished(directory_.path());   // what failed is tried again by whoever runs the job here again
         return outcome;
     }
 
 private:
+    // What a test's own thread has to say, for the main thread.
+    class Notes {
+    public:
+        void add(std::string line) {
+            const std::lock_guard lock(mutex_);
+            lines_.push_back(std::move(line));
+        }
+        std::vector<std::string> take() {
+            const std::lock_guard lock(mutex_);
+            return std::exchange(lines_, {});
+        }
+
+    private:
+        std::mutex mutex_;
+        std::vector<std::string> lines_;
+    };
+
+    // Name of a file that is kept of a run until the job is complete.
+    static std::string kept_as(const PlannedRun& run, const char* extension) {
+        return fmt::format("{}/{}{}", kCheckpoints, test_stem(run.variant->name, *run.test, run.seed), extension);
+    }
+    CheckpointOwner owner_of(const PlannedRun& run) const {
+        return CheckpointOwner::of(fmt::format("{} {}", make_run(job_, *run.variant, *run.test, run.seed).id, run.test->snapshots), control_.provenance);
+    }
+
+    // A test that had ended when the program was.
+    void take_found(std::size_t i) {
+        const PlannedRun& run = runs_[i];
+        Checkpoint kept = read_checkpoint(directory_.path(), kept_as(run, ".result"), owner_of(run));
+        if (!kept.refused.empty()) tell_.note(fmt::format("{}: what it had left is not used, and it is made again: {}", numbered_label(i), kept.refused));
+        if (kept.state.empty()) return;
+        try {
+            TestResult result = kept_result(setup_of(run, runs_.specimen(run)), kept.state);
+            result.variant = run.variant->name;
+            found_.insert(i);
+            const TestResult& here = add(i, std::move(result));
+            if (!fs::exists(directory_.path() / (test_stem(here) + ".h5"))) write_hdf5(directory_, here, job_, control_.provenance);
+        } catch (const StateError& error) {
+            tell_.note(fmt::format("{}: what it had left is not used, and it is made again: {}", numbered_label(i), error.what()));
+        }
+    }
+
+    // In the job's order.
+    const TestResult& add(std::size_t i, TestResult result) {
+        const auto place = std::upper_bound(order_.begin(), order_.end(), i) - order_.begin();
+        order_.insert(order_.begin() + place, i);
+        return *results_.insert(results_.begin() + place, std::move(result));
+    }
+
     static int number_of(std::size_t i) { return static_cast<int>(i) + 1; }
     std::string numbered_label(std::size_t i) const { return fmt::format("{}/{} {}", number_of(i), runs_.count(), label_of(runs_[i])); }
 
@@ -224,6 +301,9 @@ private:
     const JobControl& control_;
     JobListener& tell_;
     RunDirectory directory_;
+    FileLock lock_;
+    std::set<std::size_t> found_;                   // ended when an earlier program did
+    Notes notes_;
     std::set<std::string> packings_;                // written already
     std::vector<TestResult> results_;               // in the job's order
     std::vector<std::size_t> order_;                // the number of each
@@ -236,10 +316,11 @@ private:
 
 JobOutcome run_job(const Job& job, const JobControl& control) {
     PreparedRuns runs(job, control);
-    RunDirectory::check(control.out, job.name);
+    FoundPlace found = find_place(control.out, job, control.fresh);
+    if (!found.unfinished) RunDirectory::check(control.out, job.name);
     check_space(control.out, runs.all());
     runs.prepare();
-    DirectorySink sink(job, runs, control);
+    DirectorySink sink(job, runs, control, std::move(found));
     try {
         run_in_order(runs.count(), Sharing(job.at_once, control.threads), *control.stop, sink);
         return sink.outcome();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/output/checkpoints.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/study/planned_runs.hpp"
 
@@ -39,7 +40,9 @@ public:
 /// What the caller decides about the running itself; none of it changes a result.
 struct JobControl {
     int threads = 1;                         ///< of the whole program
-    std::optional<std::string> out;          ///< the directory, which must not exist; else results/<job name>-<n>
+    std::optional<std::string> out;          ///< the directory, which must not exist, or have an unfinished run of the same job; else results/<job name>-<n>
+    bool fresh = false;                      ///< a new directory, even if there is an unfinished run of the same job
+    CheckpointSettings checkpoints;
     Provenance provenance;
     std::atomic<bool>* stop = nullptr;       ///< becomes true when the user interrupts, or when nothing more can be written
     JobListener* listener = nullptr;
@@ -55,7 +58,8 @@ struct JobOutcome {
     bool interrupted = false;
 };
 
-/// Makes every packing and judges every setting, so that a mistake shows before there is a directory; then runs all tests and writes each one's
+/// Goes on with a run of the same job that was ended before it was complete, if there is one where its results are to go: finished tests are taken from there, and those that
+/// were under way go on from their last kept state, with the same bits. Makes every packing and judges every setting, so that a mistake shows before there is a directory; then runs all tests and writes each one's
 /// files as soon as it has ended. A test that fails is noted, and the others go on. @throws InputError; OutputError when results cannot be
 /// written; Interrupted before there was a directory
 JobOutcome run_job(const Job& job, const JobControl& control);
