@@ -36,6 +36,15 @@ bool is_unfinished(const fs::path& directory) {
     return fs::exists(directory / kCheckpoints / kJobFile, error);
 }
 
+// Made by a program that was ended before it had written anything.
+bool is_untouched(const fs::path& directory) {
+    std::error_code error;
+    if (!fs::is_directory(directory / kCheckpoints, error)) return false;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, error))
+        if (entry.path().filename() != kCheckpoints) return false;
+    return !error;
+}
+
 }  // namespace
 
 std::optional<FileLock> FileLock::take(const fs::path& file) {
@@ -63,12 +72,13 @@ std::string identity_of_job(const Job& job) {
 FoundPlace find_place(const std::optional<fs::path>& wanted, const Job& job, bool fresh) {
     const auto same_job = [&](const fs::path& directory) { return text_of(directory / kCheckpoints / kJobFile) == identity_of_job(job); };
     if (wanted) {
-        if (!is_unfinished(*wanted)) return {};   // RunDirectory says whether it may be made
+        const bool untouched = !is_unfinished(*wanted) && is_untouched(*wanted);
+        if (!is_unfinished(*wanted) && !untouched) return {};   // RunDirectory says whether it may be made
         const auto refuse = [&](const std::string& problem, const std::string& allowed) {
             throw InputError({.file = "", .line = 0, .column = 0, .key = "--out"}, fmt::format("'{}' {}", wanted->string(), problem), allowed);
         };
         if (fresh) refuse("holds an unfinished run, and results are never overwritten", "another directory with --fresh");
-        if (!same_job(*wanted)) refuse("holds an unfinished run of another job", "the job that it was begun with (job.toml there), or another directory");
+        if (!untouched && !same_job(*wanted)) refuse("holds an unfinished run of another job", "the job that it was begun with (job.toml there), or another directory");
         std::optional<FileLock> lock = FileLock::take(*wanted / kCheckpoints / kLockFile);
         if (!lock) refuse("is where another program runs this job now", "to wait for it, or another directory");
         return {*wanted, std::move(lock)};
@@ -88,9 +98,11 @@ FileLock begin_unfinished(const RunDirectory& directory, const Job& job) {
     if (error) throw OutputError(fmt::format("cannot make the directory '{}': {}", folder.string(), error.message()));
     std::optional<FileLock> lock = FileLock::take(folder / kLockFile);
     if (!lock) throw OutputError(fmt::format("another program has taken '{}'", directory.path().string()));   // it was made a moment ago
-    directory.write_text(fmt::format("{}/{}", kCheckpoints, kJobFile.string()), identity_of_job(job));
+    mark_unfinished(directory, job);
     return std::move(*lock);
 }
+
+void mark_unfinished(const RunDirectory& directory, const Job& job) { directory.write_text(fmt::format("{}/{}", kCheckpoints, kJobFile.string()), identity_of_job(job)); }
 
 void end_unfinished(const fs::path& directory) {
     std::error_code ignored;

@@ -45,6 +45,9 @@ inline const char* const kCheckpoints = "checkpoints";
 /// Marks a new directory as that of an unfinished run of this job. @return the lock on it
 FileLock begin_unfinished(const RunDirectory& directory, const Job& job);
 
+/// The same of one that is gone on with.
+void mark_unfinished(const RunDirectory& directory, const Job& job);
+
 /// The run is complete: nothing of it is kept any more but its results.
 void end_unfinished(const std::filesystem::path& directory);
 

@@ -135,6 +135,7 @@ public:
             tell_.note(fmt::format("results go to {}", directory_.path().string()));
             return;
         }
+        mark_unfinished(directory_, job_);
         (void)RunDirectory::open(directory_.path() / kCheckpoints);   // removes what was half written
         for (std::size_t i = 0; i < runs_.count(); ++i) take_found(i);
         tell_.note(fmt::format("going on with the unfinished run in {}: {} of {} are done (--fresh begins anew)", directory_.path().string(), results_.size(), counted(runs_.count(), "test")));
