@@ -202,6 +202,17 @@ void add_check(CommandLine& line) {
     line.does(command, [options] { return check_command(*options); });
 }
 
+void add_export_cells(CommandLine& line) {
+    const auto options = std::make_shared<ExportCellsOptions>();
+    CLI::App& command = line.add("export-cells", "write the cells of a specimen for other programs: Neper (.tess), gmsh (.msh) or as polygons (.csv)");
+    command.add_option("job", options->job, "the job file")->required()->type_name("JOB.toml");
+    command.add_option("--seed", options->seeds, "the packing (default: the job's first)")->type_name("S")->expected(1);
+    command.add_option("--test", options->tests, "the specimen of this kind of test, such as the disc of 'brazilian' (default: that of the job)")->type_name("KIND")->expected(1);
+    command.add_option("--threads", options->threads, "threads (default: as the job says)")->type_name("N")->check(CLI::Range(0, 256));
+    command.add_option("--out", options->out, "a new file; its ending says the format")->required()->type_name("FILE");
+    line.does(command, [options] { return export_cells_command(*options); });
+}
+
 void add_study(CommandLine& line) {
     const auto options = line.options<StudyOptions>();
     CLI::App& command = line.add("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted");
@@ -319,6 +330,6 @@ void add_schema(CommandLine& line) {
 int main(int argc, char** argv) {
     using namespace feldspar;
     CommandLine line(joined(argc, argv));
-    for (auto* add : {add_run, add_check, add_new, add_schema, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
+    for (auto* add : {add_run, add_check, add_export_cells, add_new, add_schema, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
     return line.run(argc, argv);
 }

@@ -13,6 +13,7 @@
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/crystals.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
+#include "feldspar/specimen/fit_cells.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -140,6 +141,56 @@ void give_discs_to_pieces(Specimen& specimen) {
     }
 }
 
+/// Circles of the areas of polygons, at their centroids.
+void add_circle(Packing& packing, const std::vector<Vec2>& corners) {
+    packing.centres.push_back(centroid(corners));
+    packing.radii_m.push_back(std::sqrt(signed_area(corners) / std::numbers::pi));
+}
+
+/// Cells of a file in the outline, in place of a packing and its Laguerre cells. Each has the circle of its area; where cells were cut, those of the whole cells are kept besides.
+void take_given_cells(Specimen& specimen) {
+    const GivenCellsSpec& spec = specimen.spec.given_cells;
+    const GivenCells& given = *spec.cells;
+    FittedCells fitted = fit_cells(spec, specimen.outline, specimen.spec.outline.shape);
+    const int joined = fitted.joined;
+    specimen.cells = tessellation_of(std::move(fitted.graph), specimen.outline, given.mean_diameter_m, specimen.spec.merge_length_m.value_or(given.mean_diameter_m / 12.0));
+    specimen.cells.joined_pieces += joined;
+    if (!fitted.origin.empty()) {
+        Tessellation& cells = specimen.cells;
+        if (cells.disc_of_cell.empty()) {
+            cells.disc_of_cell = std::move(fitted.origin);
+            cells.reshaped = std::move(fitted.reshaped);
+        } else {
+            for (std::size_t g = 0; g < cells.disc_of_cell.size(); ++g) {
+                const std::size_t face = static_cast<std::size_t>(cells.disc_of_cell[g]);
+                cells.reshaped[g] = cells.reshaped[g] != 0 || fitted.reshaped[face] != 0 ? 1 : 0;
+                cells.disc_of_cell[g] = fitted.origin[face];
+            }
+        }
+    }
+    for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) add_circle(specimen.packing, corners_of_cell(specimen.cells, g));
+    if (!specimen.cells.disc_of_cell.empty())
+        for (const std::vector<int>& cell : given.cells) {
+            std::vector<Vec2> corners;
+            for (const int v : cell) corners.push_back(given.vertices[static_cast<std::size_t>(v)] + fitted.shift);
+            add_circle(specimen.packed, corners);
+        }
+    SpecimenQuality& quality = specimen.quality;
+    quality.welded = given.welded;
+    quality.inserted = given.inserted;
+    quality.concave = given.concave;
+    quality.moved = fitted.moved;
+    const std::string file = spec.file.filename().string();
+    for (const std::string& remark : given.remarks) quality.warnings.push_back(fmt::format("{}: {}", file, remark));
+    if (given.inserted > 0)
+        quality.warnings.push_back(fmt::format("{}: {} corners lay on an edge of a neighbour and were put into it", file, given.inserted));
+    if (fitted.moved > 0)
+        quality.warnings.push_back(fmt::format("{}: {} corners on the boundary were moved onto the outline, by {:.2g} mm at most", file, fitted.moved, 1e3 * fitted.furthest_m));
+    if (fitted.shift != Vec2{})
+        quality.warnings.push_back(fmt::format("{}: the cells were moved by ({:.6g}, {:.6g}) mm, to where the outline is", file, 1e3 * fitted.shift.x, 1e3 * fitted.shift.y));
+    if (given.concave > 0) quality.warnings.push_back(fmt::format("{}: {} of {} cells are not convex", file, given.concave, given.cells.size()));
+}
+
 /// The discs as they were packed.
 const Packing& discs_of(const Specimen& specimen) { return specimen.packed.centres.empty() ? specimen.packing : specimen.packed; }
 
@@ -242,7 +293,7 @@ void measure_mesh(const GrainMesh& mesh, SpecimenQuality& quality) {
     }
 }
 
-std::vector<std::string> warnings_about(const SpecimenQuality& quality) {
+std::vector<std::string> warnings_about(const SpecimenQuality& quality, bool given) {
     std::vector<std::string> warnings;
     if (quality.width_over_largest_grain < 10.0) {
         warnings.push_back(fmt::format("the specimen is only {:.1f} times as wide as its largest grain; ISRM suggests at least 10",
@@ -255,10 +306,10 @@ std::vector<std::string> warnings_about(const SpecimenQuality& quality) {
         warnings.push_back(fmt::format("the discs overlap by {:.0f} % of the mean diameter on average: the grain sizes will differ from the "
                                        "distribution; a larger porosity gives fewer grains", 100.0 * quality.overlap_mean));
     }
-    if (quality.overlap_mean < 1e-5 && quality.grains > 1) {
+    if (!given && quality.overlap_mean < 1e-5 && quality.grains > 1) {
         warnings.push_back("the packing is loose: cells are larger than their discs, and grain sizes differ from the distribution");
     }
-    if (quality.size_spread < least_size_spread && quality.grains > 20) {
+    if (!given && quality.size_spread < least_size_spread && quality.grains > 20) {
         warnings.push_back(fmt::format("the grains are of nearly one size (coefficient of variation {:.1f} %): equal discs crystallise in rows, along which "
                                        "the rock is anisotropic (hexatic order {:.2f}; 0.5 at a coefficient of variation of 20 %); "
                                        "a coefficient of variation of {:.0f} % or more avoids it", 100.0 * quality.size_spread, quality.hexatic_order,
@@ -291,15 +342,22 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     specimen.seed = seed;
     specimen.outline = make_outline(spec);
     Making making(control);
-    specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
-    making.expect(specimen.packing.centres.size());
-
     SpecimenQuality& quality = specimen.quality;
-    quality.mean_diameter_m = mean_diameter(specimen.packing);
-    const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
-    making.stage("cells", true);
-    specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
-    give_discs_to_pieces(specimen);
+    const bool given = spec.given_cells.given();
+    if (given) {
+        making.expect(spec.given_cells.cells->cells.size());
+        making.stage("cells", true);
+        take_given_cells(specimen);
+        quality.mean_diameter_m = mean_diameter(specimen.packing);
+    } else {
+        specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
+        making.expect(specimen.packing.centres.size());
+        quality.mean_diameter_m = mean_diameter(specimen.packing);
+        const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
+        making.stage("cells", true);
+        specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
+        give_discs_to_pieces(specimen);
+    }
     if (spec.crystal_sizes) {
         SpecimenSpec crystals = spec;
         crystals.grain_sizes = *spec.crystal_sizes;
@@ -329,7 +387,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     quality.inner_particles = static_cast<int>(specimen.filling.centres.size());
     quality.inside_contacts = static_cast<int>(specimen.filling.inside.size());
     quality.across_contacts = static_cast<int>(specimen.filling.across.size());
-    quality.warnings = warnings_about(quality);
+    for (std::string& warning : warnings_about(quality, given)) quality.warnings.push_back(std::move(warning));
     return specimen;
 }
 
