@@ -237,7 +237,7 @@ std::vector<JobKey> grains_keys() {
          "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
         {"triangles_per_grain", integer(0, 10000), usual(spec.triangles_per_grain), "0 for the standard mesh of about 15 triangles, or about so many"},
         {"file", text("the path of a .tess, .msh or .csv file, relative to the job file"), words("the grains are packed"),
-         "cells that another program made, in place of a packing ([theory](theory/specimen.md#9-cells-of-other-programs)): a tessellation of Neper (`.tess`), a mesh of gmsh whose surfaces are the grains (`.msh`), or polygons (`.csv`, head `grain,x,y`)"},
+         "cells that another program made, in place of a packing ([theory](theory/specimen.md#7-cells-of-other-programs)): a tessellation of Neper (`.tess`), a mesh of gmsh whose surfaces are the grains (`.msh`), or polygons (`.csv`, head `grain,x,y`)"},
         {"unit", text("a unit or a length, such as \"mm\" or \"80 mm\""), words("must be given with `file`, unless a `.csv` says it in its head"),
          "the length of one unit of the file, which has no units: `\"80 mm\"` makes of Neper's unit square one of 80 mm"},
         {"tolerance", number({0.0, 0.1, true, true, "from 0 to 0.1"}), usual(spec.given_cells.tolerance),

@@ -128,9 +128,9 @@ public:
 
     CellsOfFile read() {
         if (words_.peek() != "***tess") {
-            const bool raster = words_.peek() == "***tesr";
-            words_.next("***tess");
-            words_.fail(raster ? "is a raster tessellation" : fmt::format("begins with '{}': this is no tessellation file of Neper", Words::clipped(words_.peek().empty() ? "" : first_word_)),
+            const std::string first(words_.next("***tess"));
+            const bool raster = first == "***tesr";
+            words_.fail(raster ? "is a raster tessellation" : fmt::format("begins with '{}': this is no tessellation file of Neper", Words::clipped(first)),
                         raster ? "a tessellation with vertices and edges (***tess)" : "***tess");
         }
         words_.next("***tess");
@@ -269,7 +269,6 @@ private:
     }
 
     Words words_;
-    std::string first_word_ = std::string(words_.peek());
     CellsOfFile result_;
     PlaneCheck plane_;
     long long cells_ = 0;

@@ -476,14 +476,16 @@ private:
                 if (face.labels[k] >= 0) continue;
                 for (const int v : {face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]}) edges[v].insert(-1 - face.labels[k]);
             }
+        // A flat meets the chord of a cell somewhat inside of the circle.
         std::vector<Vec2> exact = outline_.vertices;
         if (outline_.flattened())
             for (const Vec2 corner : flat_corners(outline_)) exact.push_back(corner);
+        const double near = outline_.flattened() ? 0.5 * mean_ : 4.0 * reach_;
         for (const auto& [v, at] : edges) {
             graph_.place[v] = at.size() > 1 ? static_cast<int>(place_corner) : *at.begin();
             if (at.size() < 2) continue;
             for (const Vec2 corner : exact)
-                if (norm(corner - graph_.vertices[v]) <= 4.0 * reach_) graph_.vertices[v] = corner;
+                if (norm(corner - graph_.vertices[v]) <= near) graph_.vertices[v] = corner;
         }
     }
 

@@ -326,6 +326,7 @@ std::vector<std::string> warnings_about(const SpecimenQuality& quality, bool giv
 
 int grain_count(const SpecimenSpec& spec) {
     check_numbers(spec);
+    if (spec.given_cells.given()) return static_cast<int>(spec.given_cells.cells->cells.size());
     const double d = counting_diameter(spec.grain_sizes);
     const double count = std::round((1.0 - spec.porosity) * packed_area_m2(make_outline(spec)) / (0.25 * std::numbers::pi * d * d));
     if (count > most_grains) {
@@ -361,6 +362,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     if (spec.crystal_sizes) {
         SpecimenSpec crystals = spec;
         crystals.grain_sizes = *spec.crystal_sizes;
+        crystals.given_cells = {};   // their discs are packed, whatever the grains are
         constexpr std::uint64_t kOthers = 0x9E3779B97F4A7C15;   // the streams of another seed: crystals and grains have nothing to do with each other
         specimen.crystal_of_cell = group_into_crystals(specimen.cells, make_packing(crystals, specimen.outline, seed ^ kOthers, making));
         quality.crystals = 1 + *std::max_element(specimen.crystal_of_cell.begin(), specimen.crystal_of_cell.end());

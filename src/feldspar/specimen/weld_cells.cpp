@@ -328,7 +328,7 @@ private:
         if (pinched_ >= 0) fail(cell, fmt::format("the cells hang together by a point only, at {}", place(vertices_[pinched_])), "cells in one piece");
         if (parts > 1) {
             const Vec2 a = centroid(points(lines.front())), b = centroid(points(lines.back()));
-            fail(cell, fmt::format("the cells lie in {} parts that do not touch, one around {} and one around {}", parts, place(a), place(b)), "cells in one piece: corners of neighbours that agree to the key tolerance, in mean grain diameters");
+            fail(cell, fmt::format("the cells lie in {} parts that touch in a point at most, one around {} and one around {}", parts, place(a), place(b)), "cells in one piece: corners of neighbours that agree to the key tolerance, in mean grain diameters");
         }
         fail(cell, "the cells do not fit together: their edges are not those of one partition", "cells without gaps and overlaps");
     }
