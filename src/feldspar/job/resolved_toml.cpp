@@ -158,8 +158,8 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
     const GivenCellsSpec& cells = specimen.given_cells;
     if (cells.given()) {
         if (!cells.file.empty()) out.word("file", std::filesystem::absolute(cells.file).string());
-        out.quantity("unit", cells.unit_m);
-        if (cells.tolerance != GivenCellsSpec{}.tolerance) out.number("tolerance", cells.tolerance);
+        out.raw("unit", si(cells.unit_m, Dimension::length));
+        out.number("tolerance", cells.tolerance);
     } else {
         out.raw("diameter", grain_sizes(specimen.grain_sizes));
     }

@@ -26,6 +26,7 @@ namespace feldspar {
 namespace {
 
 constexpr double most_grains = 1e7;
+constexpr double most_slant_rad = 8.0 * std::numbers::pi / 180.0;   // of contacts: Laguerre and Voronoi cells have 3 to 5 degrees, cells twice as long as wide 17
 
 void check_numbers(const SpecimenSpec& spec) {
     if (!(spec.porosity >= 0.0 && spec.porosity < 1.0)) {
@@ -186,7 +187,7 @@ void take_given_cells(Specimen& specimen) {
         quality.warnings.push_back(fmt::format("{}: {} corners lay on an edge of a neighbour and were put into it", file, given.inserted));
     if (fitted.moved > 0)
         quality.warnings.push_back(fmt::format("{}: {} corners on the boundary were moved onto the outline, by {:.2g} mm at most", file, fitted.moved, 1e3 * fitted.furthest_m));
-    if (fitted.shift != Vec2{})
+    if (!spec.cut && fitted.shift != Vec2{})
         quality.warnings.push_back(fmt::format("{}: the cells were moved by ({:.6g}, {:.6g}) mm, to where the outline is", file, 1e3 * fitted.shift.x, 1e3 * fitted.shift.y));
     if (given.concave > 0) quality.warnings.push_back(fmt::format("{}: {} of {} cells are not convex", file, given.concave, given.cells.size()));
 }
@@ -277,6 +278,23 @@ double hexatic_order(const Specimen& specimen) {
         ++inner;
     }
     return inner > 0 ? sum / inner : 0.0;
+}
+
+/// The angle (rad) between an edge's normal and the line of the centroids of its two cells, mean over the length of all edges inside. Contacts take that line for
+/// their normal.
+double mean_slant(const Specimen& specimen) {
+    double sum = 0.0, lengths = 0.0;
+    for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
+        const Cell& cell = specimen.cells.cells[g];
+        for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
+            if (cell.neighbours[k] <= g) continue;
+            const Vec2 along = specimen.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] - specimen.cells.vertices[cell.vertices[k]];
+            const Vec2 apart = specimen.packing.centres[cell.neighbours[k]] - specimen.packing.centres[g];
+            sum += norm(along) * std::atan2(std::abs(dot(along, apart)), std::abs(cross(along, apart)));
+            lengths += norm(along);
+        }
+    }
+    return lengths > 0.0 ? sum / lengths : 0.0;
 }
 
 void measure_mesh(const GrainMesh& mesh, SpecimenQuality& quality) {
@@ -389,6 +407,11 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     quality.inner_particles = static_cast<int>(specimen.filling.centres.size());
     quality.inside_contacts = static_cast<int>(specimen.filling.inside.size());
     quality.across_contacts = static_cast<int>(specimen.filling.across.size());
+    if (const double slant = mean_slant(specimen); given && slant > most_slant_rad) {
+        quality.warnings.push_back(fmt::format("the lines between the centres of neighbours are {:.0f} degrees from the normals of their edges on average: contacts of flexible and rigid grains take these lines for their normals, and "
+                                               "cells that are longer than wide then have strengths in compression that depend on their direction more than a rock's (docs/theory/specimen.md, section 7)",
+                                               slant * 180.0 / std::numbers::pi));
+    }
     for (std::string& warning : warnings_about(quality, given)) quality.warnings.push_back(std::move(warning));
     return specimen;
 }

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Writes foliated.tess, a tessellation in Neper's format of grains twice as long as high, as in a gneiss.
+"""Writes voronoi.tess, a Voronoi tessellation in the format of Neper.
 
-    python3 foliated.py > foliated.tess
+    python3 voronoi.py > voronoi.tess
 
-A stand-in for whatever program makes your cells: it needs Python alone. Points at random in a plane that is squeezed along x
-are spread out by Lloyd's rounds (each goes to the centroid of its Voronoi cell); the cells are then stretched back. The domain is 1 x 2.
+A stand-in for whatever program makes your cells: it needs Python alone. Points at random are spread out by Lloyd's rounds
+(each goes to the centroid of its Voronoi cell). The domain is 1 x 2. STRETCH above 1 makes cells that are longer along x.
 """
 import random
 
-CELLS, ROUNDS, STRETCH, WIDTH, HEIGHT = 300, 8, 2.0, 1.0, 2.0
+CELLS, ROUNDS, STRETCH, WIDTH, HEIGHT = 300, 8, 1.0, 1.0, 2.0
 random.seed(7)
 
 
