@@ -20,7 +20,7 @@ SpecimenSpec wanted_specimen(const Job& job, const ExportCellsOptions& options) 
 
 // The lines by which a job reads the file again.
 std::string lines_for_a_job(const std::string& file, CellFormat format) {
-    return fmt::format("[specimen.grains]\nfile = \"{}\"\n{}merge_length = \"none\"\n", file, format == CellFormat::csv ? "" : "unit = \"m\"\n");
+    return fmt::format("[specimen]\nshape = \"from-file\"\n[specimen.grains]\nfile = \"{}\"\n{}merge_length = \"none\"\n", file, format == CellFormat::csv ? "" : "unit = \"m\"\n");
 }
 
 }  // namespace

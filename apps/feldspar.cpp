@@ -27,6 +27,7 @@ constexpr const char* examples = R"(Examples:
   feldspar run granite.toml --threads 2                  the results do not depend on the threads
   feldspar run granite.toml --at-once 1                  one test after the other, each on all threads
   feldspar run granite.toml --test brazilian             only a part of the job
+  feldspar export-cells granite.toml --out cells.msh     its grains for gmsh; .tess for Neper, .csv for anything
   feldspar envelope granite.toml                         strength envelope over five packings
   feldspar converge granite.toml                         does the answer depend on grains, size, mesh, rate, packings?
 

@@ -26,7 +26,7 @@ namespace feldspar {
 namespace {
 
 constexpr double most_grains = 1e7;
-constexpr double most_slant_rad = 8.0 * std::numbers::pi / 180.0;   // of contacts: Laguerre and Voronoi cells have 3 to 5 degrees, cells twice as long as wide 17
+constexpr double most_slant_rad = 8.0 * std::numbers::pi / 180.0;   // of contacts: even Voronoi cells have 1 degree, cells twice as long as wide 24
 
 void check_numbers(const SpecimenSpec& spec) {
     if (!(spec.porosity >= 0.0 && spec.porosity < 1.0)) {
