@@ -342,7 +342,7 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
         if (spec.crystal_sizes && typical_diameter_m(*spec.crystal_sizes) < 1.5 * typical_diameter_m(spec.grain_sizes))
             grains.fail("crystals", "crystals are hardly larger than the grains that they consist of", "a mean diameter of at least 1.5 times that of the grains; 3 times makes about ten grains a crystal");
     });
-    check_cutouts(table, spec);
+    if (!of_file || spec.given_cells.given()) check_cutouts(table, spec);
     read_merge_length(grains, spec);
 
     if (of_file) table.refuse({"packing"}, "file in [specimen.grains]", "one of them");

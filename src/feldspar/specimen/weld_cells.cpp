@@ -50,6 +50,7 @@ Common common_part(std::vector<Vec2> polygon, const std::vector<Vec2>& convex) {
 }
 
 std::vector<std::vector<Vec2>> convex_parts(const std::vector<Vec2>& corners) {
+    if (!is_simple_polygon(corners)) return {};   // bent by what was put into its edges: other cells tell where
     if (is_convex_polygon(corners)) return {corners};
     std::vector<std::vector<Vec2>> parts;
     for (const std::vector<int>& part : convex_partition(corners)) {
@@ -379,6 +380,7 @@ private:
         for (int c = 0; c < std::ssize(cells_); ++c) {
             const std::vector<Vec2> polygon = corners(c);
             if (signed_area(polygon) <= 0.0) fail(c, fmt::format("cell {} has no area left where its corners were welded to those of neighbours", name(c)), "a smaller tolerance, or cells that are wider than it");
+            if (!is_simple_polygon(polygon)) fail(c, fmt::format("the boundary of cell {} crosses itself where its corners were welded to those of neighbours, near {}", name(c), place(centroid(polygon))), "a smaller tolerance, or cells that are wider than it");
             if (is_convex_polygon(polygon)) continue;
             std::size_t worst = 0;
             double sharpest = 0.0;
