@@ -40,10 +40,12 @@ void print_specimen(const std::string& what, const Specimen& specimen) {
     say("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
     say("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2,
         1e3 * q.smallest_triangle_height_m);
-    say("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
+    if (specimen.spec.given_cells.given())
+        say("  corners of the file   {} welded, {} put into edges, {} moved onto the outline\n", q.welded, q.inserted, q.moved);
+    else say("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
         100.0 * q.overlap_max);
     say("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
-    say("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
+    if (!specimen.spec.given_cells.given()) say("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
     say("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
     say("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
     say("  area error            {:.1e}\n", q.area_error);

@@ -131,6 +131,14 @@ ExitCode converge_command(const ConvergeCommandOptions& options);
 /// Builds everything, prints counts, memory, stable step, expected steps and time, and stops.
 ExitCode check_command(const JobOptions& options);
 
+/// What stands on the command line of `export-cells` beside the job file.
+struct ExportCellsOptions : JobOptions {
+    std::string out;   ///< a new file, .tess, .msh or .csv
+};
+
+/// Writes the cells of one specimen for other programs.
+ExitCode export_cells_command(const ExportCellsOptions& options);
+
 /// Prints a commented job, or writes it to a new file.
 ExitCode new_command(const std::string& kind, const std::optional<std::string>& out);
 

@@ -29,6 +29,7 @@ constexpr const char* examples = R"(Examples:
   feldspar run granite.toml --threads 2                  the results do not depend on the threads
   feldspar run granite.toml --at-once 1                  one test after the other, each on all threads
   feldspar run granite.toml --test brazilian             only a part of the job
+  feldspar export-cells granite.toml --out cells.msh     its grains for gmsh; .tess for Neper, .csv for anything
   feldspar envelope granite.toml                         strength envelope over five packings
   feldspar converge granite.toml                         does the answer depend on grains, size, mesh, rate, packings?
 
@@ -223,6 +224,17 @@ void add_check(CommandLine& line) {
     line.does(command, [options] { return check_command(*options); });
 }
 
+void add_export_cells(CommandLine& line) {
+    const auto options = std::make_shared<ExportCellsOptions>();
+    CLI::App& command = line.add("export-cells", "write the cells of a specimen for other programs: Neper (.tess), gmsh (.msh) or as polygons (.csv)");
+    command.add_option("job", options->job, "the job file")->required()->type_name("JOB.toml");
+    command.add_option("--seed", options->seeds, "the packing (default: the job's first)")->type_name("S")->expected(1);
+    command.add_option("--test", options->tests, "the specimen of this kind of test, such as the disc of 'brazilian' (default: that of the job)")->type_name("KIND")->expected(1);
+    command.add_option("--threads", options->threads, "threads (default: as the job says)")->type_name("N")->check(CLI::Range(0, 256));
+    command.add_option("--out", options->out, "a new file; its ending says the format")->required()->type_name("FILE");
+    line.does(command, [options] { return export_cells_command(*options); });
+}
+
 void add_study(CommandLine& line) {
     const auto options = line.options<StudyOptions>();
     CLI::App& command = line.add("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted");
@@ -342,6 +354,6 @@ void add_schema(CommandLine& line) {
 int main(int argc, char** argv) {
     using namespace feldspar;
     CommandLine line(joined(argc, argv));
-    for (auto* add : {add_run, add_check, add_new, add_schema, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
+    for (auto* add : {add_run, add_check, add_export_cells, add_new, add_schema, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
     return line.run(argc, argv);
 }

@@ -12,7 +12,7 @@ TEST(CommandLine, HelpAndVersion) {
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
     EXPECT_NE(help.out.find("feldspar run"), std::string::npos);
-    for (const char* command : {"run", "check", "new", "schema", "envelope", "converge"}) EXPECT_EQ(run_program(place.path(), {command, "--help"}).code, 0);
+    for (const char* command : {"run", "check", "new", "schema", "envelope", "converge", "export-cells"}) EXPECT_EQ(run_program(place.path(), {command, "--help"}).code, 0);
     const Outcome version = run_program(place.path(), {"--version"});
     EXPECT_EQ(version.code, 0);
     EXPECT_EQ(version.out.rfind("feldspar 0.", 0), 0u) << version.out;
@@ -49,7 +49,12 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
                                                       {"run", "job.toml", "--out"},
                                                       {"run", "job.toml", "--out", ""},
                                                       {"run", "job.toml", "other.toml"},
-                                                      {"check", "job.toml", "--out", "x"}};
+                                                      {"check", "job.toml", "--out", "x"},
+                                                      {"export-cells", "job.toml"},
+                                                      {"export-cells", "--out", "x.tess"},
+                                                      {"export-cells", "job.toml", "--out", "x.vtk"},
+                                                      {"export-cells", "job.toml", "--out", "x.tess", "--seed", "1", "--seed", "2"},
+                                                      {"export-cells", "job.toml", "--out", "none/x.tess"}};
     for (const auto& arguments : cases) {
         std::string shown;
         for (const std::string& argument : arguments) shown += " '" + argument + "'";
@@ -122,6 +127,27 @@ std::string job_of_two_variants() {
         "[[variant]]\nname = \"bilinear\"\n[[variant]]\nname = \"Brittle, 2\"\nseeds = [2]\n"
         "[variant.material.contact]\nlaw = \"brittle\"\n[[test]]\nkind = \"direct-tension\"\n",
         "[1, 2]");
+}
+
+TEST(CommandLine, WritesCellsThatAJobReadsAgain) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    const Outcome written = run_program(place.path(), {"export-cells", "job.toml", "--out", "cells.tess"});
+    ASSERT_EQ(written.code, 0) << written.err;
+    EXPECT_NE(written.out.find("file = \"cells.tess\"\nunit = \"m\""), std::string::npos) << written.out;
+    const std::string text = read_text(place / "cells.tess");
+    EXPECT_EQ(text.rfind("***tess\n", 0), 0u);
+    const Outcome again = run_program(place.path(), {"export-cells", "job.toml", "--out", "cells.tess"});
+    EXPECT_EQ(again.code, 2);
+    EXPECT_NE(again.err.find("exists already"), std::string::npos) << again.err;
+    EXPECT_EQ(read_text(place / "cells.tess"), text);
+    const std::size_t snippet = written.out.find("[specimen]\n"), rest = small_job().find("[material");
+    ASSERT_TRUE(snippet != std::string::npos && rest != std::string::npos);
+    write_text(place / "again.toml", written.out.substr(snippet) + small_job().substr(rest));
+    const Outcome back = run_program(place.path(), {"export-cells", "again.toml", "--out", "again.tess"});
+    ASSERT_EQ(back.code, 0) << back.err;
+    const auto mesh = [](const std::string& tess) { return tess.substr(tess.find("**vertex")); };   // seeds and their weights are circles of the cells' areas now
+    EXPECT_EQ(mesh(read_text(place / "again.tess")), mesh(text));
 }
 
 TEST(CommandLine, ChecksEachVariantOnce) {

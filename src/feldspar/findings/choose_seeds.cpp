@@ -11,6 +11,7 @@ std::vector<std::uint64_t> choose_seeds(const Job& job, std::optional<int> wante
         if (wanted && *wanted > 1) throw InputError({{}, 0, 0, "--seeds"}, "several packings are asked for, but the job loads one", "--seeds 1, or a job without a packing");
         return {job.seeds.front()};
     }
+    if (job.specimen.given_cells.given() && !wanted && job.seeds.size() == 1) return job.seeds;   // other seeds have the same cells
     if (!wanted && job.seeds.size() > 1) return job.seeds;
     const auto count = static_cast<std::size_t>(wanted.value_or(usual));
     std::vector<std::uint64_t> seeds(job.seeds.begin(), job.seeds.begin() + static_cast<std::ptrdiff_t>(std::min(count, job.seeds.size())));
@@ -24,6 +25,7 @@ std::optional<SpecimenSpec> usual_disc(const SpecimenSpec& specimen) {
     SpecimenSpec disc = specimen;
     const double diameter_m = specimen.outline.shape == Shape::rectangle ? specimen.outline.width_m : specimen.outline.diameter_m;
     if (specimen.outline.shape != Shape::disc || specimen.outline.is_cut()) disc.packing_file.clear();
+    if (specimen.outline.shape != Shape::disc || specimen.outline.is_cut()) disc.given_cells.cut = true;
     disc.outline = OutlineSpec{};
     disc.outline.shape = Shape::disc;
     disc.outline.diameter_m = diameter_m;

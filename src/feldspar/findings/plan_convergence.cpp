@@ -184,6 +184,8 @@ std::vector<Draft> drafts_of(const Job& job, std::vector<std::string>& remarks) 
     std::vector<Draft> drafts;
     if (!job.specimen.packing_file.empty()) {
         remarks.emplace_back("Left out: grain size and specimen size, because the job loads a packing.");
+    } else if (job.specimen.given_cells.given()) {
+        remarks.emplace_back("Left out: grain size and specimen size, because the cells come from a file.");
     } else {
         drafts.push_back(draft_of_sizes(job, "grain size", grain_step, {0.75, 1.5}, remarks));
         drafts.push_back(draft_of_sizes(job, "specimen size", size_step, {0.75, 1.5}, remarks));

@@ -88,6 +88,7 @@ private:
 SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double flat_angle_rad) {
     SpecimenSpec disc = specimen;
     if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m) disc.packing_file.clear();
+    if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m || flat_angle_rad != 0.0 || specimen.given_cells.cut) disc.given_cells.cut = true;
     disc.outline = OutlineSpec{};
     disc.outline.shape = Shape::disc;
     disc.outline.diameter_m = diameter_m;

@@ -144,11 +144,18 @@ std::vector<JobKey> file_keys() {
     };
 }
 
+// The shapes, and that of the cells of a file.
+KeyValue choice_of_shapes() {
+    KeyValue value = choice_of(shapes);
+    value.element.words.emplace_back(shape_from_file);
+    return value;
+}
+
 // What outlines are made of.
 std::vector<JobKey> outline_rows() {
     const KeyCondition rectangle = with("shape", {Shape::rectangle}), disc = with("shape", {Shape::disc, Shape::half_disc, Shape::ring}), polygon = with("shape", {Shape::polygon});
     return {
-        {"shape", choice_of(shapes), needed, "the outline: a rectangle (`width`, `height`: from (0, 0)), a disc (`diameter`: around (0, 0)), a polygon (`vertices`, `edge_labels`), a half disc (`diameter`; it stands on y = 0 with the middle of its flat at (0, 0); labels `\"flat\"`, `\"arc\"`) or a ring (`diameter`, `hole_diameter`; labels `\"circle\"`, `\"hole\"`)"},
+        {"shape", choice_of_shapes(), needed, "the outline: `\"from-file\"`: that of the cells that `file` of `[specimen.grains]` names; a rectangle (`width`, `height`: from (0, 0)), a disc (`diameter`: around (0, 0)), a polygon (`vertices`, `edge_labels`), a half disc (`diameter`; it stands on y = 0 with the middle of its flat at (0, 0); labels `\"flat\"`, `\"arc\"`) or a ring (`diameter`, `hole_diameter`; labels `\"circle\"`, `\"hole\"`)"},
         {"width", quantity(length), must, "across the load; the Brazilian test cuts its own disc of this diameter", rectangle},
         {"height", quantity(length), must, "in the direction of loading", rectangle},
         {"diameter", quantity(length), must, "outer diameter", disc},
@@ -221,7 +228,7 @@ std::vector<JobKey> label_keys() {
 std::vector<JobKey> grains_keys() {
     const SpecimenSpec spec;
     return {
-        {"diameter", table("specimen.grains.diameter"), needed,
+        {"diameter", table("specimen.grains.diameter"), words("must be given, or `file`"),
          "the distribution of diameters; of discs, which the cells exceed ([by how much](theory/specimen.md))"},
         {"crystals", table("specimen.grains.diameter"), words("each grain is a crystal"),
          "the distribution of diameters of crystals that consist of several grains each, and can break between them (`[material.crystal]`)"},
@@ -229,6 +236,12 @@ std::vector<JobKey> grains_keys() {
         {"merge_length", quantity(length, not_negative, {"auto", "none"}), usual_word("auto"),
          "shorter grain edges are merged; `\"auto\"` is mean diameter / 12"},
         {"triangles_per_grain", integer(0, 10000), usual(spec.triangles_per_grain), "0 for the standard mesh of about 15 triangles, or about so many"},
+        {"file", text("the path of a .tess, .msh or .csv file, relative to the job file"), words("the grains are packed"),
+         "cells that another program made, in place of a packing ([theory](theory/specimen.md#7-cells-of-other-programs)): a tessellation of Neper (`.tess`), a mesh of gmsh whose surfaces are the grains (`.msh`), or polygons (`.csv`, head `grain,x,y`)"},
+        {"unit", text("a unit or a length, such as \"mm\" or \"80 mm\""), words("must be given with `file`, unless a `.csv` says it in its head"),
+         "the length of one unit of the file, which has no units: `\"80 mm\"` makes of Neper's unit square one of 80 mm"},
+        {"tolerance", number({0.0, 0.1, true, true, "from 0 to 0.1"}), usual(spec.given_cells.tolerance),
+         "of a file's cells, in mean grain diameters: corners of neighbours that are nearer are one, a corner so near to a neighbour's edge goes into it, and the boundary may miss the outline by so much"},
         {"particles_per_grain", number({7.0, 500.0, true, true, "from 7 to 500"}), usual(usual_particles_per_grain), "inner particles in a grain of mean area",
          with("model.kind", {GrainKind::inner_particles})},
     };

@@ -3,12 +3,17 @@
 #include <numbers>
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
+#include "feldspar/base/units.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/words.hpp"
+#include "feldspar/specimen/cells_of_file.hpp"
+#include "feldspar/specimen/fit_cells.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/specimen/outline.hpp"
+#include "feldspar/specimen/weld_cells.hpp"
 
 namespace feldspar {
 namespace {
@@ -64,8 +69,26 @@ void read_polygon(const JobTable& table, OutlineSpec& outline) {
     });
 }
 
-OutlineSpec read_outline(const JobTable& table) {
+// The shape is that of a file's cells.
+bool is_from_file(const JobTable& table) {
+    const toml::node* shape = table.find("shape");
+    return shape != nullptr && shape->value<std::string>() == shape_from_file;
+}
+
+// @param cells  of the specimen's file; where there are none, or the outline cannot be theirs, that is a mistake
+OutlineSpec read_outline(const JobTable& table, const GivenCellsSpec* cells) {
     OutlineSpec outline;
+    if (is_from_file(table)) {
+        table.suit("shape", shape_from_file);
+        if (cells == nullptr) {
+            table.check({"shape"}, [&] { table.fail("shape", "a test's own specimen has no file", "a shape with its lengths: it is cut out of the cells of the job's file"); });
+        } else if (cells->file.empty()) {
+            table.check({"shape", "grains"}, [&] { table.fail("shape", "no file says what the outline is", "file = \"cells.tess\" in [specimen.grains]"); });
+        } else if (cells->given()) {
+            outline = outline_of_cells(*cells->cells, cells->tolerance);
+        }
+        return outline;
+    }
     outline.shape = table.choice("shape", shapes);
     if (!table.sound({"shape"})) {   // what is there can be looked at nevertheless
         for (const char* key : {"width", "height", "diameter", "hole_diameter"}) table.quantity(key, 0.0);
@@ -175,6 +198,55 @@ double smallest_extent_m(const OutlineSpec& outline) {
 
 namespace {
 
+// The length of a unit of the file: "mm", or "80 mm".
+double read_unit(const JobTable& grains, double of_file_m) {
+    if (!grains.has("unit")) {
+        if (of_file_m == 0.0) grains.fail("unit", "missing key: unit (the file has no unit of length)", grains.allowed("unit"), "Neper's domain is a square of side 1 unless it was told otherwise: unit = \"80 mm\" makes it 80 mm wide");
+        return of_file_m;
+    }
+    const std::string given = grains.text("unit");
+    if (of_file_m != 0.0) grains.fail("unit", "is given, but the head of the file says the unit too", "one of them");
+    double unit_m = 0.0;
+    try {
+        const bool number = !given.empty() && (std::isdigit(static_cast<unsigned char>(given.front())) != 0 || given.front() == '.');
+        unit_m = parse_quantity(number ? given : "1 " + given, Dimension::length);
+    } catch (const std::exception&) {
+        unit_m = 0.0;
+    }
+    if (!(unit_m > 0.0) || !std::isfinite(unit_m)) grains.fail("unit", shown(*grains.find("unit")) + " is no length", grains.allowed("unit"));
+    return unit_m;
+}
+
+// Cells of a file, and what they say of the grains' sizes.
+void read_given_cells(const JobTable& grains, const std::filesystem::path& folder, SpecimenSpec& spec) {
+    GivenCellsSpec& cells = spec.given_cells;
+    cells.tolerance = grains.number("tolerance");
+    if (!grains.has("file")) {
+        grains.refuse({"unit", "tolerance"}, "grains that are packed", "only beside file");
+        return;
+    }
+    cells.file = "cells";   // until it is known
+    grains.refuse({"diameter", "porosity"}, "file, whose cells say it");
+    grains.check({"file", "unit", "tolerance"}, [&] {
+        const std::filesystem::path given = grains.text("file");
+        if (given.empty()) return;
+        cells.file = std::filesystem::absolute(given.is_absolute() ? given : folder / given).lexically_normal();
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(cells.file, ignored)) grains.fail("file", "there is no file " + shown(*grains.find("file")), grains.allowed("file"));
+        cell_format_of(cells.file);
+        const std::string contents = read_cell_file(cells.file);
+        const CellsOfFile read = read_cells(contents, cells.file);
+        cells.unit_m = read_unit(grains, read.unit_m);
+        cells.hash = fmt::format("{:016x}", XXH3_64bits(contents.data(), contents.size()));
+        cells.cells = std::make_shared<const GivenCells>(weld_cells(read, cells.unit_m, cells.tolerance, cells.file));
+        GrainSizeSpec& sizes = spec.grain_sizes;   // by which the job is judged; nothing is drawn from them
+        sizes.kind = GrainSizeKind::log_normal;
+        sizes.minimum_m = cells.cells->smallest_diameter_m;
+        sizes.median_m = cells.cells->mean_diameter_m;
+        sizes.maximum_m = cells.cells->largest_diameter_m;
+    });
+}
+
 // What the grains' sizes and the outline must be to each other.
 void check_sizes(const JobTable& grains, const SpecimenSpec& spec) {
     const double largest = largest_diameter_m(spec.grain_sizes);
@@ -209,7 +281,7 @@ void read_merge_length(const JobTable& grains, SpecimenSpec& spec) {
                         "\"auto\" (mean diameter / 12), \"none\", or a length such as \"0.25 mm\"");
         spec.merge_length_m = grains.quantity("merge_length");
     });
-    grains.check({"merge_length", "diameter"}, [&] {
+    grains.check({"merge_length", spec.given_cells.file.empty() ? "diameter" : "file"}, [&] {
         if (*spec.merge_length_m >= 0.5 * typical_diameter_m(spec.grain_sizes))
             grains.fail("merge_length", shown(*merge) + " is half a grain or more: no cell would keep its shape",
                         "\"auto\" (mean diameter / 12), \"none\", or a length below half the mean diameter");
@@ -223,9 +295,16 @@ SpecimenSpec read_own_specimen(const JobTable& test, const SpecimenSpec& of_job,
     table.require({"shape"});
     SpecimenSpec spec = of_job;
     spec.packing_file.clear();
-    spec.outline = read_outline(table);
+    spec.outline = read_outline(table, nullptr);
     read_cutouts(table, spec.outline);
     if (!grains_known) return spec;
+    if (spec.given_cells.given()) {
+        spec.given_cells.cut = true;
+        table.check({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}, [&] {
+            const Outline outline = make_outline(spec);
+            if (!outline.is_disc && !is_convex_polygon(outline.vertices)) table.fail("shape", "is cut out of the cells of a file, which is done with convex outlines only", "a rectangle, a disc, a half disc, a ring, or a convex polygon");
+        });
+    }
     table.check({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}, [&] {
         const double largest = largest_diameter_m(spec.grain_sizes), extent = smallest_extent_m(spec.outline);
         if (largest > 0.5 * extent)
@@ -240,12 +319,14 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     const JobTable table = root.table("specimen");
     table.require({"shape", "grains"});
     SpecimenSpec spec;
-    spec.outline = read_outline(table);
+    const JobTable grains = table.table("grains");
+    read_given_cells(grains, folder, spec);
+    spec.outline = read_outline(table, &spec.given_cells);
     read_cutouts(table, spec.outline);
     spec.thickness_m = table.quantity("thickness");
 
-    const JobTable grains = table.table("grains");
-    spec.grain_sizes = read_grain_sizes(grains, "diameter");
+    const bool of_file = !spec.given_cells.file.empty();
+    if (!of_file) spec.grain_sizes = read_grain_sizes(grains, "diameter");
     if (grains.has("crystals")) spec.crystal_sizes = read_grain_sizes(grains, "crystals");
     spec.porosity = grains.number("porosity");
     spec.triangles_per_grain = static_cast<int>(grains.integer("triangles_per_grain"));
@@ -255,15 +336,17 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
         spec.particles_per_grain = grains.number("particles_per_grain");
     else
         grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with " + condition_text(grains.rows().key("particles_per_grain")));
-    if (table.sound({"shape", "width", "height", "diameter", "hole_diameter", "vertices"})) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
-    grains.check({"diameter", "crystals"}, [&] {
+    const std::string_view sizes = of_file ? "file" : "diameter";
+    if (table.sound({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}) && !of_file) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
+    grains.check({sizes, "crystals"}, [&] {
         if (spec.crystal_sizes && typical_diameter_m(*spec.crystal_sizes) < 1.5 * typical_diameter_m(spec.grain_sizes))
             grains.fail("crystals", "crystals are hardly larger than the grains that they consist of", "a mean diameter of at least 1.5 times that of the grains; 3 times makes about ten grains a crystal");
     });
-    check_cutouts(table, spec);
+    if (!of_file || spec.given_cells.given()) check_cutouts(table, spec);
     read_merge_length(grains, spec);
 
-    if (table.has("packing")) {
+    if (of_file) table.refuse({"packing"}, "file in [specimen.grains]", "one of them");
+    else if (table.has("packing")) {
         const std::filesystem::path given = table.text("packing");
         spec.packing_file = given.is_absolute() ? given : folder / given;
         table.check({"packing"}, [&] {

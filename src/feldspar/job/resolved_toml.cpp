@@ -155,9 +155,16 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
     out.quantity("thickness", specimen.thickness_m);
     if (!specimen.packing_file.empty()) out.word("packing", std::filesystem::absolute(specimen.packing_file).string());
     out.head("specimen.grains");
-    out.raw("diameter", grain_sizes(specimen.grain_sizes));
+    const GivenCellsSpec& cells = specimen.given_cells;
+    if (cells.given()) {
+        if (!cells.file.empty()) out.word("file", std::filesystem::absolute(cells.file).string());
+        out.raw("unit", si(cells.unit_m, Dimension::length));
+        out.number("tolerance", cells.tolerance);
+    } else {
+        out.raw("diameter", grain_sizes(specimen.grain_sizes));
+    }
     if (specimen.crystal_sizes) out.raw("crystals", grain_sizes(*specimen.crystal_sizes));
-    out.number("porosity", specimen.porosity);
+    if (!cells.given()) out.number("porosity", specimen.porosity);
     if (!specimen.merge_length_m)
         out.word("merge_length", "auto");
     else if (*specimen.merge_length_m == 0.0)

@@ -115,6 +115,16 @@ void look_at_flats(const Job& job, std::vector<std::string>& sentences) {
     }
 }
 
+// Cells of a file are the same for every seed.
+void look_at_seeds(const Job& job, std::vector<std::string>& sentences) {
+    if (!job.specimen.given_cells.given() || job.seeds.size() < 2) return;
+    const bool draws = std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.rock.contacts_differ() || v.rock.grains_differ() || v.model.kind == GrainKind::inner_particles; });
+    if (draws || job.specimen.crystal_sizes)
+        sentences.push_back(fmt::format("the cells of a file are the same for each of the {} seeds: these draw minerals, scatter, crystals and inner particles only, so the scatter between grain structures is not seen", job.seeds.size()));
+    else
+        sentences.push_back(fmt::format("the cells of a file are the same for every seed, and nothing else is drawn: the {} seeds repeat one specimen. One seed is enough", job.seeds.size()));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings(const Job& job) {
@@ -127,6 +137,7 @@ std::vector<std::string> warnings(const Job& job) {
     }
     look_at_slenderness(job, sentences);
     look_at_flats(job, sentences);
+    look_at_seeds(job, sentences);
     return sentences;
 }
 

@@ -9,6 +9,8 @@
 namespace feldspar {
 
 inline constexpr std::array shapes{Shape::rectangle, Shape::disc, Shape::polygon, Shape::half_disc, Shape::ring};
+/// In place of a shape: the outline is that of the cells of a file.
+inline constexpr const char* shape_from_file = "from-file";
 inline constexpr std::array grain_size_kinds{GrainSizeKind::uniform, GrainSizeKind::log_normal, GrainSizeKind::sieve};
 inline constexpr std::array shear_measures{ShearMeasure::total, ShearMeasure::beyond_friction};
 inline constexpr std::array tension_unloadings{TensionUnloading::elastic, TensionUnloading::secant};

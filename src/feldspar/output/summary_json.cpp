@@ -218,6 +218,8 @@ Json specimen_json(const Specimen& specimen) {
                  {"width_over_largest_grain", number(q.width_over_largest_grain)},
                  {"area_error", number(q.area_error)},
                  {"warnings", q.warnings}};
+    if (specimen.spec.given_cells.given())
+        json["given_cells"] = {{"file", specimen.spec.given_cells.file.filename().string()}, {"welded", q.welded}, {"inserted", q.inserted}, {"moved", q.moved}, {"concave", q.concave}, {"joined_pieces", q.joined_pieces}};
     return json;
 }
 

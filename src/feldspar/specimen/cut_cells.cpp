@@ -94,6 +94,17 @@ public:
         return result;
     }
 
+    CutCells join_pieces_of(std::vector<char> reshaped, double mean_area) {
+        touched_ = reshaped;
+        reshaped_ = std::move(reshaped);
+        const int joined = join_small(mean_area);
+        remove_straight();
+        CutCells result = in_order();
+        result.joined = joined;
+        require_one_piece();
+        return result;
+    }
+
 private:
     // faces and vertices
 
@@ -764,6 +775,10 @@ private:
 
 CutCells cut_cells(CellGraph& graph, const Outline& outline, double mean_diameter_m, double merge_length_m) {
     return CellCutter(graph, outline, mean_diameter_m, merge_length_m).run();
+}
+
+CutCells join_small_pieces(CellGraph& graph, const Outline& outline, double mean_diameter_m, double mean_area_m2, double merge_length_m, std::vector<char> reshaped) {
+    return CellCutter(graph, outline, mean_diameter_m, merge_length_m).join_pieces_of(std::move(reshaped), mean_area_m2);
 }
 
 }  // namespace feldspar

@@ -31,4 +31,8 @@ inline constexpr double thinnest_piece = 1.0 / 3.0;
 /// @throws InputError if the specimen comes apart, or a notch or hole lies within one grain
 CutCells cut_cells(CellGraph& graph, const Outline& outline, double mean_diameter_m, double merge_length_m);
 
+/// Of cells that were cut by other means, `reshaped` says by a flag a face which: those that are too small go to a neighbour, as above.
+/// @param mean_area_m2  of the cells before they were cut
+CutCells join_small_pieces(CellGraph& graph, const Outline& outline, double mean_diameter_m, double mean_area_m2, double merge_length_m, std::vector<char> reshaped);
+
 }  // namespace feldspar

@@ -13,6 +13,7 @@
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/crystals.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
+#include "feldspar/specimen/fit_cells.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -25,6 +26,7 @@ namespace feldspar {
 namespace {
 
 constexpr double most_grains = 1e7;
+constexpr double most_slant_rad = 8.0 * std::numbers::pi / 180.0;   // of contacts: even Voronoi cells have 1 degree, cells twice as long as wide 24
 
 void check_numbers(const SpecimenSpec& spec) {
     if (!(spec.porosity >= 0.0 && spec.porosity < 1.0)) {
@@ -140,6 +142,56 @@ void give_discs_to_pieces(Specimen& specimen) {
     }
 }
 
+/// Circles of the areas of polygons, at their centroids.
+void add_circle(Packing& packing, const std::vector<Vec2>& corners) {
+    packing.centres.push_back(centroid(corners));
+    packing.radii_m.push_back(std::sqrt(signed_area(corners) / std::numbers::pi));
+}
+
+/// Cells of a file in the outline, in place of a packing and its Laguerre cells. Each has the circle of its area; where cells were cut, those of the whole cells are kept besides.
+void take_given_cells(Specimen& specimen) {
+    const GivenCellsSpec& spec = specimen.spec.given_cells;
+    const GivenCells& given = *spec.cells;
+    FittedCells fitted = fit_cells(spec, specimen.outline, specimen.spec.outline.shape);
+    const int joined = fitted.joined;
+    specimen.cells = tessellation_of(std::move(fitted.graph), specimen.outline, given.mean_diameter_m, specimen.spec.merge_length_m.value_or(given.mean_diameter_m / 12.0));
+    specimen.cells.joined_pieces += joined;
+    if (!fitted.origin.empty()) {
+        Tessellation& cells = specimen.cells;
+        if (cells.disc_of_cell.empty()) {
+            cells.disc_of_cell = std::move(fitted.origin);
+            cells.reshaped = std::move(fitted.reshaped);
+        } else {
+            for (std::size_t g = 0; g < cells.disc_of_cell.size(); ++g) {
+                const std::size_t face = static_cast<std::size_t>(cells.disc_of_cell[g]);
+                cells.reshaped[g] = cells.reshaped[g] != 0 || fitted.reshaped[face] != 0 ? 1 : 0;
+                cells.disc_of_cell[g] = fitted.origin[face];
+            }
+        }
+    }
+    for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) add_circle(specimen.packing, corners_of_cell(specimen.cells, g));
+    if (!specimen.cells.disc_of_cell.empty())
+        for (const std::vector<int>& cell : given.cells) {
+            std::vector<Vec2> corners;
+            for (const int v : cell) corners.push_back(given.vertices[static_cast<std::size_t>(v)] + fitted.shift);
+            add_circle(specimen.packed, corners);
+        }
+    SpecimenQuality& quality = specimen.quality;
+    quality.welded = given.welded;
+    quality.inserted = given.inserted;
+    quality.concave = given.concave;
+    quality.moved = fitted.moved;
+    const std::string file = spec.file.filename().string();
+    for (const std::string& remark : given.remarks) quality.warnings.push_back(fmt::format("{}: {}", file, remark));
+    if (given.inserted > 0)
+        quality.warnings.push_back(fmt::format("{}: {} corners lay on an edge of a neighbour and were put into it", file, given.inserted));
+    if (fitted.moved > 0)
+        quality.warnings.push_back(fmt::format("{}: {} corners on the boundary were moved onto the outline, by {:.2g} mm at most", file, fitted.moved, 1e3 * fitted.furthest_m));
+    if (!spec.cut && fitted.shift != Vec2{})
+        quality.warnings.push_back(fmt::format("{}: the cells were moved by ({:.6g}, {:.6g}) mm, to where the outline is", file, 1e3 * fitted.shift.x, 1e3 * fitted.shift.y));
+    if (given.concave > 0) quality.warnings.push_back(fmt::format("{}: {} of {} cells are not convex", file, given.concave, given.cells.size()));
+}
+
 /// The discs as they were packed.
 const Packing& discs_of(const Specimen& specimen) { return specimen.packed.centres.empty() ? specimen.packing : specimen.packed; }
 
@@ -228,6 +280,23 @@ double hexatic_order(const Specimen& specimen) {
     return inner > 0 ? sum / inner : 0.0;
 }
 
+/// The angle (rad) between an edge's normal and the line of the centroids of its two cells, mean over the length of all edges inside. Contacts take that line for
+/// their normal.
+double mean_slant(const Specimen& specimen) {
+    double sum = 0.0, lengths = 0.0;
+    for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
+        const Cell& cell = specimen.cells.cells[g];
+        for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
+            if (cell.neighbours[k] <= g) continue;
+            const Vec2 along = specimen.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] - specimen.cells.vertices[cell.vertices[k]];
+            const Vec2 apart = specimen.packing.centres[cell.neighbours[k]] - specimen.packing.centres[g];
+            sum += norm(along) * std::atan2(std::abs(dot(along, apart)), std::abs(cross(along, apart)));
+            lengths += norm(along);
+        }
+    }
+    return lengths > 0.0 ? sum / lengths : 0.0;
+}
+
 void measure_mesh(const GrainMesh& mesh, SpecimenQuality& quality) {
     quality.nodes = static_cast<int>(mesh.nodes.size());
     quality.triangles = static_cast<int>(mesh.triangles.size());
@@ -242,7 +311,7 @@ void measure_mesh(const GrainMesh& mesh, SpecimenQuality& quality) {
     }
 }
 
-std::vector<std::string> warnings_about(const SpecimenQuality& quality) {
+std::vector<std::string> warnings_about(const SpecimenQuality& quality, bool given) {
     std::vector<std::string> warnings;
     if (quality.width_over_largest_grain < 10.0) {
         warnings.push_back(fmt::format("the specimen is only {:.1f} times as wide as its largest grain; ISRM suggests at least 10",
@@ -255,10 +324,10 @@ std::vector<std::string> warnings_about(const SpecimenQuality& quality) {
         warnings.push_back(fmt::format("the discs overlap by {:.0f} % of the mean diameter on average: the grain sizes will differ from the "
                                        "distribution; a larger porosity gives fewer grains", 100.0 * quality.overlap_mean));
     }
-    if (quality.overlap_mean < 1e-5 && quality.grains > 1) {
+    if (!given && quality.overlap_mean < 1e-5 && quality.grains > 1) {
         warnings.push_back("the packing is loose: cells are larger than their discs, and grain sizes differ from the distribution");
     }
-    if (quality.size_spread < least_size_spread && quality.grains > 20) {
+    if (!given && quality.size_spread < least_size_spread && quality.grains > 20) {
         warnings.push_back(fmt::format("the grains are of nearly one size (coefficient of variation {:.1f} %): equal discs crystallise in rows, along which "
                                        "the rock is anisotropic (hexatic order {:.2f}; 0.5 at a coefficient of variation of 20 %); "
                                        "a coefficient of variation of {:.0f} % or more avoids it", 100.0 * quality.size_spread, quality.hexatic_order,
@@ -275,6 +344,7 @@ std::vector<std::string> warnings_about(const SpecimenQuality& quality) {
 
 int grain_count(const SpecimenSpec& spec) {
     check_numbers(spec);
+    if (spec.given_cells.given()) return static_cast<int>(spec.given_cells.cells->cells.size());
     const double d = counting_diameter(spec.grain_sizes);
     const double count = std::round((1.0 - spec.porosity) * packed_area_m2(make_outline(spec)) / (0.25 * std::numbers::pi * d * d));
     if (count > most_grains) {
@@ -291,18 +361,26 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     specimen.seed = seed;
     specimen.outline = make_outline(spec);
     Making making(control);
-    specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
-    making.expect(specimen.packing.centres.size());
-
     SpecimenQuality& quality = specimen.quality;
-    quality.mean_diameter_m = mean_diameter(specimen.packing);
-    const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
-    making.stage("cells", true);
-    specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
-    give_discs_to_pieces(specimen);
+    const bool given = spec.given_cells.given();
+    if (given) {
+        making.expect(spec.given_cells.cells->cells.size());
+        making.stage("cells", true);
+        take_given_cells(specimen);
+        quality.mean_diameter_m = mean_diameter(specimen.packing);
+    } else {
+        specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
+        making.expect(specimen.packing.centres.size());
+        quality.mean_diameter_m = mean_diameter(specimen.packing);
+        const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
+        making.stage("cells", true);
+        specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
+        give_discs_to_pieces(specimen);
+    }
     if (spec.crystal_sizes) {
         SpecimenSpec crystals = spec;
         crystals.grain_sizes = *spec.crystal_sizes;
+        crystals.given_cells = {};   // their discs are packed, whatever the grains are
         constexpr std::uint64_t kOthers = 0x9E3779B97F4A7C15;   // the streams of another seed: crystals and grains have nothing to do with each other
         specimen.crystal_of_cell = group_into_crystals(specimen.cells, make_packing(crystals, specimen.outline, seed ^ kOthers, making));
         quality.crystals = 1 + *std::max_element(specimen.crystal_of_cell.begin(), specimen.crystal_of_cell.end());
@@ -329,7 +407,12 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     quality.inner_particles = static_cast<int>(specimen.filling.centres.size());
     quality.inside_contacts = static_cast<int>(specimen.filling.inside.size());
     quality.across_contacts = static_cast<int>(specimen.filling.across.size());
-    quality.warnings = warnings_about(quality);
+    if (const double slant = mean_slant(specimen); given && slant > most_slant_rad) {
+        quality.warnings.push_back(fmt::format("the lines between the centres of neighbours are {:.0f} degrees from the normals of their edges on average: contacts of flexible and rigid grains take these lines for their normals, and "
+                                               "cells that are longer than wide then have strengths in compression that depend on their direction more than a rock's (docs/theory/specimen.md, section 7)",
+                                               slant * 180.0 / std::numbers::pi));
+    }
+    for (std::string& warning : warnings_about(quality, given)) quality.warnings.push_back(std::move(warning));
     return specimen;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -51,14 +52,8 @@ std::vector<Vec2> kernel_of(const std::vector<Vec2>& corners) {
 }
 
 Vec2 centre_of(const std::vector<Vec2>& corners, int cell) {
-    const double area = signed_area(corners);
+    if (const auto centre = centre_of_grain(corners)) return *centre;
     const Vec2 middle = centroid(corners);
-    if (smallest_fan_area(corners, middle) > 1e-6 * area) return middle;
-    const std::vector<Vec2> kernel = kernel_of(corners);
-    if (kernel.size() >= 3 && signed_area(kernel) > 0.0) {
-        const Vec2 seeing = centroid(kernel);
-        if (smallest_fan_area(corners, seeing) > 1e-6 * area) return seeing;
-    }
     throw InputError({}, fmt::format("grain {} at ({:.6g}, {:.6g}) m bends around a corner of the outline and cannot be meshed", cell,
                                      middle.x, middle.y),
                      "grains smaller against the outline's re-entrant corners");
@@ -168,6 +163,18 @@ bool has_flat_triangle(const OneGrain& grain, double cell_area) {
 }
 
 }  // namespace
+
+std::optional<Vec2> centre_of_grain(const std::vector<Vec2>& corners) {
+    const double area = signed_area(corners);
+    const Vec2 middle = centroid(corners);
+    if (smallest_fan_area(corners, middle) > 1e-6 * area) return middle;
+    const std::vector<Vec2> kernel = kernel_of(corners);
+    if (kernel.size() >= 3 && signed_area(kernel) > 0.0) {
+        const Vec2 seeing = centroid(kernel);
+        if (smallest_fan_area(corners, seeing) > 1e-6 * area) return seeing;
+    }
+    return std::nullopt;
+}
 
 GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const StageControl& control) {
     GrainMesh mesh;

@@ -1,6 +1,9 @@
 // Nodes and triangles inside each Laguerre cell.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/specimen/stage_control.hpp"
 
@@ -25,5 +28,9 @@ namespace feldspar {
 /// centroid of its kernel (the points that see all of it).
 /// @throws InputError if a cell has no kernel: the grains are too large for the outline's re-entrant corners
 GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const StageControl& control = {});
+
+/// Where the middle node of a cell stands (m): its centroid, or the centroid of its kernel if the centroid does not see all corners. Nothing if no point does: such a
+/// cell cannot be meshed. @param corners  counter-clockwise
+std::optional<Vec2> centre_of_grain(const std::vector<Vec2>& corners);
 
 }  // namespace feldspar

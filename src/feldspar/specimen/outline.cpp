@@ -268,6 +268,7 @@ Outline make_outline(const OutlineSpec& spec, const GrainScale& grains) {
 Outline make_outline(const SpecimenSpec& spec) {
     if (!spec.outline.is_cut() && spec.outline.shape != Shape::half_disc && spec.outline.arcs.empty()) return make_outline(spec.outline);
     const GrainSizeSpec& sizes = spec.grain_sizes;
+    if (spec.given_cells.given()) return make_outline(spec.outline, {spec.given_cells.cells->mean_diameter_m, spec.given_cells.cells->largest_diameter_m});
     return make_outline(spec.outline, {counting_diameter(sizes), sizes.kind == GrainSizeKind::sieve ? largest_of_sieve_m(sizes.sieve) : sizes.maximum_m});
 }
 

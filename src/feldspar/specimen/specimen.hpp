@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -96,6 +97,34 @@ struct GrainSizeSpec {
     std::vector<SievePoint> sieve;        ///< sieve: at least two points, from passing 0 to passing 1
 };
 
+/// Cells that another program made, checked and on one shared vertex graph (weld_cells.hpp), where its file has them.
+struct GivenCells {
+    std::vector<Vec2> vertices;                  ///< m
+    std::vector<std::vector<int>> cells;         ///< a cell: its corners, counter-clockwise
+    std::vector<std::vector<int>> neighbours;    ///< an edge, from corner k to k + 1: the cell on the other side, or -1 on the boundary
+    std::vector<std::string> names;              ///< of the cells, as the file calls them
+    std::vector<int> boundary;                   ///< the vertices around all cells, counter-clockwise
+    double mean_diameter_m = 0.0;                ///< of circles of the cells' areas
+    double largest_diameter_m = 0.0;
+    double smallest_diameter_m = 0.0;
+    int welded = 0;                              ///< vertices that were put onto another one
+    int inserted = 0;                            ///< vertices that were put into an edge of a neighbour, on which they lay
+    int concave = 0;                             ///< cells that are not convex
+    std::vector<std::string> remarks;            ///< what was left out of the file, in sentences
+};
+
+/// Cells of a file in place of those of a packing.
+struct GivenCellsSpec {
+    std::filesystem::path file;                  ///< empty: the grains are packed
+    double unit_m = 0.0;                         ///< the file's unit of length
+    double tolerance = 1e-3;                     ///< / mean grain diameter: how far cells may miss each other and the outline
+    bool cut = false;                            ///< the outline is cut out of the cells; otherwise they must fill it
+    std::string hash;                            ///< of what is in the file
+    std::shared_ptr<const GivenCells> cells;     ///< what is in it
+
+    bool given() const { return cells != nullptr; }
+};
+
 /// Everything that determines a specimen besides the seed.
 struct SpecimenSpec {
     OutlineSpec outline;
@@ -107,6 +136,7 @@ struct SpecimenSpec {
     std::filesystem::path packing_file;           ///< if not empty: load this packing instead of making one
     double particles_per_grain = 0.0;             ///< inner particles in a grain of mean area; 0 = grains are not filled
     std::optional<GrainSizeSpec> crystal_sizes;   ///< crystals of several grains each, which can break between these; absent = each grain is one
+    GivenCellsSpec given_cells;                   ///< if given: these cells, whatever the seed; of the sizes only what they say of themselves counts
 };
 
 /// What is cut out of the cells: a hole, a slit, or a cut without width.
@@ -253,6 +283,10 @@ struct SpecimenQuality {
     int inner_particles = 0;      ///< small discs in all grains, if these are filled
     int inside_contacts = 0;      ///< between particles of one grain
     int across_contacts = 0;      ///< between particles of neighbouring grains
+    int welded = 0;               ///< vertices of a file's cells that were put onto another one
+    int inserted = 0;             ///< vertices of a file's cells that were put into an edge of a neighbour
+    int moved = 0;                ///< vertices of a file's cells that were moved onto the outline
+    int concave = 0;              ///< cells of a file that are not convex
     std::vector<std::string> warnings;
 };
 
@@ -261,7 +295,7 @@ struct Specimen {
     SpecimenSpec spec;
     std::uint64_t seed = 0;
     Outline outline;
-    Packing packing;          ///< one disc a grain; that of a reshaped cell is at its centroid and takes up the same share of it as all discs of the specimen
+    Packing packing;          ///< one disc a grain, of a file's cell a circle of its area at its centroid; that of a reshaped cell is at its centroid and takes up the same share of it as all discs of the specimen
     Packing packed;           ///< the discs as they were packed, where grains were cut; otherwise empty
     Tessellation cells;
     GrainMesh mesh;

@@ -49,7 +49,10 @@ Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline,
     }
     CellGraph graph = clip_cells(packing.centres, weights, outline);
     if (!outline.is_disc && !is_convex_polygon(outline.vertices)) join_pieces(graph, packing.centres, outline);
+    return tessellation_of(std::move(graph), outline, mean_diameter, merge_length_m);
+}
 
+Tessellation tessellation_of(CellGraph graph, const Outline& outline, double mean_diameter, double merge_length_m) {
     Tessellation result;
     const double least_length = std::max(merge_length_m, no_length * mean_diameter);
     if (!outline.cutouts.empty()) {

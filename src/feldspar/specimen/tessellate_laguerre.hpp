@@ -1,6 +1,7 @@
 // Laguerre (power) tessellation of a packing, clipped to the outline.
 #pragma once
 
+#include "feldspar/specimen/cell_graph.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
@@ -12,6 +13,9 @@ namespace feldspar {
 ///                         narrow for its grains
 /// @throws NumericalError  if the result is not a partition: an edge inside that two cells do not share
 Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline, double merge_length_m);
+
+/// What follows the clipping, of cells of any origin: holes and notches are cut out, short edges merged. @param mean_diameter_m  of the grains
+Tessellation tessellation_of(CellGraph graph, const Outline& outline, double mean_diameter_m, double merge_length_m);
 
 /// Checks that every edge inside is named by exactly two cells, once in each direction, and that each names the other as its
 /// neighbour. @throws NumericalError naming the cell

@@ -30,7 +30,7 @@ private:
 
 // Takes each struct apart by name: one that gets another member is not compiled until the member stands here.
 std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
-    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain, crystal_sizes] = spec;
+    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain, crystal_sizes, given_cells] = spec;
     const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, arcs, flat_angle_rad, holes, notches, labels] = outline;
     Text text;
     text.add(std::to_string(seed));
@@ -92,6 +92,13 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
     text.add(triangles_per_grain);
     text.add(packing_file.string());
     text.add(particles_per_grain);
+    if (given_cells.given()) {
+        const auto& [file, unit_m, tolerance, cut, hash, cells] = given_cells;
+        text.add(hash);
+        text.add(unit_m);
+        text.add(tolerance);
+        text.add(cut ? 1.0 : 0.0);
+    }
     return hash_of_text(text.text());
 }
 

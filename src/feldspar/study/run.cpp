@@ -28,6 +28,8 @@ std::string identity(Job job) {
     std::string text = kind_of_run;
     if (!job.specimen.packing_file.empty()) text += read_toml_file(job.specimen.packing_file, "packing");
     job.specimen.packing_file.clear();
+    text += job.specimen.given_cells.hash;
+    job.specimen.given_cells.file.clear();
     for (Variant& variant : job.variants) {
         text += variant.rock.files;   // files count by what is in them, not by their places
         variant.rock.minerals.map_file.clear();

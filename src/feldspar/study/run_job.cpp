@@ -9,11 +9,13 @@
 #include <mutex>
 #include <new>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/parallel.hpp"
+#include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/job_place.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/schedule.hpp"
@@ -151,8 +153,12 @@ public:
         if (found_.contains(i)) return {};
         const PlannedRun& run = runs_[i];
         const std::shared_ptr<const Specimen> specimen = runs_.specimen(run);
-        const std::string packing = packing_stem(run) + ".txt";
-        if (packings_.insert(packing).second) directory_.write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
+        const bool given = specimen->spec.given_cells.given();   // no packing makes these cells again
+        const std::string packing = given ? "cells" + packing_stem(run).substr(std::string_view("packing").size()) + ".tess" : packing_stem(run) + ".txt";
+        if (packings_.insert(packing).second) {
+            if (given) directory_.write_text(packing, cells_as_text(*specimen, CellFormat::tess));
+            else directory_.write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
+        }
         return [this, i, &run, specimen](const RunControl& run_control) {
             const CheckpointOwner owner = owner_of(run);
             TestCheckpoints checkpoints(directory_, kept_as(run, ".state"), owner, control_.checkpoints,

@@ -622,6 +622,85 @@ TEST(Job, RelativePackingsCountFromTheJobsFolder) {
     std::filesystem::remove_all(folder);
 }
 
+// A file of cells beside the job: what it says of the specimen, and what goes wrong with it.
+class CellsOfAFileInAJob : public testing::Test {
+protected:
+    CellsOfAFileInAJob() {
+        folder_.write("cells.csv", "grain,x,y\na,0,0\na,1,0\na,1,1\na,0,1\nb,1,0\nb,2,0\nb,2,1\nb,1,1\nc,0,1\nc,2,1\nc,2,2\nc,0,2\n");
+        folder_.write("units.csv", "grain,x_mm,y_mm\na,0,0\na,10,0\na,10,10\na,0,10\nb,10,0\nb,20,0\nb,20,10\nb,10,10\nc,0,10\nc,20,10\nc,20,20\nc,0,20\n");
+    }
+    /// sample_job with this in place of its outline and grains.
+    static std::string with(const std::string& outline, const std::string& grains) {
+        return edited("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\nporosity = 0.10\nmerge_length = \"auto\"\n", grains + "\n",
+                      edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", outline));
+    }
+    Job read(const std::string& text) {
+        folder_.write("job.toml", text);
+        return read_job(folder_ / "job.toml");
+    }
+    std::string refusal(const std::string& text) {
+        try {
+            read(text);
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+        return "was taken";
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(CellsOfAFileInAJob, MakeItsSpecimen) {
+    const Job job = read(with("shape = \"from-file\"", "file = \"cells.csv\"\nunit = \"40 mm\""));
+    EXPECT_EQ(job.specimen.outline.shape, Shape::rectangle);
+    EXPECT_EQ(job.specimen.outline.width_m, 0.08);
+    EXPECT_EQ(job.specimen.given_cells.cells->cells.size(), 3u);
+    EXPECT_EQ(job.specimen.given_cells.cells->inserted, 1);
+    EXPECT_NEAR(job.specimen.grain_sizes.maximum_m, 2.0 * std::sqrt(0.0032 / 3.14159265358979323846), 1e-12);
+    const std::string resolved = resolved_toml(job);
+    EXPECT_EQ(resolved_toml(parse_job(resolved, "job")), resolved);
+    EXPECT_NE(resolved.find("shape = \"rectangle\""), std::string::npos);
+    const auto said = warnings(job);
+    EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const std::string& s) { return s.find("the 5 seeds repeat one specimen") != std::string::npos; }));
+    const Job given = read(with("shape = \"rectangle\"\nwidth = \"20 mm\"\nheight = \"20 mm\"", "file = \"units.csv\"\ntolerance = 0.01"));
+    EXPECT_EQ(given.specimen.given_cells.unit_m, 1e-3);
+    EXPECT_EQ(given.specimen.given_cells.tolerance, 0.01);
+}
+
+TEST_F(CellsOfAFileInAJob, AreCutToSpecimensOfTests) {
+    const std::string file = FELDSPAR_SOURCE_DIR "/tests/unit/specimen/data/honeycomb.tess";
+    const Job job = read(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"5 m\"", with("shape = \"from-file\"", "file = \"" + file + "\"\nunit = \"1 m\"")));
+    EXPECT_FALSE(job.specimen.given_cells.cut);
+    EXPECT_TRUE(job.tests[0].specimen->given_cells.cut);
+    EXPECT_EQ(job.tests[0].specimen->outline.shape, Shape::disc);
+    EXPECT_NE(refusal(edited("kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"from-file\" }", with("shape = \"from-file\"", "file = \"cells.csv\"\nunit = \"1 m\""))).find("own specimen has no file"), std::string::npos);
+    EXPECT_NE(refusal(edited("kind = \"uniaxial-compression\"",
+                             "kind = \"uniaxial-compression\"\nspecimen = { shape = \"polygon\", vertices = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"1.5 m\", \"1 m\"], [\"2 m\", \"2 m\"], [\"0 m\", \"2 m\"]], edge_labels = [\"bottom\", \"a\", \"b\", \"top\", \"c\"] }",
+                             with("shape = \"from-file\"", "file = \"cells.csv\"\nunit = \"1 m\"")))
+                  .find("convex outlines only"),
+              std::string::npos);
+}
+
+TEST_F(CellsOfAFileInAJob, AreRefusedWithTheKey) {
+    const std::string from_file = "shape = \"from-file\"", rectangle = "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"";
+    const std::string diameter = "diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }";
+    struct Bad { std::string outline, grains, word; };
+    for (const Bad& bad : {Bad{from_file, "file = \"cells.csv\"", "missing key: unit"}, Bad{from_file, "file = \"units.csv\"\nunit = \"mm\"", "head of the file says the unit"},
+                           Bad{from_file, "file = \"cells.csv\"\nunit = \"kg\"", "is no length"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"-1 mm\"", "is no length"},
+                           Bad{from_file, "file = \"cells.csv\"\nunit = \"\"", "unit"}, Bad{from_file, "file = \"none.csv\"\nunit = \"mm\"", "there is no file"},
+                           Bad{from_file, "file = \"job.toml\"\nunit = \"mm\"", ".tess"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"mm\"\n" + diameter, "diameter"},
+                           Bad{from_file, diameter, "no file says what the outline is"}, Bad{rectangle, diameter + "\nunit = \"mm\"", "unit"}, Bad{rectangle, diameter + "\ntolerance = 0.01", "tolerance"},
+                           Bad{from_file + "\nwidth = \"80 mm\"", "file = \"cells.csv\"\nunit = \"mm\"", "width"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"mm\"\ntolerance = 0.5", "from 0 to 0.1"},
+                           Bad{from_file + "\npacking = \"cells.csv\"", "file = \"cells.csv\"\nunit = \"mm\"", "packing"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"40 mm\"\nmerge_length = \"30 mm\"", "half a grain"},
+                           Bad{rectangle, "porosity = 0.1", "missing key: diameter"}}) {
+        const std::string said = refusal(with(bad.outline, bad.grains));
+        EXPECT_NE(said.find(bad.word), std::string::npos) << bad.grains << "\n" << said;
+    }
+    folder_.write("cells.csv", "grain,x,y\na,0,0\na,1,0\na,one,1\n");
+    const std::string said = refusal(with(from_file, "file = \"cells.csv\"\nunit = \"mm\""));
+    EXPECT_NE(said.find("cells.csv:4"), std::string::npos) << said;
+    EXPECT_NE(said.find("'one' is not a number"), std::string::npos) << said;
+}
+
 TEST(FlattenedDiscs, AreCutFromTheBrazilianSpecimenAlone) {
     const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\""), "job");
     EXPECT_NEAR(job.tests[0].specimen->outline.flat_angle_rad * 180.0 / 3.14159265358979323846, 20.0, 1e-12) << "unless given";

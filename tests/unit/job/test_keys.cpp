@@ -54,8 +54,12 @@ const std::vector<std::string>& bases() {
         const std::string own = replaced(replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test), "thickness = \"80 mm\"\n", cut);
         const std::size_t first = own.find("[[test.fixture]]"), second = own.find("[[test.fixture]]", first + 1), gauge = own.find("[[test.gauge]]");
         const std::string plates = own.substr(0, first) + own.substr(second, gauge - second) + own.substr(first, second - first) + own.substr(gauge);
+        const std::string cells = replaced(replaced(sample_job, "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", "shape = \"from-file\""),
+                                           "diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\nporosity = 0.10\n",
+                                           "file = \"" + (source / "tests/unit/specimen/data/honeycomb.tess").string() + "\"\nunit = \"10 mm\"\n");
         return std::vector<std::string>{
             sample_job,
+            cells,
             replaced(sample_job, "accuracy = \"0.5 %\"\n", ""),
             replaced(sample_job, fixed, "kind = \"paper\""),
             rigid,

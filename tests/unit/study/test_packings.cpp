@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <set>
 #include <string>
 #include <thread>
@@ -52,6 +53,11 @@ TEST(IdentityOfASpecimen, FollowsFromEverythingThatDefinesIt) {
         [](SpecimenSpec& s) { s.triangles_per_grain = 24; },
         [](SpecimenSpec& s) { s.packing_file = "rock.packing"; },
         [](SpecimenSpec& s) { s.particles_per_grain = 20.0; },
+        [](SpecimenSpec& s) { s.given_cells = {"cells.tess", 1e-3, 1e-3, false, "0123", std::make_shared<GivenCells>()}; },
+        [](SpecimenSpec& s) { s.given_cells = {"cells.tess", 1e-3, 1e-3, false, "0124", std::make_shared<GivenCells>()}; },
+        [](SpecimenSpec& s) { s.given_cells = {"cells.tess", 2e-3, 1e-3, false, "0123", std::make_shared<GivenCells>()}; },
+        [](SpecimenSpec& s) { s.given_cells = {"cells.tess", 1e-3, 2e-3, false, "0123", std::make_shared<GivenCells>()}; },
+        [](SpecimenSpec& s) { s.given_cells = {"cells.tess", 1e-3, 1e-3, true, "0123", std::make_shared<GivenCells>()}; },
     };
     std::set<std::string> identities{identity_of(small_rectangle(), 2)};
     for (const Change& change : changes) {

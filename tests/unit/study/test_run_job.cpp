@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/job/job.hpp"
+#include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/run_job.hpp"
+#include "feldspar/study/study.hpp"
 #include "../../small_study.hpp"
 
 namespace feldspar {
@@ -140,6 +144,73 @@ TEST_F(RunJob, ADirectoryThatVanishesEndsAll) {
     EXPECT_THROW((void)run_job(job_, control), OutputError);
     EXPECT_EQ(vanishing.broken, "1 in results");
     EXPECT_TRUE(stop_);   // what ran was asked to end
+}
+
+/// small_job on cells of a file, one test.
+std::string job_on(const std::string& file, const std::string& more) {
+    std::string text = small_job;
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        const std::size_t at = text.find(from);
+        ASSERT_NE(at, std::string::npos) << from;
+        text.replace(at, from.size(), to);
+    };
+    replace("shape = \"rectangle\"\nwidth = \"12 mm\"\nheight = \"24 mm\"", "shape = \"from-file\"");
+    replace("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }", "file = \"" + file + "\"\n" + more);
+    replace("[[test]]\nkind = \"direct-tension\"\n", "");
+    replace("seeds = [1, 2]", "seeds = [1]");
+    return text;
+}
+
+TEST_F(RunJob, OnCellsOfAFileBreaksThemByTheSameBitsInEveryFormat) {
+    listener_.expected_count = 1;
+    SpecimenSpec packed = job_.specimen;
+    const Specimen made = make_specimen(packed, 1);
+    std::string first;
+    std::set<std::string> ids;
+    for (const auto& [format, file] : {std::pair{CellFormat::tess, "cells.tess"}, {CellFormat::msh, "cells.msh"}, {CellFormat::csv, "cells.csv"}}) {
+        folder_.write(file, cells_as_text(made, format));
+        folder_.write("on-cells.toml", job_on(file, std::string(format == CellFormat::csv ? "" : "unit = \"m\"\n") + "merge_length = \"none\""));
+        const Job job = read_job(folder_ / "on-cells.toml");
+        ids.insert(study_of(job, "study", "results").runs.front().id);
+        run(job);
+        const std::string history = read_text(folder_ / "results/history-uniaxial-compression-s1.csv");
+        EXPECT_GT(history.size(), 1000u);
+        if (first.empty()) first = history;
+        EXPECT_TRUE(history == first) << file;
+        EXPECT_TRUE(there("cells-s1.tess"));
+        EXPECT_FALSE(there("packing-s1.txt"));
+        fs::remove_all(folder_ / "results");
+    }
+    EXPECT_EQ(ids.size(), 3u) << "another file is another run";
+    // a run is known by what is in the file, not by its place
+    folder_.write("elsewhere.tess", read_text(folder_ / "cells.tess"));
+    folder_.write("on-cells.toml", job_on("elsewhere.tess", "unit = \"m\"\nmerge_length = \"none\""));
+    EXPECT_TRUE(ids.contains(study_of(read_job(folder_ / "on-cells.toml"), "study", "results").runs.front().id));
+    std::string changed = read_text(folder_ / "cells.tess");
+    changed.insert(changed.find("***end"), "\n");
+    folder_.write("elsewhere.tess", changed);
+    EXPECT_FALSE(ids.contains(study_of(read_job(folder_ / "on-cells.toml"), "study", "results").runs.front().id));
+}
+
+// A file written to the format's documentation, by no program of ours.
+TEST_F(RunJob, OnAHandWrittenTessellationBreaks) {
+    listener_.expected_count = 1;
+    std::vector<std::string> files;
+    for (const char* file : {"honeycomb.tess", "honeycomb.csv", "honeycomb.msh"}) {
+        folder_.write(file, read_text(fs::path(FELDSPAR_SOURCE_DIR) / "tests/unit/specimen/data" / file));
+        folder_.write("on-cells.toml", job_on(file, "unit = \"2 mm\""));
+        run(read_job(folder_ / "on-cells.toml"));
+        const std::string summary = read_text(folder_ / "results/summary.json");
+        const std::size_t at = summary.find("\"UCS_MPa\"");
+        ASSERT_NE(at, std::string::npos);
+        files.push_back(summary.substr(at, 400));
+        fs::remove_all(folder_ / "results");
+    }
+    const auto median = [](const std::string& text) { return std::stod(text.substr(text.find("\"median\"") + 9)); };
+    EXPECT_GT(median(files[0]), 20.0);
+    EXPECT_LT(median(files[0]), 600.0);   // a regular honeycomb, pressed along a third of its edges, is much stronger than a rock of the same contacts
+    EXPECT_NEAR(median(files[1]), median(files[0]), 0.05 * median(files[0]));   // corners begin elsewhere where edges are equally long: other bits, the same rock to the accuracy of 5 %
+    EXPECT_NEAR(median(files[2]), median(files[0]), 0.05 * median(files[0]));
 }
 
 }  // namespace
