@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Opens report.html in a headless browser at several widths and densities of the screen, in print and in the dark, and fails on what a reader would not like.
 
-usage: report_looks.py RESULTS_DIRECTORY [PICTURE_DIRECTORY]
+usage: report_looks.py RESULTS_DIRECTORY|PAGE.html [PICTURE_DIRECTORY]
 
 Held: the page is never wider than the window; words in charts are at least 10 pixels high, inside their chart and not over each other; cards hold what is in
 them; a specimen with enlarged displacements stays in view; zoom, readout, legend, picture and table of a chart work; on paper no table, chart or picture is wider
@@ -93,9 +93,10 @@ VIEWER = """(async () => {
 
 # The first chart with a legend: readout under the cursor, legend, picture, table. `saveAs` is the page's own function that hands files to the reader.
 CHART = """(async () => {
-  const wrong = [], pause = (ms) => new Promise((done) => setTimeout(done, ms)), card = document.querySelector(".card .legend button[aria-pressed]").closest(".card"), saved = [];
+  const wrong = [], pause = (ms) => new Promise((done) => setTimeout(done, ms)), key = document.querySelector(".card .legend button[aria-pressed]"), saved = [];
+  if (!key) return wrong;
   window.saveAs = (blob, name) => saved.push([blob, name]);
-  const key = card.querySelector(".legend button"), label = key.textContent;
+  const card = key.closest(".card"), label = key.textContent;
   key.click();
   const again = [...card.querySelectorAll(".legend button")].find((b) => b.textContent === label);
   if (again.getAttribute("aria-pressed") !== "false") wrong.push("the legend does not hide a series");
@@ -132,24 +133,28 @@ def drag_zooms(browser):
     """Zooms into the first chart with the mouse, and back."""
     x, y, w, h = browser.evaluate("(() => { const e = document.querySelector('.chart .u-over'); e.scrollIntoView({block: 'center'}); const r = e.getBoundingClientRect(); return [r.left, r.top, r.width, r.height]; })()")
     wrong = []
+    scales = "(() => { const {x, y} = [...charts].find((c) => c.plot.over === document.querySelector('.chart .u-over')).plot.scales; return [x.min, x.max, y.min, y.max]; })()"
 
     def mouse(kind, at_x, at_y, **more):
         browser.ask("Input.dispatchMouseEvent", type=kind, x=at_x, y=at_y, **more)
 
     mouse("mouseMoved", x + 0.4 * w, y + 0.5 * h)
     browser.listen(0.2)
-    if "(" in browser.evaluate("document.querySelector('.tools .at').textContent") or "MPa" not in browser.evaluate("document.querySelector('.tools .at').textContent"):
+    readout, axes = browser.evaluate("[document.querySelector('.tools .at').textContent, document.querySelector('.chart canvas').words.filter((w) => w.turned || w.text.endsWith(')')).map((w) => w.text).join(' ')]")
+    if not any(c.isdigit() for c in readout) or ("(MPa)" in axes and "MPa" not in readout):
         wrong.append("no value with its unit is read out under the cursor")
+    whole = browser.evaluate(scales)
     pressed = {"button": "left", "buttons": 1, "clickCount": 1}
     mouse("mousePressed", x + 0.2 * w, y + 0.2 * h, **pressed)
     mouse("mouseMoved", x + 0.6 * w, y + 0.6 * h, button="left", buttons=1)
     mouse("mouseReleased", x + 0.6 * w, y + 0.6 * h, button="left", clickCount=1)
     browser.listen(0.3)
     hidden = "[...document.querySelectorAll('.tools button')].find((b) => b.textContent === 'Whole chart').hidden"
-    if browser.evaluate(hidden):
-        wrong.append("dragging a box does not zoom")
+    zoomed = browser.evaluate(scales)
+    if browser.evaluate(hidden) or any(abs((zoomed[i + 1] - zoomed[i]) / (whole[i + 1] - whole[i]) - 0.4) > 0.02 for i in (0, 2)):
+        wrong.append(f"dragging a box of two fifths does not zoom into it: {whole} to {zoomed}")
     browser.evaluate("[...document.querySelectorAll('.tools button')].find((b) => b.textContent === 'Whole chart').click()")
-    if not browser.evaluate(hidden):
+    if not browser.evaluate(hidden) or browser.evaluate(scales) != whole:
         wrong.append("a zoomed chart does not go back")
     return wrong
 
@@ -157,8 +162,10 @@ def drag_zooms(browser):
 def main():
     if len(sys.argv) < 2:
         raise SystemExit(__doc__)
-    report = pathlib.Path(sys.argv[1]).resolve() / "report.html"
-    pictures = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else sys.argv[1])
+    report = pathlib.Path(sys.argv[1]).resolve()
+    if report.is_dir():
+        report /= "report.html"
+    pictures = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else report.parent
     if not report.is_file():
         raise SystemExit(f"{report} does not exist")
     program = next((p for p in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if p), None)

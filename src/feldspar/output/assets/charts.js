@@ -191,7 +191,7 @@ class XYChart {
       for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); ++e) for (const f of high / low < 100 ? [1, 2, 5] : [1]) if (f * 10 ** e >= low && f * 10 ** e <= high) list.push(f * 10 ** e);
       return list;
     };
-    const scales = {x: {time: false, range: () => x}, y: {range: () => y, distr: o.yLog ? 3 : 1}};
+    const scales = {x: {time: false, range: (u, from, to) => (from === null ? x : [from, to])}, y: {range: () => y, distr: o.yLog ? 3 : 1}};
     const dummies = [{}, {show: true, scale: "y", points: {show: false}, paths: () => null}];
     const data = [[x[0], x[1]], [null, null]];
     if (right.length) {

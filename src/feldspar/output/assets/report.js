@@ -412,7 +412,7 @@ function addMultiStage(t, add) {
 }
 
 function testFacts(tests, updates) {
-  const body = h("dl", {}), facts = h("div", {class: "card"}, h("h4", {}, "The chosen test in numbers"), body);
+  const body = h("dl", {}), facts = h("div", {class: "card broad numbers"}, h("h4", {}, "The chosen test in numbers"), body);
   const fill = (i) => {
     const t = tests[i], rows = [];
     const whole = (value) => (typeof value === "string" ? value.replace(/(\d) (?=(?:%|MPa|GPa|kN|mm|J)(?![a-z]))/g, "$1\u00a0") : value);   // no line ends between a number and its unit
@@ -515,7 +515,7 @@ function mohrSeries(tests, fits) {
     const turn = [...Array(91).keys()].map((i) => (Math.PI * i) / 90), middle = 0.5 * (from + to), radius = 0.5 * (to - from);
     series.push({x: turn.map((a) => middle - radius * Math.cos(a)), y: turn.map((a) => radius * Math.sin(a)), width: 1.6, ...more});
   };
-  pressures.forEach((s3, i) => circle(s3, median(groups.get(s3)), {label: "\u03c3\u2083 = " + show(s3) + " MPa: \u03c3\u2081 = " + show(median(groups.get(s3))) + " MPa", color: variantColor(i)}));
+  pressures.forEach((s3, i) => circle(s3, median(groups.get(s3)), {label: "\u03c3\u2083 = " + Number(s3.toPrecision(4)) + " MPa: \u03c3\u2081 = " + show(median(groups.get(s3))) + " MPa", color: variantColor(i)}));
   const tension = tests.filter((t) => t.kind === methodOfStrength("DTS") && t.peak !== null && t.peak_reached).map((t) => t.peak);
   if (tension.length) circle(-median(tension), 0, {label: "direct tension", color: "#cc79a7"});
   const highest = 1.12 * Math.max(...pressures.map((s3) => 0.5 * (median(groups.get(s3)) - s3)));

@@ -208,18 +208,23 @@ class Viewer {
     this.canvas.width = Math.max(1, Math.round(css * dpr));
     this.canvas.height = Math.round(high * dpr);
     this.ids = new Int32Array(this.canvas.width * this.canvas.height);
-    if (first || this.fitted) this.reset();
-    else this.draw();
+    if (first || this.fitted) this.fit();
+    this.paint();   // at once: a canvas of another size is blank
   }
 
+  /** The whole specimen in view. */
   reset() {
+    this.fit();
+    this.draw();
+  }
+
+  fit() {
     if (!this.specimen || !this.ids) return;
     const [x0, x1, y0, y1] = this.specimen.bounds(this.magnify);
     this.fitted = true;
     this.scale = 0.93 * Math.min(this.canvas.width / (x1 - x0), this.canvas.height / (y1 - y0));   // pixels a mm
     this.cx = (x0 + x1) / 2;
     this.cy = (y0 + y1) / 2;
-    this.draw();
   }
 
   zoom(factor, atX = this.cssWidth / 2, atY = this.cssHeight / 2) {
