@@ -163,7 +163,8 @@ function readOffSeries(test, x, moduli) {
     }
   }
   if (test.brazilian) return series.concat(markSeries(test));
-  mark("first crack", test.first_crack, "#e69f00", "triangle", 5);
+  const first = test.history.tensile.findIndex((v, i) => v + test.history.shear[i] > 0);   // it may lie behind the strength
+  if (first >= 0 && x[first] !== null) series.push({label: "first crack", x: [x[first]], y: [stress[first]], color: "#e69f00", mark: "triangle", size: 5});
   mark("\u03c3ci", test.crack_initiation, "#0072b2", "square", 4);
   mark("\u03c3cd", test.sigma_cd, "#cc79a7", "diamond", 4);
   const peak = peakRow(test);
@@ -380,7 +381,9 @@ function writeTest(host, tests) {
   third.append(note);
   updates.push((i) => { c.set(energySeries(tests[i])); note.textContent = energyNote(tests[i]); });
   writeEmission(grid, tests, updates);
-  grid.append(testFacts(tests, updates));
+  const facts = testFacts(tests, updates);
+  facts.classList.toggle("broad", grid.children.length % 2 === 0);   // beside an odd chart it fills the row
+  grid.append(facts);
   writeCycles(host, tests, updates);
 }
 
@@ -412,7 +415,7 @@ function addMultiStage(t, add) {
 }
 
 function testFacts(tests, updates) {
-  const body = h("dl", {}), facts = h("div", {class: "card broad numbers"}, h("h4", {}, "The chosen test in numbers"), body);
+  const body = h("dl", {}), facts = h("div", {class: "card numbers"}, h("h4", {}, "The chosen test in numbers"), body);
   const fill = (i) => {
     const t = tests[i], rows = [];
     const whole = (value) => (typeof value === "string" ? value.replace(/(\d) (?=(?:%|MPa|GPa|kN|mm|J)(?![a-z]))/g, "$1\u00a0") : value);   // no line ends between a number and its unit
