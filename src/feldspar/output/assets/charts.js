@@ -366,7 +366,7 @@ class XYChart {
     this.tip.style.left = Math.max(0, Math.min(px + 10, u.over.clientWidth - this.tip.offsetWidth)) + "px";
   }
 
-  /** The chart with its title and legend as a picture, twice as fine as the screen at least. */
+  /** The chart with its title and legend as a picture, as fine as the screen. */
   savePicture() {
     const source = this.plot.ctx.canvas, dpr = devicePixelRatio, keys = this.visible().filter((s) => !s.quiet && s.key !== false);
     const canvas = h("canvas", {}), ctx = canvas.getContext("2d"), small = Math.round(12 * dpr) + "px system-ui, sans-serif", pad = 12 * dpr, rows = [[]];
@@ -403,7 +403,7 @@ class XYChart {
   saveTable() {
     const shown = this.visible().filter((s) => s.key !== false || !s.quiet), o = this.options, columns = [];
     for (const s of shown) {
-      columns.push([s.label + ": " + (o.x || "x"), o.xTicks ? s.x.map((v) => o.xTicks[Math.round(v)]) : s.x], [s.label + ": " + (s.right ? o.right : o.y), s.y.map((v, i) => (s.base && v !== null ? v - s.base[i] : v))]);
+      columns.push([s.label + ": " + (o.x || "x"), o.xTicks ? s.x.map((v) => o.xTicks[Math.round(v)]) : s.bar ? s.x.map((v) => Number(v.toPrecision(6))) : s.x], [s.label + ": " + (s.right ? o.right : o.y), s.y.map((v, i) => (s.base && v !== null ? v - s.base[i] : v))]);
       if (s.low) columns.push([s.label + ": from", s.low], [s.label + ": to", s.high]);
     }
     const rows = Math.max(0, ...columns.map(([, values]) => values.length)), lines = [columns.map(([name]) => csvCell(name)).join(",")];

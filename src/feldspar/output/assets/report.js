@@ -381,9 +381,8 @@ function writeTest(host, tests) {
   third.append(note);
   updates.push((i) => { c.set(energySeries(tests[i])); note.textContent = energyNote(tests[i]); });
   writeEmission(grid, tests, updates);
-  const facts = testFacts(tests, updates);
-  facts.classList.toggle("broad", grid.children.length % 2 === 0);   // beside an odd chart it fills the row
-  grid.append(facts);
+  first.classList.toggle("broad", grid.children.length % 2 === 1);   // the others stand in pairs
+  grid.append(testFacts(tests, updates));
   writeCycles(host, tests, updates);
 }
 
@@ -415,7 +414,7 @@ function addMultiStage(t, add) {
 }
 
 function testFacts(tests, updates) {
-  const body = h("dl", {}), facts = h("div", {class: "card numbers"}, h("h4", {}, "The chosen test in numbers"), body);
+  const body = h("dl", {}), facts = h("div", {class: "card broad numbers"}, h("h4", {}, "The chosen test in numbers"), body);
   const fill = (i) => {
     const t = tests[i], rows = [];
     const whole = (value) => (typeof value === "string" ? value.replace(/(\d) (?=(?:%|MPa|GPa|kN|mm|J)(?![a-z]))/g, "$1\u00a0") : value);   // no line ends between a number and its unit
