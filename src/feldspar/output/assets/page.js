@@ -27,9 +27,14 @@ function followTheme() {
     document.documentElement.dataset.print = "";
     setTheme("light");
     redrawAll();
+    for (const box of document.querySelectorAll(".scroll")) {   // a table that is wider than the sheet becomes smaller
+      const wide = box.firstElementChild;
+      if (wide.offsetWidth > box.clientWidth) wide.style.zoom = String(box.clientWidth / (wide.offsetWidth + 1));
+    }
   });
   addEventListener("afterprint", () => {
     for (const d of folded) d.open = false;
+    for (const box of document.querySelectorAll(".scroll")) box.firstElementChild.style.zoom = "";
     printing = false;
     delete document.documentElement.dataset.print;
     setTheme();
