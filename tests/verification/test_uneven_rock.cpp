@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/texture.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
@@ -265,7 +264,7 @@ TEST(Cracks, DissipateEnergyAndEventsHoldAllOfIt) {
         largest = std::max(largest, crack.energy_J);
         least = std::min(least, crack.energy_J);
     }
-    for (const AcousticEvent& event : acoustic_emission(r).events) events += event.energy_J;
+    for (const AcousticEvent& event : r.emission.events) events += event.energy_J;
     EXPECT_NEAR(events / cracks, 1.0, 1e-12);
     EXPECT_GE(least, -1e-6 * largest);   // rounding of sums over thousands of steps
 }

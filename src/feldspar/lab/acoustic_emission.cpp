@@ -47,7 +47,7 @@ void finish(AcousticEvent& event) {
 
 }  // namespace
 
-AcousticEmission acoustic_emission(const TestResult& result, double radius_grains) {
+AcousticEmission gather_events(const TestResult& result, double radius_grains) {
     AcousticEmission emission;
     if (!result.specimen || result.cracks.empty()) return emission;
     emission.radius_m = radius_grains * result.specimen->quality.cell_sizes.mean_m;
@@ -87,6 +87,16 @@ AcousticEmission acoustic_emission(const TestResult& result, double radius_grain
     const BValue fit = b_value(magnitudes, completeness);
     if (fit.events >= fewest_events) emission.b_value = fit;
     if (static_cast<int>(places.size()) >= fewest_events) emission.fractal_dimension = correlation_dimension(places);
+    return emission;
+}
+
+AcousticEmission acoustic_emission(const TestResult& result) {
+    AcousticEmission emission = gather_events(result, usual_event_radius);
+    if (emission.events.empty()) return emission;
+    for (const double radius : counted_event_radii) {
+        const AcousticEmission other = radius == usual_event_radius ? emission : gather_events(result, radius);
+        emission.counts.push_back({radius, other.events.size(), other.b_value});
+    }
     return emission;
 }
 

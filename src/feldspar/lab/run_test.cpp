@@ -7,6 +7,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/stopwatch.hpp"
+#include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/memory.hpp"
@@ -99,6 +100,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     if (!result.history.empty()) result.energy_at_end = result.history.back().energy;
     result.energy_residual = largest_energy_residual(result.history);
     result.properties = measure(result);
+    result.emission = acoustic_emission(result);   // reads moduli, too
     result.evidence = judge(result);
     result.wall_s = keeping.seconds();
     if (!result.interrupted) keeping.add_finished(result);

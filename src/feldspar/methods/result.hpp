@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "feldspar/base/vec2.hpp"
+#include "feldspar/methods/acoustic_event.hpp"
 #include "feldspar/methods/test_spec.hpp"
 #include "feldspar/model/spec.hpp"
 #include "feldspar/model/texture.hpp"
@@ -251,6 +252,7 @@ struct TestResult {
     double energy_residual = 0.0;         ///< largest |residual| of the ledger / supplied work
     QuasiStaticEvidence evidence;
     TestProperties properties{};
+    AcousticEmission emission{};          ///< of its cracks
     std::string stop_reason;              ///< in words
     bool interrupted = false;
     long long steps = 0;                  ///< all steps of the loading, those of earlier passages too

@@ -235,7 +235,7 @@ void put_cracks(hid_t root, const std::vector<Crack>& cracks) {
 }
 
 void put_events(hid_t root, const TestResult& result) {
-    const AcousticEmission emission = acoustic_emission(result);
+    const AcousticEmission& emission = result.emission;
     if (emission.events.empty()) return;
     const Handle group = make_group(root, "events");
     for (const EventColumn& column : event_columns()) {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "feldspar/lab/acoustic_emission.hpp"
+#include "feldspar/methods/acoustic_event.hpp"
 
 namespace feldspar {
 

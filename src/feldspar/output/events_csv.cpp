@@ -33,7 +33,7 @@ std::span<const EventColumn> event_columns() {
 }
 
 void write_events_csv(const RunDirectory& directory, const TestResult& result) {
-    const AcousticEmission emission = acoustic_emission(result);
+    const AcousticEmission& emission = result.emission;
     if (emission.events.empty()) return;
     std::string text = fmt::format("# acoustic events of {}: cracks within {:.6g} m and {:.6g} steps of each other (P64)\n# signs: {}\n", test_stem(result),
                                    emission.radius_m, emission.window_steps, sign_convention);

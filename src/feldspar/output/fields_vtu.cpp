@@ -163,7 +163,7 @@ void write_vtu(const RunDirectory& directory, const TestResult& result, int thre
     const std::string folder = stem + "-vtu/";
     const std::vector<CrackFaces> faces = find_crack_faces(*result.specimen, result.cracks);
     const VtuGrid undeformed = undeformed_grains(result.specimen->mesh, result.texture.phase_of_grain);
-    const AcousticEmission emission = acoustic_emission(result);
+    const AcousticEmission& emission = result.emission;
     const Times time = times(result.snapshots);
     std::string collection = fmt::format(
         "<?xml version=\"1.0\"?>\n<!-- {}; {}. Part 0: grains; part 1: cracks (mode 0 tensile, 1 shear; time = magnitude of the "

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
+#include <string_view>
 
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/counted.hpp"
+#include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/quantities.hpp"
+#include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/provenance_json.hpp"
@@ -66,13 +70,17 @@ Json history_json(const TestResult& result, std::size_t tests) {
     column("tensile", [](Row r) { return r.cracks_tensile; });
     column("shear", [](Row r) { return r.cracks_shear; });
     column("speed", [](Row r) { return r.platen_speed; });
-    column("supplied", [](Row r) { return r.energy.supplied(); });
+    // Without the loading motion: its kinetic energy is put in and taken out again where the rate changes, joules at once that do no work on the rock.
+    const auto of_loading_motion = [](Row r) { return r.energy.kinetic - r.kinetic_deviation; };
+    column("supplied", [&](Row r) { return r.energy.supplied() - of_loading_motion(r); });
     column("grains", [](Row r) { return r.energy.elastic_grains; });
     column("contacts", [](Row r) { return r.energy.elastic_contacts; });
     column("fracture", [](Row r) { return r.energy.fracture; });
     column("friction", [](Row r) { return r.energy.friction; });
     column("damping", [](Row r) { return r.energy.damping; });
-    column("kinetic", [](Row r) { return r.energy.kinetic; });
+    column("kinetic", [](Row r) { return r.kinetic_deviation; });
+    column("residual", [](Row r) { return r.energy.residual(); });
+    column("loading_motion", of_loading_motion);
     if (result.variant.empty()) return json;
     const std::vector<double> share = broken_share(result);
     column("displacement", [](Row r) { return r.platen_displacement_m * 1e3; });
@@ -174,6 +182,35 @@ Json properties_json(const TestResult& result) {
     return list;
 }
 
+/// Acoustic emission with what its charts show: events over the axial strain, before the strength and behind it, and how many have a magnitude of at least M.
+Json emission_json(const TestResult& result) {
+    Json json = acoustic_emission_json(result);
+    if (json.is_null()) return json;
+    json["fewest_events"] = fewest_events;
+    constexpr std::size_t bins = 40;
+    const std::vector<AcousticEvent>& events = result.emission.events;
+    const auto [least, most] = std::ranges::minmax_element(result.history, {}, &HistoryRow::axial_strain);
+    const double from = least->axial_strain, width = (most->axial_strain - from) / bins;
+    const long long strength = result.history[strength_row(result)].step;
+    std::vector<int> before(bins), behind(bins);
+    std::vector<double> magnitudes;
+    for (const AcousticEvent& event : events) {
+        const double bin = width > 0.0 ? (event.axial_strain - from) / width : 0.0;
+        ++(event.first_step <= strength ? before : behind)[std::min(bins - 1, static_cast<std::size_t>(std::max(0.0, bin)))];
+        if (std::isfinite(event.magnitude)) magnitudes.push_back(event.magnitude);
+    }
+    json["rate"] = {{"from", rounded(1e3 * from)}, {"width", rounded(1e3 * width)}, {"before", before}, {"behind", behind}};
+    std::ranges::sort(magnitudes);
+    json["magnitudes"] = Json::array();
+    if (magnitudes.empty()) return json;
+    constexpr double step = 0.1;
+    for (auto m = static_cast<long long>(std::floor(magnitudes.front() / step)); step * static_cast<double>(m) <= magnitudes.back(); ++m) {
+        const double magnitude = step * static_cast<double>(m);
+        json["magnitudes"].push_back({rounded(magnitude), magnitudes.end() - std::ranges::lower_bound(magnitudes, magnitude - 1e-9)});
+    }
+    return json;
+}
+
 Json test_json(const TestResult& result, std::size_t tests) {
     Json test;
     if (!result.variant.empty()) test["variant"] = result.variant;
@@ -201,7 +238,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     add(test, result, QuantityGroup::elastic);
     add(test["sigma_ci"], result, QuantityGroup::initiation);
     if (has_texture(result)) test["rock"] = texture_json(result);
-    test["emission"] = acoustic_emission_json(result);
+    test["emission"] = emission_json(result);
     test["crack_initiation"] = rounded(result.properties.sigma_ci_crack_volume_Pa * MPa);
     for (const QuantityGroup group : {QuantityGroup::damage, QuantityGroup::cracks, QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence,
                                       QuantityGroup::balance})
@@ -233,13 +270,30 @@ std::vector<std::pair<std::string, double>> laboratory(const Job& job) {
     return values;
 }
 
-Json properties_json(const Job& job, const PropertySummary& properties) {
-    std::vector<std::pair<UserQuantity, const PropertyStatistics*>> ordered;
-    for (const auto& [key, statistics] : properties.values) ordered.emplace_back(user_quantity(key), &statistics);
-    std::ranges::stable_sort(ordered, {}, [](const auto& entry) { return entry.first.rank; });
+/// How many of the tests that a property is read from have each grade. @param variant  whose tests; empty if the job has none
+Json grades_json(std::string_view kept_name, const RockProperty& property, std::span<const TestResult> results, const std::string& variant) {
+    const std::optional<double> pressure_MPa = pressure_of_confined_strength_MPa(kept_name);
+    int grades[3] = {};
+    for (const TestResult& result : results) {
+        const bool other_pressure = pressure_MPa && std::abs(result.test.sigma3_Pa * MPa - *pressure_MPa) > 1e-6 * *pressure_MPa;
+        if (result.variant == variant && property.tests.contains(result.test.kind) && !other_pressure) ++grades[std::clamp(result.evidence.grade - 'A', 0, 2)];
+    }
+    return {{"A", grades[0]}, {"B", grades[1]}, {"C", grades[2]}};
+}
+
+/// @param results  the tests that they are read from, among others
+Json properties_json(const Job& job, const PropertySummary& properties, std::span<const TestResult> results, const std::string& variant = "") {
+    struct Row {
+        UserQuantity quantity;
+        std::string_view kept_name;
+        const PropertyStatistics* statistics;
+    };
+    std::vector<Row> ordered;
+    for (const auto& [key, statistics] : properties.values) ordered.push_back({user_quantity(key), key, &statistics});
+    std::ranges::stable_sort(ordered, {}, [](const Row& row) { return row.quantity.rank; });
     const auto measured = laboratory(job);
     Json rows = Json::array();
-    for (const auto& [quantity, statistics] : ordered) {
+    for (const auto& [quantity, kept_name, statistics] : ordered) {
         Json row = {{"name", quantity.name},
                     {"label", quantity.label},
                     {"symbol", quantity.symbol},
@@ -252,6 +306,9 @@ Json properties_json(const Job& job, const PropertySummary& properties) {
         for (const auto& [property, value] : measured) {
             if (user_quantity(property).name == quantity.name) row["laboratory"] = rounded(value);
         }
+        const RockProperty* property = kept_rock_property(kept_name);
+        row["main"] = property != nullptr && property->reported();
+        if (property != nullptr) row["grades"] = grades_json(kept_name, *property, results, variant);
         rows.push_back(row);
     }
     return rows;
@@ -351,7 +408,7 @@ Json variants_json(const Job& job, std::span<const TestResult> results) {
         json["E"] = variant.model.kind == GrainKind::flexible ? rounded(variant.grain.E_Pa * GPa) : Json(nullptr);
         json["sigma_nt"] = rounded(variant.contact.sigma_nt_Pa * MPa);
         json["tau"] = rounded(variant.contact.tau_Pa * MPa);
-        json["properties"] = properties_json(job, summary.properties);
+        json["properties"] = properties_json(job, summary.properties, results, variant.name);
         json["envelope"] = envelope_json(summary.properties);
         json["ms_per_step"] = Json::object();
         for (const auto& [kind, cost] : summary.ms_per_step) json["ms_per_step"][name(kind)] = rounded(cost);
@@ -383,7 +440,7 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     data["model"] = model_json(job.variants.front());
     if (job.has_variants()) data["variants"] = variants_json(job, results);
     data["specimens"] = specimens_json(results);
-    data["properties"] = properties_json(job, job.has_variants() ? PropertySummary{} : properties);
+    data["properties"] = properties_json(job, job.has_variants() ? PropertySummary{} : properties, results);
     data["laboratory"] = Json::object();
     for (const auto& [property, value] : laboratory(job)) data["laboratory"][user_quantity(property).name] = rounded(value);
     data["envelope"] = envelope_json(job.has_variants() ? PropertySummary{} : properties);

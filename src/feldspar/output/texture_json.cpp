@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/output/report_data.hpp"
 
 namespace feldspar {
@@ -41,7 +40,7 @@ nlohmann::ordered_json texture_json(const TestResult& result) {
 
 nlohmann::ordered_json acoustic_emission_json(const TestResult& result) {
     using Json = nlohmann::ordered_json;
-    const AcousticEmission emission = acoustic_emission(result);
+    const AcousticEmission& emission = result.emission;
     if (emission.events.empty()) return nullptr;
     double energy_J = 0.0, largest = std::numeric_limits<double>::quiet_NaN();
     int shear = 0, tensile = 0, largest_cracks = 0;
@@ -53,10 +52,8 @@ nlohmann::ordered_json acoustic_emission_json(const TestResult& result) {
         tensile += event.isotropy > 30.0;
     }
     Json counts = Json::array();
-    for (const double radius : {2.0, 3.0, usual_event_radius}) {
-        const AcousticEmission other = radius == usual_event_radius ? emission : acoustic_emission(result, radius);
-        counts.push_back({{"radius_grains", radius}, {"events", other.events.size()}, {"b_value", rounded(other.b_value.b)}});
-    }
+    for (const AcousticCount& count : emission.counts)
+        counts.push_back({{"radius_grains", count.radius_grains}, {"events", count.events}, {"b_value", rounded(count.b_value.b)}});
     const double count = static_cast<double>(emission.events.size());
     return {{"radius_mm", rounded(1e3 * emission.radius_m)}, {"window_steps", rounded(emission.window_steps)}, {"events", emission.events.size()},
             {"energy_J", rounded(energy_J)}, {"largest_magnitude", rounded(largest)}, {"most_cracks", largest_cracks}, {"tensile_share", rounded(tensile / count)},

@@ -45,7 +45,17 @@ TEST(AcousticEvents, GatherCracksThatAreNearInPlaceAndTime) {
     EXPECT_EQ(e.events[1].cracks, 1);
     EXPECT_EQ(e.events[2].first_step, 300);
     EXPECT_NEAR(e.events[0].place.x, 0.01 / 3.0, 1e-15);
-    EXPECT_EQ(acoustic_emission(result_with({crack(100, {0.0, 0.0}), crack(130, {0.01, 0.0})}), 2.0).events.size(), 2U);   // a smaller radius
+    EXPECT_EQ(gather_events(result_with({crack(100, {0.0, 0.0}), crack(130, {0.01, 0.0})}), 2.0).events.size(), 2U);   // a smaller radius
+}
+
+TEST(AcousticEvents, AreCountedForSeveralRadii) {
+    const AcousticEmission e = acoustic_emission(result_with({crack(100, {0.0, 0.0}), crack(101, {0.01, 0.0})}));   // 3.3 grains apart
+    ASSERT_EQ(e.counts.size(), 3U);
+    EXPECT_EQ(e.counts[0].events, 2U);
+    EXPECT_EQ(e.counts[1].events, 2U);
+    EXPECT_EQ(e.counts[2].events, 1U);
+    EXPECT_EQ(e.counts[2].events, e.events.size());
+    EXPECT_TRUE(acoustic_emission(result_with({})).counts.empty());
 }
 
 TEST(AcousticEvents, HaveTheEnergyOfTheirCracks) {

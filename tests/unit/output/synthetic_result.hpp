@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/methods/result.hpp"
 #include "feldspar/output/results.hpp"
@@ -155,6 +156,7 @@ inline TestResult make_result(MethodId kind = methods::uniaxial_compression, std
     result.evidence.grade = 'A';
     result.evidence.verdict = "Quasi-static to about 0.5 %.";
     result.energy_at_end = result.history.back().energy;
+    result.emission = acoustic_emission(result);
     return result;
 }
 

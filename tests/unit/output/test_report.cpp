@@ -87,6 +87,49 @@ TEST_F(Report, MarksTheMomentsOfABrazilianTest) {
     }
 }
 
+TEST_F(Report, CountsAcousticEventsOverStrainAndMagnitude) {
+    const json data = json::parse(between(page(), "id=\"data\">", "</script>"));
+    const json& emission = data["tests"][0]["emission"];
+    ASSERT_EQ(results[0].emission.events.size(), 2U);
+    const auto total = [&](const char* key) {
+        int sum = 0;
+        for (const json& count : emission["rate"][key]) sum += count.get<int>();
+        return sum;
+    };
+    EXPECT_EQ(total("before") + total("behind"), 2);
+    EXPECT_EQ(emission["magnitudes"].front()[1], 2) << "all have at least the least magnitude";
+    EXPECT_NEAR(emission["magnitudes"].back()[0].get<double>(), results[0].emission.events[0].magnitude, 0.1) << "the largest, within a step";
+    results[0].cracks.clear();
+    results[0].emission = {};
+    EXPECT_TRUE(json::parse(between(page(), "id=\"data\">", "</script>"))["tests"][0]["emission"].is_null());
+}
+
+// Supplied = elastic + dissipated + kinetic + what is not accounted for, as the chart draws them, whatever the loading motion holds.
+TEST_F(Report, ShowsABalanceOfEnergyThatCloses) {
+    for (HistoryRow& row : results[0].history) {   // the loading motion's energy is put in by the rate control
+        row.energy.kinetic = row.energy.rate_control = row.step % 100 == 0 ? 3.0 : 0.5;
+        row.energy.kinetic += row.kinetic_deviation = 1e-3;
+    }
+    const json history = json::parse(between(page(), "id=\"data\">", "</script>"))["tests"][0]["history"];
+    for (std::size_t r = 0; r < history["supplied"].size(); ++r) {
+        double sum = 0.0;
+        for (const char* part : {"grains", "contacts", "fracture", "friction", "damping", "kinetic", "residual"}) sum += history[part][r].get<double>();
+        EXPECT_NEAR(history["supplied"][r].get<double>(), sum, 1e-5 * (1.0 + sum));   // six digits are written
+        EXPECT_NEAR(history["supplied"][r].get<double>(), results[0].history[r].energy.external, 1e-5 * (1.0 + sum)) << "no step of the loading motion";
+        EXPECT_NEAR(history["loading_motion"][r].get<double>(), results[0].history[r].energy.rate_control, 1e-5);
+    }
+}
+
+TEST_F(Report, TellsMainPropertiesFromFurtherOnesWithTheirGrades) {
+    const json properties = json::parse(between(page(), "id=\"data\">", "</script>"))["properties"];
+    EXPECT_TRUE(properties[0]["main"].get<bool>()) << "E";
+    EXPECT_EQ(properties[0]["grades"], (json{{"A", 2}, {"B", 0}, {"C", 0}})) << "of both compression tests";
+    for (const json& property : properties) {
+        const bool further = property["name"] == "UCS_over_BTS" || property["name"] == "E_tangent_GPa";
+        EXPECT_FALSE(further && property["main"].get<bool>()) << property["name"];
+    }
+}
+
 TEST_F(Report, ListsTheTestsThatFailedAndWhy) {
     EXPECT_TRUE(json::parse(between(page(), "id=\"data\">", "</script>"))["failed"].empty());
     TestSpec biaxial;

@@ -162,4 +162,5 @@ writeFindings();
 writeWay();
 writeSource(data.provenance, null, [["Job file", data.job_file], ["Packings", "learned from seeds " + seedsText(data.seeds) + "; confirmed on seeds " + seedsText(data.confirm_seeds)]]);
 if (data.text) page.append(h("details", {}, h("summary", {}, "The calibration's file: " + data.file), h("pre", {}, data.text)));
+writeContents();
 followTheme();

@@ -160,7 +160,7 @@ function paintPattern(canvas, meta, parts, k, count) {
   const {points, begin} = parts, ends = parts["ends" + k], mode = parts["mode" + k];
   let width = 1, height = 1;
   for (let i = 0; i < points.length; i += 2) { width = Math.max(width, points[i]); height = Math.max(height, points[i + 1]); }
-  const dpr = Math.min(devicePixelRatio, 2), css = Math.max(80, canvas.parentElement.clientWidth), scale = ((css - 4) * dpr) / width;
+  const dpr = printing ? 3 : Math.min(devicePixelRatio, 2), css = Math.max(80, canvas.parentElement.clientWidth), scale = ((css - 4) * dpr) / width;
   canvas.width = Math.round(css * dpr);
   canvas.height = Math.round(height * scale + 4 * dpr);
   canvas.style.height = canvas.height / dpr + "px";
@@ -208,6 +208,9 @@ function writeComparedEnvelopes() {
   const chart = card("Strength of each test");
   page.append(chart);
   new XYChart(chart, {x: "Minor principal stress \u03c3\u2083 (MPa, compression positive)", y: "Major principal stress \u03c3\u2081 (MPa)", height: 380, series});
+  const fitted = data.variants.filter((v) => v.envelope.fits.length), box = h("div", {style: "margin-top:18px"}), testsOf = (v) => data.tests.filter((t) => t.variant === v.name);
+  page.append(chooser("Mohr circles of", fitted.map((v) => v.name), (i) => { circles.set(mohrSeries(testsOf(fitted[i]), fitted[i].envelope.fits)); }) || "", box);
+  const circles = writeMohr(box, testsOf(fitted[0]), fitted[0].envelope.fits);
 }
 
 function writeCost() {

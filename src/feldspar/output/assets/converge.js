@@ -77,4 +77,5 @@ writeOverview();
 for (const axis of data.axes) writeAxis(axis);
 writePackings();
 writeSource(data.provenance, data.job);
+writeContents();
 followTheme();

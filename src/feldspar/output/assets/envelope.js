@@ -159,4 +159,5 @@ writeState(data.missing, data.failures);
   open(0);
 }
 writeSource(data.provenance, data.job);
+writeContents();
 followTheme();

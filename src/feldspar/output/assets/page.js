@@ -16,15 +16,39 @@ function redrawAll() {
   }
   for (const draw of redraw) draw();
 }
-/** Draws again when the reader changes the theme, and in light colours on paper. */
+/** Draws again when the reader changes the theme; on paper in light colours, at the width of a sheet, with everything unfolded. */
 function followTheme() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { setTheme(); redrawAll(); });
+  let folded = [];
   addEventListener("beforeprint", () => {
-    for (const d of document.querySelectorAll("details")) d.open = true;
+    folded = [...document.querySelectorAll("details:not([open])")];
+    for (const d of folded) d.open = true;
+    printing = true;
+    document.documentElement.dataset.print = "";
     setTheme("light");
     redrawAll();
+    for (const box of document.querySelectorAll(".scroll")) {   // a table that is wider than the sheet becomes smaller
+      const wide = box.firstElementChild;
+      if (wide.offsetWidth > box.clientWidth) wide.style.zoom = String(box.clientWidth / (wide.offsetWidth + 1));
+    }
   });
-  addEventListener("afterprint", () => { setTheme(); redrawAll(); });
+  addEventListener("afterprint", () => {
+    for (const d of folded) d.open = false;
+    for (const box of document.querySelectorAll(".scroll")) box.firstElementChild.style.zoom = "";
+    printing = false;
+    delete document.documentElement.dataset.print;
+    setTheme();
+    redrawAll();
+  });
+}
+
+/** Links to the page's sections, where there are several: beneath its head. */
+function writeContents() {
+  const headings = [...page.querySelectorAll("h2")];
+  if (headings.length < 3) return;
+  headings.forEach((heading, n) => { heading.id ||= "part-" + (n + 1); });
+  const list = h("nav", {class: "contents", "aria-label": "Contents"}, headings.map((heading) => h("a", {href: "#" + heading.id}, heading.textContent)));
+  page.querySelector("header").after(list);
 }
 
 function median(values) {
@@ -33,8 +57,9 @@ function median(values) {
   return list.length % 2 ? list[(list.length - 1) / 2] : (list[list.length / 2 - 1] + list[list.length / 2]) / 2;
 }
 function plural(count, word) { return count + " " + word + (count === 1 ? "" : "s"); }
+/** A table; one that is wider than the page scrolls in its box, by keyboard too. */
 function table(className, head, rows) {
-  return h("div", {class: "scroll"}, h("table", {class: className}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)));
+  return h("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Table"}, h("table", {class: className}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows)));
 }
 function th(text, number, title) { return h("th", {class: number ? "number" : null, scope: "col", title}, text); }
 function td(text, number, className) { return h("td", {class: ((number ? "number " : "") + (className || "")).trim() || null}, text); }

@@ -78,20 +78,18 @@ function rangeBar(row, reach) {
     h("i", {class: "dot", style: "left:50%"}));
 }
 
-function writeProperties() {
-  page.append(h("h2", {}, "Properties of the rock"));
-  if (!data.properties.length) { page.append(h("p", {class: "soft"}, data.complete ? "No test of this job defines a property of the rock, or none that does has reached its peak." : "No property could be read yet.")); return; }
-  const compared = data.properties.some((p) => p.laboratory !== null);
-  page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + "." +
-    (data.model.grains === "flexible" ? " E and \u03bd hold for plane " + data.model.plane + "." : "")));
-  const reach = spreadReach();
-  const head = [th("Property"), th("", true), th("Median", true), th("Range", true), th("Packings", true)];
+/** Properties with median, scatter, grades of their tests, and the laboratory's number where there is one. */
+function propertyTable(rows, reach) {
+  const compared = rows.some((p) => p.laboratory !== null), graded = rows.some((p) => p.grades);
+  const head = [th("Property"), th("", true), th("Median", true), th("Range", true), th("Packings", true, "how many packings define it")];
+  if (graded) head.push(th("Grades", false, "of the tests that it is read from: A, the strength is shown to about 0.5 % (tension and Brazilian tests 1 %); B to about 2 %; C not shown"));
   if (compared) head.push(th("Laboratory", true), th("Difference", true));
   head.push(th("Spread" + (compared ? " and laboratory" : "")));
-  page.append(table("", head, data.properties.map((p) => {
+  return table("properties", head, rows.map((p) => {
     const cells = [td(p.label), td([p.symbol], true, "unit"),
       td([show(p.median), unitText(p.unit)], true, "strong"),
       td(p.packings < 2 ? "" : show(p.minimum) + " \u2013 " + show(p.maximum), true), td(String(p.packings), true)];
+    if (graded) cells.push(td(p.grades ? gradesText(p.grades) : ""));
     if (compared) {
       const known = p.laboratory !== null && p.median !== null && p.laboratory !== 0;
       const off = known ? (100 * (p.median - p.laboratory)) / p.laboratory : null;
@@ -100,9 +98,21 @@ function writeProperties() {
     }
     cells.push(td(rangeBar(p, reach)));
     return h("tr", {}, cells);
-  })));
+  }));
+}
+
+function writeProperties() {
+  page.append(h("h2", {}, "Properties of the rock"));
+  if (!data.properties.length) { page.append(h("p", {class: "soft"}, data.complete ? "No test of this job defines a property of the rock, or none that does has reached its peak." : "No property could be read yet.")); return; }
+  const compared = data.properties.some((p) => p.laboratory !== null);
+  page.append(h("p", {class: "soft"}, "Median and range over the packings" + (compared ? ", beside the laboratory's number" : "") + "." +
+    (data.model.grains === "flexible" ? " E and \u03bd hold for plane " + data.model.plane + "." : "")));
+  const reach = spreadReach(), main = data.properties.filter((p) => p.main), further = data.properties.filter((p) => !p.main);
+  if (main.length) page.append(propertyTable(main, reach));
+  if (further.length && main.length) page.append(h("details", {}, h("summary", {}, plural(further.length, "further property").replace("propertys", "properties") + ": other definitions, ratios, crack initiation and damage"), propertyTable(further, reach)));
+  else if (further.length) page.append(propertyTable(further, reach));
   page.append(h("p", {class: "soft small", style: "margin-top:8px"}, "Spread, relative to the median (full width \u00b1" + Math.round(100 * reach) + " %). Dot: median; grey bar: range over the packings" +
-    (compared ? "; orange mark: laboratory." : ".")));
+    (compared ? "; orange mark: laboratory." : ".") + " Grades tell how well the tests show their strength (see the evidence below)."));
 }
 
 /** The moments of a Brazilian test, as marks on its curve; each of the same shape and colour everywhere. */
@@ -124,6 +134,44 @@ function markSeries(test) {
   return marksOf(test).map(({name, strain, stress, look: [color, mark, size]}) => ({label: name, x: [strain], y: [stress], color, mark, size}));
 }
 
+/** Where the stress first reaches `level` (a magnitude): its x and y on the curve of `x` over the stress, and the row before it; null if it does not. */
+function reading(test, x, level) {
+  const stress = test.history.stress, last = peakRow(test);
+  if (level === null || level === undefined) return null;
+  for (let i = 0; i <= last; ++i) {
+    if (stress[i] === null || x[i] === null || Math.abs(stress[i]) < 0.99999 * level) continue;
+    if (i === 0 || x[i - 1] === null || stress[i - 1] === null || Math.abs(stress[i]) === Math.abs(stress[i - 1])) return {x: x[i], y: stress[i], row: i - 1};
+    const share = Math.min(1, Math.max(0, (level - Math.abs(stress[i - 1])) / (Math.abs(stress[i]) - Math.abs(stress[i - 1]))));
+    return {x: x[i - 1] + share * (x[i] - x[i - 1]), y: stress[i - 1] + share * (stress[i] - stress[i - 1]), row: i - 1};
+  }
+  return null;
+}
+
+/** Where numbers are read off a curve of `x` over the stress: first crack, crack initiation and damage, the stretch of the moduli, the strength. */
+function readOffSeries(test, x, moduli) {
+  const series = [], stress = test.history.stress;
+  const mark = (label, level, color, shape, size) => {
+    const at = reading(test, x, level);
+    if (at) series.push({label, x: [at.x], y: [at.y], color, mark: shape, size});
+  };
+  if (moduli && test.E !== null && test.peak) {
+    const from = reading(test, x, 0.4 * test.peak), to = reading(test, x, 0.6 * test.peak), middle = reading(test, x, 0.5 * test.peak);
+    if (from && to && middle) {
+      const rows = [...Array(Math.max(0, to.row - from.row)).keys()].map((i) => from.row + 1 + i);
+      series.push({label: "E: 40 to 60 % of the strength", x: [from.x, ...rows.map((r) => x[r]), to.x], y: [from.y, ...rows.map((r) => stress[r]), to.y], color: "#009e73", width: 8, glow: true});
+      series.push({label: "50 %", x: [middle.x], y: [middle.y], color: "#009e73", mark: "dot", size: 3, key: false});
+    }
+  }
+  if (test.brazilian) return series.concat(markSeries(test));
+  const first = test.history.tensile.findIndex((v, i) => v + test.history.shear[i] > 0);   // it may lie behind the strength
+  if (first >= 0 && x[first] !== null) series.push({label: "first crack", x: [x[first]], y: [stress[first]], color: "#e69f00", mark: "triangle", size: 5});
+  mark("\u03c3ci", test.crack_initiation, "#0072b2", "square", 4);
+  mark("\u03c3cd", test.sigma_cd, "#cc79a7", "diamond", 4);
+  const peak = peakRow(test);
+  if (peak >= 0 && x[peak] !== null && test.peak !== null) series.push({label: test.peak_reached ? "strength" : "largest stress, peak not reached", x: [x[peak]], y: [stress[peak]], color: "ink", mark: "ring", size: 6});
+  return series;
+}
+
 function strainLabelOf(test, short) {
   const words = short ? test.axes.strain.replace(" from the platens", "").replace("Approach of the plates", "Approach").replace(/, .*/, "") : test.axes.strain;
   return words + " (10\u207b\u00b3)";
@@ -139,7 +187,7 @@ function stressSeries(tests, chosen) {
     {label: "packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "ink", width: 2.2},
     {label: "its tensile cracks", x: t.history.strain, y: t.history.tensile, color: "tensile", width: 1.5, right: true, step: true},
     {label: "shear cracks", x: t.history.strain, y: t.history.shear, color: "shear", width: 1.5, right: true, step: true},
-    ...markSeries(t)];
+    ...readOffSeries(t, t.history.strain, true)];
 }
 
 function strainSeries(test) {
@@ -151,6 +199,8 @@ function strainSeries(test) {
     {label: "volumetric", x: volumetric, y: history.stress, color: "#cc79a7", width: 2},
   ];
   const [low, high] = extent(series.map((s) => s.x));
+  const peak = peakRow(test);
+  if (peak >= 0 && test.peak !== null) for (const s of [...series]) if (s.x[peak] !== null) series.push({label: "strength", x: [s.x[peak]], y: [s.y[peak]], color: s.color, mark: "ring", size: 5, key: false});
   const sign = methodOf(test.kind).sign;   // strengths are magnitudes, the curve of a tension test is negative
   const level = (name, magnitude, color, left) => {
     if (magnitude === null) return;
@@ -167,7 +217,15 @@ function energySeries(test) {
   const line = (label, key, color, width, dash) => ({label, x: y.strain, y: y[key], color, width, dash});
   return [line("supplied", "supplied", "ink", 2.4), line("elastic, grains", "grains", "#56b4e9", 1.8), line("elastic, contacts", "contacts", "#009e73", 1.8),
     line("fracture", "fracture", "#d55e00", 1.8), line("friction", "friction", "#e69f00", 1.8), line("damping", "damping", "#cc79a7", 1.8),
-    line("kinetic", "kinetic", "#999999", 1.8, true)];
+    line("kinetic", "kinetic", "#999999", 1.8, true), line("not accounted for", "residual", "shear", 1.2, true)];
+}
+
+/** What the energy chart leaves out, and how well the balance closes. */
+function energyNote(test) {
+  const largest = (key) => Math.max(0, ...test.history[key].filter((v) => v !== null).map(Math.abs));
+  const moving = largest("loading_motion"), left = largest("residual");
+  return "Supplied: work of the fixtures, the pressures and the elastic start" + (moving > 0 ? ", without the kinetic energy of the loading motion, at most " + show(moving, 2) + " J, which is put in and taken out again where the rate changes; kinetic: of the motion beside it" : "") +
+    ". Not accounted for: supplied less all the others, at most " + show(left, 2) + " J" + (test.energy_residual !== null ? ", " + show(100 * test.energy_residual, 2) + " % of the supplied energy" : "") + ".";
 }
 
 function hasGauges(test) { return test.history.lateral.some((v) => v !== null && v !== 0); }
@@ -191,7 +249,13 @@ function writeTests() {
 function gaugeSeries(tests, chosen, g) {
   const t = tests[chosen], line = (test, more) => ({x: test.gauges[g].values, y: test.gauges[g].load, ...more});
   return [...tests.filter((other) => other !== t && other.gauges[g]).map((o, i) => line(o, {label: i ? "packing " + o.seed : "other packings", color: "context", width: 1.3, quiet: i > 0})),
-    line(t, {label: "packing " + t.seed, color: "ink", width: 2.2})];
+    line(t, {label: "packing " + t.seed, color: "ink", width: 2.2}), ...loadMark(t, g)];
+}
+/** The strength on the curve of a gauge. */
+function loadMark(t, g) {
+  const row = peakRow(t), gauge = t.gauges[g];
+  if (row < 0 || t.peak === null || gauge.values[row] === null) return [];
+  return [{label: t.peak_reached ? "strength" : "largest stress, peak not reached", x: [gauge.values[row]], y: [gauge.load[row]], color: "ink", mark: "ring", size: 6}];
 }
 
 /** Acoustic emission in words. */
@@ -199,6 +263,69 @@ function addEmission(t, add) {
   const a = t.emission;
   add("Acoustic emission", plural(a.events, "event") + " (" + a.other_radii.map((o) => o.events + " within " + o.radius_grains + " grains").join(", ") + "), " + show(100 * a.tensile_share, 2) + " % tensile, " + show(100 * a.shear_share, 2) + " % shear; largest magnitude " + show(a.largest_magnitude));
   if (a.b_value !== null) add("b-value", show(a.b_value) + " \u00b1 " + show(a.b_error, 2) + " of " + a.events_above_it + " events from magnitude " + show(a.completeness_magnitude) + " on; fractal dimension " + show(a.fractal_dimension));
+}
+
+/** Events over the strain, before the strength and behind it, with the stress. */
+function rateSeries(t) {
+  const stress = {label: "stress", x: t.history.strain, y: t.history.stress, color: "ink", width: 1.8};
+  if (!t.emission) return [stress];
+  const {from, width, before, behind} = t.emission.rate, x = before.map((_, i) => from + i * width), some = (list) => list.some((v) => v > 0);
+  if (!(width > 0)) return [stress];
+  const bars = [];
+  if (some(before)) bars.push({label: "events until the strength", x, y: before, color: "tensile", bar: width, right: true});
+  if (some(behind)) bars.push({label: "events behind it", x, y: behind.map((v, i) => v + before[i]), base: before, color: "shear", bar: width, right: true});
+  return [...bars, stress];
+}
+
+/** How many events have a magnitude of at least M, and the line of the b-value. */
+function magnitudeSeries(t) {
+  const a = t.emission;
+  if (!a || !a.magnitudes.length) return [];
+  const x = a.magnitudes.map((m) => m[0]), y = a.magnitudes.map((m) => m[1]), series = [];
+  const largest = x[x.length - 1], start = a.completeness_magnitude;
+  if (a.b_value !== null) {
+    const end = Math.min(largest + 0.3, start + Math.log10(a.events_above_it / 0.7) / a.b_value);
+    series.push({label: "b = " + show(a.b_value) + " \u00b1 " + show(a.b_error, 2), x: [start, end], y: [a.events_above_it, a.events_above_it * 10 ** (-a.b_value * (end - start))], color: "shear", width: 2});
+    series.push({label: "cut-off magnitude " + show(start), x: [start, start], y: [1, y[0]], color: "soft", width: 1.2, dash: true});
+  }
+  series.push({label: "events of at least this magnitude", x, y, color: "tensile", mark: "dot", size: 2.6});
+  return series;
+}
+
+function emissionNote(t) {
+  const a = t.emission;
+  if (!a) return "No crack, and so no acoustic event.";
+  const shares = "Of " + plural(a.events, "event") + " " + show(100 * a.tensile_share, 2) + " % are tensile, " + show(100 * a.shear_share, 2) + " % shear by their moment tensor. ";
+  const slope = a.b_value !== null ? "b = " + show(a.b_value) + " \u00b1 " + show(a.b_error, 2) + " (standard error) from " + a.events_above_it + " events of magnitude " + show(a.completeness_magnitude) + " or more. "
+    : "Fewer than " + a.fewest_events + " events" + (a.events >= a.fewest_events ? " above the cut-off magnitude" : "") + ": no b. ";
+  return shares + slope + (a.fractal_dimension !== null ? "Fractal dimension of their places " + show(a.fractal_dimension) + "." : "Too few for a fractal dimension.");
+}
+
+/** Charts of the acoustic emission. */
+function writeEmission(grid, tests, updates) {
+  if (!tests.some((t) => t.emission)) return;
+  const rate = card("Acoustic events and stress"), sizes = card("Magnitudes of the acoustic events");
+  grid.append(rate, sizes);
+  const counted = (t) => "Events, cracks gathered within " + (t.emission ? show(t.emission.radius_mm, 2) + " mm" : "a few grains") + ", counted in " + (t.emission ? t.emission.rate.before.length : 40) + " equal steps of the strain. Behind the strength the strain may turn back.";
+  const one = new XYChart(rate, {x: strainLabelOf(tests[0]), y: stressLabelOf(tests[0]), right: "Acoustic events", whole: true, series: rateSeries(tests[0])}), words = h("p", {class: "soft tiny caption"}, counted(tests[0]));
+  rate.append(words);
+  const two = new XYChart(sizes, {x: "Magnitude M = 2/3 (log E \u2212 4.8), E in J", y: "Events of magnitude \u2265 M", yLog: true, series: [], ...magnitudeRanges(tests[0])}), note = h("p", {class: "soft tiny caption"});
+  sizes.append(note);
+  const fill = (i) => {
+    one.set(rateSeries(tests[i]));
+    words.textContent = counted(tests[i]);
+    Object.assign(two.options, magnitudeRanges(tests[i]));
+    two.set(magnitudeSeries(tests[i]));
+    note.textContent = emissionNote(tests[i]);
+  };
+  fill(0);
+  updates.push(fill);
+}
+/** Magnitudes need no zero in sight. */
+function magnitudeRanges(t) {
+  const list = t.emission ? t.emission.magnitudes : [];
+  if (!list.length) return {xRange: [-8, -4], yRange: [0.7, 10]};
+  return {xRange: [list[0][0] - 0.2, list[list.length - 1][0] + 0.5], yRange: [0.7, 10 ** Math.ceil(Math.log10(list[0][1]) + 0.05)]};
 }
 
 /** What the rock came to on this specimen: minerals, draws, joints. */
@@ -236,7 +363,7 @@ function writeTest(host, tests) {
   host.append(grid);
   const first = card("Stress and cracks"), second = card("Axial, lateral and volumetric strain, from the gauges"), third = card("Energy balance");
   grid.append(first);
-  const a = new XYChart(first, {x: strainLabel, y: stressLabel, right: "Cracks", series: stressSeries(tests, 0)});
+  const a = new XYChart(first, {x: strainLabel, y: stressLabel, right: "Cracks", whole: true, series: stressSeries(tests, 0)});
   updates.push((i) => a.set(stressSeries(tests, i)));
   if (tests.some(hasGauges)) {
     grid.append(second);
@@ -250,8 +377,11 @@ function writeTest(host, tests) {
     updates.push((i) => chart.set(gaugeSeries(tests, i, g)));
   });
   grid.append(third);
-  const c = new XYChart(third, {x: strainLabel, y: "Energy (J)", series: energySeries(tests[0])});
-  updates.push((i) => c.set(energySeries(tests[i])));
+  const c = new XYChart(third, {x: strainLabel, y: "Energy (J)", series: energySeries(tests[0])}), note = h("p", {class: "soft tiny caption"}, energyNote(tests[0]));
+  third.append(note);
+  updates.push((i) => { c.set(energySeries(tests[i])); note.textContent = energyNote(tests[i]); });
+  writeEmission(grid, tests, updates);
+  first.classList.toggle("broad", grid.children.length % 2 === 1);   // the others stand in pairs
   grid.append(testFacts(tests, updates));
   writeCycles(host, tests, updates);
 }
@@ -284,10 +414,11 @@ function addMultiStage(t, add) {
 }
 
 function testFacts(tests, updates) {
-  const body = h("dl", {}), facts = h("div", {class: "card"}, h("h4", {}, "The chosen test in numbers"), body);
+  const body = h("dl", {}), facts = h("div", {class: "card broad numbers"}, h("h4", {}, "The chosen test in numbers"), body);
   const fill = (i) => {
     const t = tests[i], rows = [];
-    const add = (name, value) => rows.push(h("dt", {}, name), h("dd", {}, value));
+    const whole = (value) => (typeof value === "string" ? value.replace(/(\d) (?=(?:%|MPa|GPa|kN|mm|J)(?![a-z]))/g, "$1\u00a0") : value);   // no line ends between a number and its unit
+    const add = (name, value) => rows.push(h("dt", {}, name), h("dd", {}, whole(value)));
     add("Packing", "seed " + t.seed);
     if (t.peak_load !== null) add("Largest load", show(t.peak_load, 4) + " kN");
     add(t.peak_load !== null ? "Largest stress" : "Strength", show(t.peak, 4) + " MPa" + (t.peak_reached ? "" : " (peak not reached)") + (t.peak_load !== null ? ", " + t.axes.stress.replace(/^[A-Z](?=[a-z])/, (c) => c.toLowerCase()) : ""));
@@ -362,12 +493,68 @@ function writeEnvelope() {
   page.append(grid);
   grid.append(chart);
   new XYChart(chart, {x: "Minor principal stress \u03c3\u2083 (MPa, compression positive)", y: "Major principal stress \u03c3\u2081 (MPa)", height: 380, series: envelopeSeries()});
+  writeMohr(grid, data.tests, data.envelope.fits);
   if (!data.envelope.fits.length) return;
   const fits = card("Fits, one for each packing");
+  fits.classList.add("broad");
   grid.append(fits);
   fits.append(table("evidence", [th("Seed", true), th(["c", h("br"), "MPa"], true), th(["\u03c6", h("br"), "\u00b0"], true), th(["UCS fitted", h("br"), "MPa"], true), th(["UCS measured", h("br"), "MPa"], true), th("mi", true), th(["\u03c3ci H-B", h("br"), "MPa"], true)],
     data.envelope.fits.map((f) => h("tr", {}, td(String(f.seed), true), td(show(f.cohesion), true), td(show(f.friction_angle), true), td(show(f.UCS_fitted), true), td(show(f.UCS_measured), true), td(show(f.mi), true), td(show(f.hoek_brown_UCS), true)))),
     h("p", {class: "soft small"}, "Mohr-Coulomb: \u03c3\u2081 = 2c\u221aN + N\u03c3\u2083 with N = (1 + sin \u03c6)/(1 \u2212 sin \u03c6). Hoek-Brown, intact rock: \u03c3\u2081 = \u03c3\u2083 + \u03c3ci (mi \u03c3\u2083/\u03c3ci + 1)^\u00bd."));
+}
+
+/** Half circles of the strengths, medians over the packings, and the line that should touch them. */
+function mohrSeries(tests, fits) {
+  const groups = new Map(), series = [];
+  for (const t of tests) {
+    if (!methodOf(t.kind).on_envelope || t.peak === null || !t.peak_reached) continue;
+    if (!groups.has(t.sigma3)) groups.set(t.sigma3, []);
+    groups.get(t.sigma3).push(t.peak);
+  }
+  const pressures = [...groups.keys()].sort((a, b) => a - b);
+  if (pressures.length < 2) return [];
+  const circle = (from, to, more) => {
+    const turn = [...Array(91).keys()].map((i) => (Math.PI * i) / 90), middle = 0.5 * (from + to), radius = 0.5 * (to - from);
+    series.push({x: turn.map((a) => middle - radius * Math.cos(a)), y: turn.map((a) => radius * Math.sin(a)), width: 1.6, ...more});
+  };
+  pressures.forEach((s3, i) => circle(s3, median(groups.get(s3)), {label: "\u03c3\u2083 = " + Number(s3.toPrecision(4)) + " MPa: \u03c3\u2081 = " + show(median(groups.get(s3))) + " MPa", color: variantColor(i)}));
+  const tension = tests.filter((t) => t.kind === methodOfStrength("DTS") && t.peak !== null && t.peak_reached).map((t) => t.peak);
+  if (tension.length) circle(-median(tension), 0, {label: "direct tension", color: "#cc79a7"});
+  const highest = 1.12 * Math.max(...pressures.map((s3) => 0.5 * (median(groups.get(s3)) - s3)));
+  const line = (label, c, phi, more) => {
+    const slope = Math.tan((phi * Math.PI) / 180), from = Math.max(-c / (slope || 1), -0.08 * highest);
+    series.push({label: label + " c = " + show(c) + " MPa, \u03c6 = " + show(phi) + "\u00b0", x: [from, (highest - c) / (slope || 1)], y: [c + slope * from, highest], ...more});
+  };
+  const c = median(fits.map((f) => f.cohesion)), phi = median(fits.map((f) => f.friction_angle)), lab = data.laboratory;
+  if (c !== null && phi !== null && phi > 0) line("\u03c4 = c + \u03c3 tan \u03c6, medians", c, phi, {color: "ink", width: 2.2});
+  if (lab.cohesion_MPa && lab.friction_angle_deg) line("laboratory", lab.cohesion_MPa, lab.friction_angle_deg, {color: "shear", width: 1.6, dash: true});
+  return series;
+}
+
+/** Mohr circles, where there are several pressures. */
+function writeMohr(host, tests, fits) {
+  const series = mohrSeries(tests, fits);
+  if (!series.length) return null;
+  const box = card("Mohr circles");
+  host.append(box);
+  return new XYChart(box, {x: "Normal stress \u03c3 (MPa, compression positive)", y: "Shear stress \u03c4 (MPa)", equal: true, height: 200, series});
+}
+
+/** Where crystals of several cells break: the share of the cracks that run inside crystals, over the pressure. */
+function writeCrystals() {
+  const tests = data.tests.filter((t) => t.rock && t.rock.crystals && t.rock.crystals.cracks > 0 && methodOf(t.kind).on_envelope);
+  if (new Set(tests.map((t) => t.sigma3)).size < 2) return;
+  const share = (t) => t.rock.crystals.inside_cracks / t.rock.crystals.cracks, series = [];
+  const variants = [...new Set(tests.map((t) => t.variant || ""))];
+  variants.forEach((variant, i) => {
+    const own = tests.filter((t) => (t.variant || "") === variant), pressures = [...new Set(own.map((t) => t.sigma3))].sort((a, b) => a - b);
+    const mean = (s3) => { const list = own.filter((t) => t.sigma3 === s3).map(share); return list.reduce((sum, v) => sum + v, 0) / list.length; };
+    series.push({label: variant ? variant + ", mean" : "mean of the packings", x: pressures, y: pressures.map(mean), color: variants.length > 1 ? variantColor(i) : "ink", width: 2});
+    series.push({label: variant ? variant + ", packings" : "each packing", x: own.map((t) => t.sigma3), y: own.map(share), color: variants.length > 1 ? variantColor(i) : "tensile", mark: variantMarks[i % 4], size: 4, key: variants.length === 1});
+  });
+  const box = card("Share of the cracks inside crystals");
+  page.append(h("h2", {}, "Cracks inside crystals"), h("p", {class: "soft"}, "Cracks between two cells of one crystal over all cracks, at the end of each test in compression."), h("div", {class: "grid"}, box));
+  new XYChart(box, {x: "Minor principal stress \u03c3\u2083 (MPa)", y: "Share of the cracks", yRange: [0, 1], series});
 }
 
 /** Shear strengths over normal stresses, with the lines through their medians. */
@@ -421,7 +608,7 @@ function writePattern() {
   settings.append(h("div", {class: "controls"},
     choice("Colour of the grains", Object.entries(fieldKinds).map(([k, v]) => [k, v.label]), (v) => { viewer.field = v; }),
     choice("Colour of the cracks", [["mode", "mode: tensile or shear"], ["time", "time: axial strain at the break"], ["plain", "plain"], ["none", "no cracks"]], (v) => { viewer.cracks = v; }),
-    choice("Displacements", [["1", "as they are"], ["0", "undeformed"], ["5", "5 times"], ["20", "20 times"], ["100", "100 times"]], (v) => { viewer.magnify = Number(v); })),
+    choice("Displacements", [["1", "as they are"], ["0", "undeformed"], ["2", "enlarged"], ["3", "enlarged more"]], (v) => { viewer.enlarge(Number(v)); })),
     scale, crackKey);
 
   function showScale() {
@@ -464,6 +651,13 @@ function writePattern() {
     if (curve) { curve.options.x = x; curve.set(series); }
     else curve = new XYChart(curveCard, {x, y: "Stress (MPa)", height: 190, series});
   }
+  /** The factors that suit this specimen: its farthest node moves by 6 and by 20 % of its size. */
+  function showEnlargements() {
+    const list = settings.querySelector("select[aria-label='Displacements']"), kind = list.selectedIndex, factors = [...new Set([0.06, 0.2].map((share) => specimen.enlargement(share)))].filter((f) => f > 1);
+    list.replaceChildren(...[[1, "as they are"], [0, "undeformed"], ...factors.map((f) => [f, "times " + f])].map(([value, text]) => h("option", {value}, text)));
+    list.selectedIndex = Math.min(Math.max(kind, 0), list.options.length - 1);
+    viewer.magnify = Number(list.value);
+  }
   async function open(i) {
     current = i;
     if (playing) play.click();
@@ -472,6 +666,7 @@ function writePattern() {
     if (current !== i) return;
     specimen = ready;
     slider.max = specimen.meta.snapshots.length - 1;
+    showEnlargements();
     viewer.show(specimen);
     slider.value = viewer.snapshot;
     showScale();
@@ -484,7 +679,7 @@ function writePattern() {
     h("button", {type: "button", "aria-label": "Zoom out", onclick: () => viewer.zoom(1 / 1.5)}, "\u2212"), h("button", {type: "button", onclick: () => viewer.reset()}, "Fit"));
   left.append(moment, h("div", {class: "slider"}, play, slider, zoom), stage, readout);
   right.append(settings, curveCard, rosetteCard);
-  redraw.push(() => { if (specimen) { viewer.draw(); drawRosette(rosette, specimen, viewer.snapshot); } });
+  redraw.push(() => { if (specimen) { viewer.resize(); viewer.draw(); drawRosette(rosette, specimen, viewer.snapshot); } });
   if (typeof DecompressionStream === "undefined") left.replaceChildren(h("p", {}, "This view needs a browser of 2023 or later. The same fields are in the .pvd files."));
   else open(0);
 }
@@ -501,14 +696,19 @@ function writeEvidence() {
     y.stress.forEach((s, i) => { if (s !== null && (at < 0 || Math.abs(s) > Math.abs(y.stress[at]))) at = i; });
     return at < 0 || y.speed[at] === null ? "\u2013" : show(y.speed[at], 2) + (t.numerics === "dynamic" ? " m/s" : " m/step");
   };
-  const confirmed = data.tests.some((t) => t.change_at_third !== null);
+  const confirmed = data.tests.some((t) => t.change_at_third !== null), all = [...groupTests().values()].flat();
+  const before = (i) => i > 0 && all[i].variant === all[i - 1].variant;
+  const names = (t, i) => [data.variants ? td(before(i) ? "" : t.variant, false, "strong") : null, td(before(i) && titleOf(t) === titleOf(all[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true)];
+  const heads = () => [data.variants ? th("Variant") : null, th("Test"), th("Seed", true)];
   page.append(table("evidence",
-    [data.variants ? th("Variant") : null, th("Test"), th("Seed", true), th("Strength", true), th("Grade"), th(["Estimated", h("br"), "error"], true), th(["nine of ten", h("br"), "within"], true, "twice the estimate: 59 of 64 measured errors were smaller"), th(["R* of the", h("br"), "median grain"], true, "times the number of grains; mean from 0.9 of the peak to the peak"), th(["Load growth per", h("br"), "travel time"], true, "growth of the platen displacement while a wave travels the height; mean from 0.9 of the peak to the peak"),
-      th(["R*", h("br"), "mean"], true), th(["R* at", h("br"), "peak"], true), th(["Platens", h("br"), "differ by"], true, "difference of the two reactions over their mean; mean from 0.9 of the peak to the peak"),
-      th(["Kinetic /", h("br"), "strain energy"], true), th(["Damping /", h("br"), "fracture"], true), th(["Energy", h("br"), "residual"], true), th(["Platen speed", h("br"), "at peak"], true), confirmed ? th(["Peak at a", h("br"), "third of the rate"], true) : null],
-    [...groupTests().values()].flat().map((t, i, all) => h("tr", {}, data.variants ? td(i && t.variant === all[i - 1].variant ? "" : t.variant, false, "strong") : null, td(i && t.variant === all[i - 1].variant && titleOf(t) === titleOf(all[i - 1]) ? "" : titleOf(t), false, "kind"), td(String(t.seed), true), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)),
-      td(percent(t.error_estimate), true), td(percent(t.error_bound), true), td(show(t.residual_median, 2), true), td(percent(t.load_per_travel_time), true), td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(percent(t.imbalance_mean), true), td(show(t.kinetic_over_strain, 2), true), td(percent(t.damping_over_fracture), true),
-      td(percent(t.energy_residual), true), td(speedAtPeak(t), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null))));
+    [...heads(), th("Strength", true), th("Grade"), th(["Estimated", h("br"), "error"], true), th(["nine of ten", h("br"), "within"], true, "twice the estimate: 59 of 64 measured errors were smaller"), th(["Platens", h("br"), "differ by"], true, "difference of the two reactions over their mean; mean from 0.9 of the peak to the peak"),
+      th(["Energy", h("br"), "residual"], true), confirmed ? th(["Peak at a", h("br"), "third of the rate"], true) : null],
+    all.map((t, i) => h("tr", {}, names(t, i), td(show(t.peak) + " MPa", true), h("td", {}, h("span", {class: "grade " + t.grade}, t.grade)), td(percent(t.error_estimate), true), td(percent(t.error_bound), true), td(percent(t.imbalance_mean), true),
+      td(percent(t.energy_residual), true), confirmed ? td(t.change_at_third === null ? "\u2013" : percent(t.change_at_third), true) : null))));
+  page.append(h("details", {}, h("summary", {}, "What else was measured near the strength"), table("evidence",
+    [...heads(), th(["R* of the", h("br"), "median grain"], true, "times the number of grains; mean from 0.9 of the peak to the peak"), th(["Load growth per", h("br"), "travel time"], true, "growth of the platen displacement while a wave travels the height; mean from 0.9 of the peak to the peak"),
+      th(["R*", h("br"), "mean"], true), th(["R* at", h("br"), "peak"], true), th(["Kinetic /", h("br"), "strain energy"], true), th(["Damping /", h("br"), "fracture"], true), th(["Platen speed", h("br"), "at peak"], true)],
+    all.map((t, i) => h("tr", {}, names(t, i), td(show(t.residual_median, 2), true), td(percent(t.load_per_travel_time), true), td(show(t.residual_mean, 2), true), td(show(t.residual_at_peak, 2), true), td(show(t.kinetic_over_strain, 2), true), td(percent(t.damping_over_fracture), true), td(speedAtPeak(t), true))))));
   // the verdicts in words, each once
   const verdicts = new Map();
   for (const t of data.tests) {
@@ -519,9 +719,9 @@ function writeEvidence() {
   const list = h("details", {}, h("summary", {}, "The verdicts in words"));
   list.open = verdicts.size <= 4;
   page.append(list);
-  const names = (tests) => [...new Set(tests.map(fullTitle))].map((title) => title + ", seed" + (tests.filter((t) => fullTitle(t) === title).length > 1 ? "s " : " ") + tests.filter((t) => fullTitle(t) === title).map((t) => t.seed).join(", ")).join("; ");
+  const testsInWords = (tests) => [...new Set(tests.map(fullTitle))].map((title) => title + ", seed" + (tests.filter((t) => fullTitle(t) === title).length > 1 ? "s " : " ") + tests.filter((t) => fullTitle(t) === title).map((t) => t.seed).join(", ")).join("; ");
   for (const tests of [...verdicts.values()].sort((a, b) => (a[0].grade < b[0].grade ? -1 : 1))) {
-    list.append(h("p", {class: "verdict"}, h("span", {class: "grade " + tests[0].grade}, tests[0].grade), " " + tests[0].verdict + " ", h("span", {class: "soft small"}, "(" + names(tests) + ")")));
+    list.append(h("p", {class: "verdict"}, h("span", {class: "grade " + tests[0].grade}, tests[0].grade), " " + tests[0].verdict + " ", h("span", {class: "soft small"}, "(" + testsInWords(tests) + ")")));
   }
 }
 
@@ -530,8 +730,8 @@ function writeProvenance() {
   const add = (name, value) => list.append(h("dt", {}, name), h("dd", {}, value));
   page.append(h("h2", {}, "Specimens and provenance"));
   if (data.specimens.length) {
-    page.append(table("evidence", [th("Specimen"), th("Shape"), th("Thickness (mm)", true), th("Grains", true), th("Contacts", true), th("Nodes", true), th("Triangles", true), th("Merged edges", true), th("Grain size (mm)", true, "circles of the cells' areas: mean, smallest to largest; D50: half of the area is in smaller grains; in brackets the mean of the discs that were asked for"), th("Width / largest grain", true)],
-      data.specimens.map((s) => h("tr", {}, td("for " + s.for), td(s.shape.replace(" x ", " \u00d7 ")), td(show(s.thickness), true), ...["grains", "contacts", "nodes", "triangles", "merged_edges"].map((k) => td(s[k].toLocaleString("en"), true)), td(show(s.grain_mean) + ", " + show(s.grain_minimum) + " to " + show(s.grain_maximum) + "; D50 " + show(s.grain_D50) + " (" + show(s.disc_mean) + ")", true), td(show(s.width_over_largest_grain), true)))));
+    page.append(table("evidence", [th("Specimen"), th("Shape"), th(["Thickness", h("br"), "mm"], true), th("Grains", true), th("Contacts", true), th("Nodes", true), th("Triangles", true), th(["Merged", h("br"), "edges"], true), th("Grain size (mm)", false, "circles of the cells' areas: mean, smallest to largest; D50: half of the area is in smaller grains; in brackets the mean of the discs that were asked for"), th(["Width /", h("br"), "largest grain"], true)],
+      data.specimens.map((s) => h("tr", {}, td("for " + s.for), td(s.shape.replace(" x ", " \u00d7 ")), td(show(s.thickness), true), ...["grains", "contacts", "nodes", "triangles", "merged_edges"].map((k) => td(s[k].toLocaleString("en"), true)), td(show(s.grain_mean) + ", " + show(s.grain_minimum) + " to " + show(s.grain_maximum) + "; D50 " + show(s.grain_D50) + " (" + show(s.disc_mean) + ")"), td(show(s.width_over_largest_grain), true)))));
     for (const warning of new Set(data.specimens.flatMap((s) => s.warnings))) page.append(h("p", {class: "notice"}, warning));
   }
   add("Program", "Feldspar " + p.version + ", commit " + p.commit);
@@ -551,7 +751,9 @@ else writeProperties();
 writeTests();
 writePattern();
 if (!data.variants) writeEnvelope();
+writeCrystals();
 writeShearEnvelope();
 writeEvidence();
 writeProvenance();
+writeContents();
 followTheme();

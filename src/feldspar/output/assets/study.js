@@ -136,4 +136,5 @@ writeChart();
 writeTable();
 writeSource({version: data.written.version, commit: data.written.commit, started: data.written.at}, null);
 if (data.text) page.append(h("details", {}, h("summary", {}, "The study's file" + (data.file ? ": " + data.file : "")), h("pre", {}, data.text)));
+writeContents();
 followTheme();

@@ -83,6 +83,36 @@ class Specimen {
     return p;
   }
 
+  /** The factor of displacements that moves the farthest node by `share` of the specimen's size, rounded down to 1, 2 or 5 times a power of ten; at least 1. */
+  enlargement(share) {
+    if (this.farthest === undefined) {
+      let squared = 0;
+      for (let n = 0; n < this.meta.snapshots.length; ++n) {
+        const u = this.displacement(n), nodes = u.length / 2;
+        for (let i = 0; i < nodes; ++i) squared = Math.max(squared, u[i] * u[i] + u[nodes + i] * u[nodes + i]);
+      }
+      this.farthest = Math.sqrt(squared);
+    }
+    if (!(this.farthest > 0)) return 1;
+    const wanted = (share * Math.max(this.x1 - this.x0, this.y1 - this.y0)) / this.farthest, power = 10 ** Math.floor(Math.log10(wanted));
+    return Math.max(1, [5, 2, 1].map((k) => k * power).find((f) => f <= wanted) || power);
+  }
+
+  /** What the specimen takes up over all its moments with displacements times `magnify`, mm: [x0, x1, y0, y1]. */
+  bounds(magnify) {
+    let [x0, x1, y0, y1] = [this.x0, this.x1, this.y0, this.y1];
+    if (magnify > 0) {
+      for (let n = 0; n < this.meta.snapshots.length; ++n) {
+        const p = this.positions(n, magnify);
+        for (let i = 0; i < p.length; i += 2) {
+          x0 = Math.min(x0, p[i]); x1 = Math.max(x1, p[i]);
+          y0 = Math.min(y0, p[i + 1]); y1 = Math.max(y1, p[i + 1]);
+        }
+      }
+    }
+    return [x0, x1, y0, y1];
+  }
+
   /** Ends of crack c, midway between its faces, mm. */
   crack(c, positions) {
     const {crack_ends: ends, crack_nodes: faces, nodes} = this.parts, out = [0, 0, 0, 0];
@@ -160,30 +190,41 @@ class Viewer {
     this.onSnapshot(this.snapshot);
   }
 
+  /** Displacements times so much; the specimen stays in view. */
+  enlarge(factor) {
+    this.magnify = factor;
+    this.reset();
+  }
+
   resize() {
     if (!this.specimen) return;
-    const dpr = Math.min(devicePixelRatio, 2), css = this.canvas.parentElement.clientWidth;
+    const dpr = printing ? 3 : Math.min(devicePixelRatio, 2), css = this.canvas.parentElement.clientWidth;
     const {x0, x1, y0, y1} = this.specimen;
-    const high = Math.round(Math.min(Math.max(css * 1.08 * (y1 - y0) / (x1 - x0), 260), 720));
-    if (this.cssWidth === css && this.cssHeight === high && this.ids) return;
+    const high = Math.round(Math.min(Math.max(css * 1.08 * (y1 - y0) / (x1 - x0), 260), printing ? 430 : 720));
+    if (this.cssWidth === css && this.cssHeight === high && this.dpr === dpr && this.ids) return;
     const first = !this.ids;
     Object.assign(this, {cssWidth: css, cssHeight: high, dpr});
     this.canvas.style.height = high + "px";
     this.canvas.width = Math.max(1, Math.round(css * dpr));
     this.canvas.height = Math.round(high * dpr);
     this.ids = new Int32Array(this.canvas.width * this.canvas.height);
-    if (first || this.fitted) this.reset();
-    else this.draw();
+    if (first || this.fitted) this.fit();
+    this.paint();   // at once: a canvas of another size is blank
   }
 
+  /** The whole specimen in view. */
   reset() {
+    this.fit();
+    this.draw();
+  }
+
+  fit() {
     if (!this.specimen || !this.ids) return;
-    const {x0, x1, y0, y1} = this.specimen;
+    const [x0, x1, y0, y1] = this.specimen.bounds(this.magnify);
     this.fitted = true;
     this.scale = 0.93 * Math.min(this.canvas.width / (x1 - x0), this.canvas.height / (y1 - y0));   // pixels a mm
     this.cx = (x0 + x1) / 2;
     this.cy = (y0 + y1) / 2;
-    this.draw();
   }
 
   zoom(factor, atX = this.cssWidth / 2, atY = this.cssHeight / 2) {
@@ -222,7 +263,9 @@ class Viewer {
   }
 
   draw() {
-    if (!this.specimen || !this.ids || this.waiting) return;
+    if (!this.specimen || !this.ids) return;
+    if (printing) { this.paint(); return; }   // paper does not wait for a frame
+    if (this.waiting) return;
     this.waiting = true;
     requestAnimationFrame(() => { this.waiting = false; this.paint(); });
   }
@@ -364,6 +407,9 @@ class Viewer {
     ctx.font = 12 * this.dpr + "px system-ui, sans-serif";
     ctx.textAlign = "left";
     ctx.fillText(show(length, 1) + " mm", x + 4 * this.dpr, y - 6 * this.dpr);
+    if (this.magnify === 1) return;
+    ctx.textAlign = "right";
+    ctx.fillText(this.magnify > 1 ? "displacements \u00d7 " + this.magnify : "undeformed", ctx.canvas.width - 10 * this.dpr, y - 2 * this.dpr);
   }
 }
 
@@ -378,7 +424,7 @@ function drawRosette(canvas, specimen, n) {
   }
   let longest = 0;
   for (let b = 0; b < bins; ++b) longest = Math.max(longest, length[0][b] + length[1][b]);
-  const dpr = Math.min(devicePixelRatio, 2), size = Math.max(180, Math.min(330, canvas.parentElement.clientWidth));
+  const dpr = printing ? 3 : Math.min(devicePixelRatio, 2), size = Math.max(180, Math.min(printing ? 230 : 330, canvas.parentElement.clientWidth));
   canvas.width = canvas.height = Math.round(size * dpr);
   canvas.style.height = size + "px";
   canvas.style.width = size + "px";
@@ -424,6 +470,6 @@ function drawRosette(canvas, specimen, n) {
   ctx.textBaseline = "alphabetic";
   ctx.textAlign = "center";
   ctx.fillText("0\u00b0 loading axis", middle, 15 * dpr);
-  ctx.fillText("90\u00b0", canvas.width - 14 * dpr, middle + 4 * dpr);
-  ctx.fillText(longest > 0 ? "outer ring: " + show(longest, 3) + " mm of cracks in 10\u00b0" : "no cracks yet", middle, canvas.height - 8 * dpr);
+  ctx.fillText("90\u00b0", canvas.width - 15 * dpr, middle + 4 * dpr);
+  ctx.fillText(longest > 0 ? "outer ring: " + show(longest, 3) + " mm in 10\u00b0" : "no cracks yet", middle, canvas.height - 8 * dpr);
 }
