@@ -1,4 +1,10 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
 #include "feldspar/calibration/calibration.hpp"
+#include "feldspar/job/first_job.hpp"
 
 namespace feldspar {
 
@@ -46,6 +52,26 @@ name = "Gfs/Gfn"
 key = "material.contact.Gfs"
 times = "material.contact.Gfn"
 )";
+}
+
+std::string calibration_template(const ReadRock& rock) {
+    // A laboratory's numbers as targets; the tolerances of the template stay, and what is no target is left out.
+    constexpr std::array<std::string_view, 7> shown{"E", "nu", "UCS", "DTS", "BTS", "cohesion", "friction_angle"};
+    std::vector<std::pair<std::string, std::string>> targets;
+    bool friction = false;
+    for (const auto& [key, value] : rock.laboratory) {
+        if (std::find(shown.begin(), shown.end(), key) == shown.end()) continue;
+        friction = friction || key == "friction_angle" || key == "cohesion";
+        targets.emplace_back(key, key == "UCS" ? fmt::format("{{ value = {}, tolerance = \"5 %\" }}", value) : value);
+    }
+    std::string text = with_values(calibration_template(), "targets", targets, shown);
+    const std::size_t numbers = text.find("# The numbers are those of"), end = text.find('\n', numbers);
+    text.replace(numbers, end - numbers, "# " + (rock.source.empty() ? std::string("The targets are the numbers that were given; the job: feldspar new laboratory with the same options.") : "Laboratory: " + rock.source + "."));
+    if (friction) return text;
+    // Without a friction angle nothing tells the friction of the contacts from their cohesion.
+    const std::string mu = "[[unknown]]\nkey = \"material.contact.mu\"\n";
+    if (const std::size_t at = text.find(mu); at != std::string::npos) text.replace(at, mu.size(), "# [[unknown]]                       # wants a target that tells of friction: friction_angle, cohesion\n# key = \"material.contact.mu\"\n");
+    return text;
 }
 
 }  // namespace feldspar

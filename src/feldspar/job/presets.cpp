@@ -1,7 +1,12 @@
 #include "feldspar/job/presets.hpp"
 
 #include <array>
+#include <cmath>
 #include <map>
+
+#include <fmt/format.h>
+
+#include "feldspar/job/rocks.hpp"
 
 namespace feldspar {
 namespace {
@@ -42,6 +47,26 @@ std::string overview_of(std::string_view key, std::span<const Preset> presets) {
     return text;
 }
 
+// What `feldspar new KIND --rock NAME` begins from.
+std::string overview_of_rocks() {
+    std::string text = "# Rocks of the literature, for feldspar new KIND --rock NAME: a job with first contact parameters by scaling rules (docs/validation/first-parameters.md).\n\n";
+    for (const LiteratureRock& rock : literature_rocks()) {
+        const auto add = [&](const char* name, double value, const char* unit) {
+            if (std::isfinite(value)) text += fmt::format(" {} {:g}{}", name, value, unit);
+        };
+        text += fmt::format("# {}:", rock.name);
+        add("E", rock.E_GPa, " GPa,");
+        add("nu", rock.nu, ",");
+        add("UCS", rock.UCS_MPa, " MPa,");
+        add("BTS", rock.BTS_MPa, " MPa,");
+        add("cohesion", rock.cohesion_MPa, " MPa,");
+        add("friction angle", rock.friction_angle_deg, " deg,");
+        text.back() = '\n';
+        text += fmt::format("#   {}\n", rock.source);
+    }
+    return text;
+}
+
 }  // namespace
 
 std::span<const Preset> elastic_presets() { return elastic; }
@@ -60,7 +85,7 @@ const toml::table& preset_table(const Preset& preset) {
 std::string preset_overview() {
     return "# Presets of [material], after Monteiro Azevedo, Farinha, Oliveira 2022, Geotechnics 2, 523-548 (Augig granite).\n"
            "# A key in [material.grain] or [material.contact] goes before the same key of a preset.\n\n" +
-           overview_of("elastic_preset", elastic) + "\n" + overview_of("strength_preset", strength);
+           overview_of("elastic_preset", elastic) + "\n" + overview_of("strength_preset", strength) + "\n" + overview_of_rocks();
 }
 
 }  // namespace feldspar
