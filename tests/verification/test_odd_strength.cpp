@@ -63,7 +63,9 @@ TEST(OddStrength, TheShareGrowsWithTheLoad) {
         s.test.maximum_stress_Pa = stress_Pa;
         const TestResult result = run_test(s, {});
         // elastic: in proportion to the load, to the row at which the test ends (a fiftieth of the load)
-        if (before > 0.0 && result.nearest.damage == 0.0) EXPECT_NEAR(result.nearest.share / before, 2.0, 0.15);
+        if (before > 0.0 && result.nearest.damage == 0.0) {
+            EXPECT_NEAR(result.nearest.share / before, 2.0, 0.15);
+        }
         before = result.nearest.share;
     }
 }

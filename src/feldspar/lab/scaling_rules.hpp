@@ -1,6 +1,6 @@
 // Rules between contact parameters and the numbers of a laboratory, measured with this program, and their inverse: first contact parameters.
 //
-// Source: the experiment studies/first-parameters/design.toml (142 rocks on specimens of 40 x 80 mm and discs of 40 mm, flexible grains of 2 to 4 mm,
+// Source: the experiment studies/first-parameters/design.toml (89 rocks on specimens of 40 x 80 mm and discs of 40 mm, flexible grains of 2 to 4 mm,
 // bilinear softening), fitted by tests/validation/first_parameters.py. Table, fits and their errors on packings that were left out:
 // docs/validation/first-parameters.md. They are made to begin a calibration, not to replace a test.
 #pragma once
