@@ -33,19 +33,26 @@ std::string all(const TestResult& result) {
 
 TEST(OddStrength, AStressThatBreaksNothingIsExplained) {
     TestSetup s = column();
-    s.test.maximum_stress_Pa = 30e6;   // a quarter of the strength
+    s.test.maximum_stress_Pa = 12e6;   // a tenth of the strength
     const TestResult result = run_test(s, {});
     ASSERT_TRUE(result.cracks.empty());
     EXPECT_FALSE(result.properties.peak_reached);
-    EXPECT_TRUE(says(result, "Nothing broke: the stress has reached its maximum of 30 MPa.")) << all(result);
+    EXPECT_TRUE(says(result, "Nothing broke: the stress has reached its maximum of 12 MPa.")) << all(result);
     EXPECT_TRUE(says(result, "The contact nearest to failure, at (")) << all(result);
     EXPECT_TRUE(says(result, "By the scaling rules such contacts bear about ")) << all(result);
-    // its grains are pushed apart on their way to a strength of about 120 MPa: the nearest contact is well on its way, and whole
+    // its grains are pushed apart on their way to a strength of about 120 MPa: the nearest contact is on its way, and whole
     EXPECT_GT(result.nearest.share, 0.1);
     EXPECT_LT(result.nearest.share, 1.0);
     EXPECT_EQ(result.nearest.damage, 0.0);
     EXPECT_GE(result.nearest.place.x, -0.02);
     EXPECT_LE(result.nearest.place.y, 0.04);
+    EXPECT_TRUE(says(result, " % of its strength in ")) << all(result);
+    s.test.maximum_stress_Pa = 30e6;   // softening begins a good while before the first crack
+    const TestResult softened = run_test(s, {});
+    ASSERT_TRUE(softened.cracks.empty());
+    EXPECT_GT(softened.nearest.damage, 0.0);
+    EXPECT_EQ(softened.nearest.share, 1.0);
+    EXPECT_TRUE(says(softened, " of its strength there was gone.")) << all(softened);
 }
 
 TEST(OddStrength, AStrainThatBreaksNothingIsExplained) {
@@ -58,7 +65,7 @@ TEST(OddStrength, AStrainThatBreaksNothingIsExplained) {
 
 TEST(OddStrength, TheShareGrowsWithTheLoad) {
     double before = 0.0;
-    for (const double stress_Pa : {10e6, 20e6, 40e6}) {
+    for (const double stress_Pa : {4e6, 8e6, 16e6}) {
         TestSetup s = column();
         s.test.maximum_stress_Pa = stress_Pa;
         const TestResult result = run_test(s, {});
@@ -81,7 +88,8 @@ TEST(OddStrength, ContactsThatCannotBreakBrittlyAreNamed) {
 }
 
 TEST(OddStrength, AnOrdinaryTestSaysNothing) {
-    for (const MethodId kind : {methods::uniaxial_compression, methods::direct_tension}) {
+    const MethodId kinds[] = {methods::uniaxial_compression, methods::direct_tension};
+    for (const MethodId kind : kinds) {
         TestSetup s = column();
         s.test = usual_test(kind);
         s.test.stop_fraction = 0.94;

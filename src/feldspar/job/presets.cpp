@@ -65,7 +65,7 @@ constexpr auto strength = std::to_array<Preset>({
      "contact = { law = \"bilinear\", sigma_nt = \"2.527 MPa\", tau = \"15.16 MPa\", mu = 0.391, Gfn = \"0.359 N/m\", Gfs = \"71.79 N/m\" }"},
     {"oneota-dolomite", "first guess by scaling rules", GrainKind::flexible,
      "contact = { law = \"bilinear\", sigma_nt = \"3.356 MPa\", tau = \"18.71 MPa\", mu = 0.789, Gfn = \"0.2223 N/m\", Gfs = \"44.46 N/m\" }"},
-    {"tavernalle-limestone", "first guess by scaling rules, UCS alone: UCS/BTS is out of reach", GrainKind::flexible,
+    {"tavernalle-limestone", "first guess by scaling rules", GrainKind::flexible,
      "contact = { law = \"bilinear\", sigma_nt = \"3.559 MPa\", tau = \"21.35 MPa\", mu = 0.85, Gfn = \"0.1595 N/m\", Gfs = \"31.9 N/m\" }"},
     {"cherokee-marble", "first guess by scaling rules, UCS alone: UCS/BTS is out of reach", GrainKind::flexible,
      "contact = { law = \"bilinear\", sigma_nt = \"2.432 MPa\", tau = \"14.59 MPa\", mu = 0.85, Gfn = \"0.07447 N/m\", Gfs = \"14.89 N/m\" }"},
@@ -116,11 +116,11 @@ std::span<const Preset> strength_presets() { return strength; }
 const toml::table& preset_table(const Preset& preset) {
     static const auto tables = [] {
         std::map<std::string_view, toml::table> parsed;
-        for (const Preset& one : elastic) parsed.emplace(one.name, parse_toml(std::string(one.keys), std::string(one.name)));
-        for (const Preset& one : strength) parsed.emplace(one.name, parse_toml(std::string(one.keys), std::string(one.name)));
+        for (const Preset& one : elastic) parsed.emplace(one.keys, parse_toml(std::string(one.keys), std::string(one.name)));
+        for (const Preset& one : strength) parsed.emplace(one.keys, parse_toml(std::string(one.keys), std::string(one.name)));
         return parsed;
     }();
-    return tables.at(preset.name);
+    return tables.at(preset.keys);   // a rock has an elastic and a strength preset of one name
 }
 
 std::string preset_overview() {

@@ -57,14 +57,12 @@ std::string expected_sentence(double expected_Pa, double largest_Pa) {
     return fmt::format(" By the scaling rules such contacts bear about {:.3g} MPa; the largest stress was {:.3g} MPa.", 1e-6 * expected_Pa, 1e-6 * largest_Pa);
 }
 
-// "the axial strain has reached its maximum of 0.01"
-std::string end_of(const TestResult& result) { return result.stop_reason.empty() ? "the test ended" : result.stop_reason; }
-
 void look_for_failure(const TestResult& result, const TestProperties& p, double expected_Pa, std::vector<std::string>& sentences) {
     if (p.peak_reached || (!result.cracks.empty() && !result.stages.empty())) return;   // tests with stages go where these lead
+    if (result.test.stop_fraction > 0.95) return;   // the user has it end before a fall counts as a peak (P2)
     const double largest = largest_stress(result);
-    const std::string begin = result.cracks.empty() ? fmt::format("Nothing broke: {}.", end_of(result))
-                                                    : fmt::format("The strength was not reached: {}, with {}.", end_of(result), counted(static_cast<long long>(result.cracks.size()), "crack"));
+    const std::string begin = result.cracks.empty() ? fmt::format("Nothing broke: {}.", result.stop_reason)
+                                                    : fmt::format("The strength was not reached: {}, with {}.", result.stop_reason, counted(static_cast<long long>(result.cracks.size()), "crack"));
     sentences.push_back(begin + nearest_sentence(result) + expected_sentence(expected_Pa, largest));
 }
 
@@ -106,7 +104,7 @@ double softening_over_grain(const TestResult& result) {
 
 std::vector<std::string> why_odd(const TestResult& result, const TestProperties& properties) {
     std::vector<std::string> sentences;
-    if (result.interrupted || !result.specimen) return sentences;   // no test that ended by itself
+    if (result.interrupted || result.stop_reason.empty() || !result.specimen) return sentences;   // no test that ended by itself
     const double expected_Pa = expected_strength(result);
     look_for_failure(result, properties, expected_Pa, sentences);
     look_at_ductility(result, sentences);
