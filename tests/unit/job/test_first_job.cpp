@@ -137,3 +137,17 @@ TEST(FirstJob, PresetsOfRocksAreTheRules) {
     }
     EXPECT_GE(rocks, 6);
 }
+
+TEST(FirstJob, ContactsThatNoRockHasAreWarnedOf) {
+    const std::string text = first_job("uniaxial-compression", granite()).text;
+    const auto warned = [&](std::vector<std::pair<std::string, std::string>> values, const std::string& words) {
+        const std::vector<std::string> all = warnings(parse_job(with_values(text, "material.contact", values), "job"));
+        return std::any_of(all.begin(), all.end(), [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
+    };
+    EXPECT_TRUE(warnings(parse_job(text, "job")).empty());
+    EXPECT_TRUE(warned({{"mu", "30"}}, "mu = 30 lies outside what rocks have"));
+    EXPECT_TRUE(warned({{"eta", "3"}}, "eta = 3 lies outside what rocks have"));
+    EXPECT_TRUE(warned({{"Gfn", "\"5000 N/m\""}}, "Gfn = 5000 N/m lies outside what rocks have"));
+    // ten times the strengths that the laboratory asks for
+    EXPECT_TRUE(warned({{"sigma_nt", "\"63 MPa\""}, {"tau", "\"268 MPa\""}}, "by the scaling rules (docs/validation/first-parameters.md), the laboratory has 120 MPa"));
+}
