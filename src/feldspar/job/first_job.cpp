@@ -261,6 +261,12 @@ FirstJob first_job(std::string_view kind, const GivenRock& given) {
         head += comment("NOTE: " + why + ".");
         job.warnings.push_back(why);
     }
+    constexpr double kLeastStrain = 8e-5;   // sigma_nt / E, the end of the experiment
+    if (const double strain = first.contact.sigma_nt_Pa / first.grain.E_Pa; strain < kLeastStrain) {
+        const std::string why = fmt::format("sigma_nt / E of {:.1e} is below what the rules were measured at ({:.0e} to 5e-04): so stiff and weak a rock came out 10 to 90 % too strong in compression, with tests of grade C", strain, kLeastStrain);
+        head += comment("NOTE: " + why + ".");
+        job.warnings.push_back(why);
+    }
     for (const std::string& warning : rock.warnings) head += comment("NOTE: " + warning + ".");
     text = with_head(std::move(text), head);
 

@@ -89,6 +89,11 @@ TEST(FirstJob, SaysWhatIsOutOfReach) {
     parse_job(first.text, "first.toml");
 }
 
+TEST(FirstJob, SaysWhereTheRulesWereNotMeasured) {
+    const FirstJob first = first_job("laboratory", given({}, "cherokee-marble"));   // E is 830 times its UCS
+    EXPECT_TRUE(std::any_of(first.warnings.begin(), first.warnings.end(), [](const std::string& warning) { return warning.find("is below what the rules were measured at") != std::string::npos; }));
+}
+
 TEST(FirstJob, RefusesWhatNoRockHas) {
     EXPECT_EQ(refused(given({{"UCS", "-120 MPa"}})).first, "--UCS");
     EXPECT_EQ(refused(given({{"UCS", "120"}})).first, "--UCS");
