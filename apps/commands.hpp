@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/job/first_job.hpp"
 #include "feldspar/job/job.hpp"
 #include "feldspar/study/slurm_plan.hpp"
 
@@ -139,8 +140,8 @@ struct ExportCellsOptions : JobOptions {
 /// Writes the cells of one specimen for other programs.
 ExitCode export_cells_command(const ExportCellsOptions& options);
 
-/// Prints a commented job, or writes it to a new file.
-ExitCode new_command(const std::string& kind, const std::optional<std::string>& out);
+/// Prints a commented job, or writes it to a new file; with first parameters for a rock if one is given.
+ExitCode new_command(const std::string& kind, const GivenRock& rock, const std::optional<std::string>& out);
 
 /// Prints the materials that jobs may name.
 ExitCode presets_command();

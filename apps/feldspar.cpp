@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <new>
 #include <utility>
@@ -320,18 +321,40 @@ struct NewOptions {
     std::string kind;
     std::optional<std::string> file;
     bool presets = false;
+    std::string rock;
+    std::map<std::string, std::optional<std::string>> numbers;   // by GivenName::option
+
+    GivenRock given() const {
+        GivenRock given{.rock = rock, .values = {}};
+        for (const auto& [name, value] : numbers)
+            if (value) given.values[name] = *value;
+        return given;
+    }
 };
+
+constexpr const char* new_example = R"(Examples:
+  feldspar new biaxial --out biaxial.toml
+  feldspar new laboratory --UCS 120MPa --E 30GPa --BTS 9MPa --nu 0.25 --friction-angle "50 deg" --out granite.toml
+      all tests of a rock of which these numbers are known, with first contact parameters (docs/validation/first-parameters.md)
+  feldspar new uniaxial-compression --rock lac-du-bonnet-granite        a rock of the literature (feldspar new --presets lists them)
+  feldspar new calibration --UCS 120MPa --E 30GPa --BTS 9MPa --out targets.toml
+)";
 
 void add_new(CommandLine& line) {
     const auto options = std::make_shared<NewOptions>();
     CLI::App& command = line.add("new", "print a commented job, study or calibration to start from");
     CLI::Option* kind = command.add_option("kind", options->kind, fmt::format("a job: {} (the tests of one rock); study; calibration", fmt::join(job_template_kinds(), ", ")))->type_name("KIND");
     CLI::Option* file = command.add_option("--out", options->file, "write it to this new file instead")->type_name("FILE");
-    command.add_flag("--presets", options->presets, "print the materials that a job may name instead")->excludes(kind)->excludes(file);
+    command.add_option("--rock", options->rock, "a rock of the literature (feldspar new --presets), or a kind such as granite, for what is not given")->type_name("NAME");
+    for (const GivenName& name : given_names())
+        command.add_option("--" + std::string(name.option), options->numbers[std::string(name.option)], std::string(name.meaning))->type_name("VALUE");
+    command.footer(new_example);
+    command.add_flag("--presets", options->presets, "print the materials that a job may name, and the rocks of the literature, instead")->excludes(kind)->excludes(file);
     line.does(command, [options] {
+        if (options->presets && options->given().any()) throw InputError({}, "new --presets prints what there is and takes no numbers of a rock");
         if (options->presets) return presets_command();
         if (options->kind.empty()) throw InputError({}, "new: kind is required", fmt::format("{}, study, calibration", fmt::join(job_template_kinds(), ", ")));
-        return new_command(options->kind, options->file);
+        return new_command(options->kind, options->given(), options->file);
     });
 }
 

@@ -16,11 +16,21 @@ namespace feldspar {
 
 namespace {
 
-std::string file_to_start_from(const std::string& kind) {
-    if (kind == "study") return study_template();
-    if (kind == "calibration") return calibration_template();
+// What the model cannot show of the rock goes to the standard error, too.
+std::string with_first_parameters(const std::string& kind, const GivenRock& rock) {
+    const FirstJob first = first_job(kind, rock);
+    for (const std::string& warning : first.warnings) say(stderr, "warning: {}\n", warning);
+    return first.text;
+}
+
+std::string file_to_start_from(const std::string& kind, const GivenRock& rock) {
+    if (kind == "study") {
+        if (rock.any()) throw InputError({}, "a study takes the numbers of a rock from its job", "feldspar new laboratory with these options for the job, and feldspar new study");
+        return study_template();
+    }
+    if (kind == "calibration") return rock.any() ? calibration_template(read_rock_numbers(rock)) : calibration_template();
     std::vector<std::string_view> kinds = job_template_kinds();
-    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) return job_template(kind);
+    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) return rock.any() ? with_first_parameters(kind, rock) : job_template(kind);
     kinds.insert(kinds.end(), {"study", "calibration"});
     throw InputError({}, "'" + kind + "' is nothing to start from", listed(kinds), did_you_mean(kind, kinds));
 }
@@ -36,8 +46,8 @@ std::string next_step(const std::string& kind, const std::string& file) {
 
 ExitCode presets_command() { return print_whole(preset_overview()); }
 
-ExitCode new_command(const std::string& kind, const std::optional<std::string>& out) {
-    const std::string text = file_to_start_from(kind);
+ExitCode new_command(const std::string& kind, const GivenRock& rock, const std::optional<std::string>& out) {
+    const std::string text = file_to_start_from(kind, rock);
     if (!out) return print_whole(text);
     write_whole(text, *out, "--out");
     say(stderr, "wrote {}; next: {}\n", *out, next_step(kind, *out));

@@ -100,11 +100,40 @@ TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {
     EXPECT_EQ(check.code, 0) << check.err;
 }
 
+TEST(CommandLine, NewJobsTakeTheNumbersOfARock) {
+    const TemporaryFolder place;
+    const std::vector<std::string> numbers{"--UCS", "120MPa", "--E", "30GPa", "--BTS", "9MPa"};
+    const auto with = [&](std::vector<std::string> arguments, std::vector<std::string> more) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_program(place.path(), arguments);
+    };
+    const Outcome job = with({"new", "laboratory", "--out", "rock.toml"}, numbers);
+    EXPECT_EQ(job.code, 0) << job.err;
+    EXPECT_EQ(job.err.find("warning"), std::string::npos) << job.err;
+    EXPECT_NE(read_text(place / "rock.toml").find("\nUCS = \"120 MPa\""), std::string::npos);
+    EXPECT_EQ(with({"new", "calibration", "--out", "targets.toml"}, numbers).code, 0);
+    EXPECT_NE(read_text(place / "targets.toml").find("UCS = { value = \"120 MPa\", tolerance = \"5 %\" }"), std::string::npos);
+    const Outcome far = with({"new", "brazilian"}, {"--UCS", "200 MPa", "--E", "60 GPa", "--BTS", "3 MPa"});
+    EXPECT_EQ(far.code, 0);
+    EXPECT_NE(far.err.find("warning: UCS/BTS of 66.7 is out of reach"), std::string::npos) << far.err;
+    const std::vector<std::vector<std::string>> bad{{"--UCS", "9MPa", "--BTS", "120MPa"}, {"--UCS", "120"}, {"--UCS", "0 MPa"}, {"--E", "30 GPa"}, {"--rock", "cheese"}, {"--UCS", "120MPa", "--nu", "1.5"}};
+    for (const std::vector<std::string>& numbers_of_none : bad) {
+        const Outcome refused = with({"new", "laboratory", "--out", "none.toml"}, numbers_of_none);
+        EXPECT_EQ(refused.code, 2);
+        EXPECT_NE(refused.err.find("allowed"), std::string::npos) << refused.err;
+    }
+    EXPECT_EQ(with({"new", "study"}, numbers).code, 2);
+    EXPECT_EQ(with({"new", "--presets"}, numbers).code, 2);
+    EXPECT_EQ(place.entries(), (std::set<std::string>{"rock.toml", "targets.toml"}));
+    const Outcome help = run_program(place.path(), {"new", "--help"});
+    EXPECT_NE(help.out.find("feldspar new laboratory --UCS 120MPa --E 30GPa --BTS 9MPa"), std::string::npos) << help.out;
+}
+
 TEST(CommandLine, PrintsThePresets) {
     const TemporaryFolder place;
     const Outcome printed = run_program(place.path(), {"new", "--presets"});
     EXPECT_EQ(printed.code, 0);
-    for (const char* part : {"augig-inner-particles", "augig-table7", "Table 2", "1.08e4 GPa/m"})
+    for (const char* part : {"augig-inner-particles", "augig-table7", "Table 2", "1.08e4 GPa/m", "lac-du-bonnet-granite", "Potyondy, Cundall 2004", "Schultz 1995"})
         EXPECT_NE(printed.out.find(part), std::string::npos) << part;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "feldspar/job/first_job.hpp"
 #include "feldspar/study/base_job.hpp"
 #include "feldspar/study/study.hpp"
 
@@ -73,6 +74,9 @@ Calibration parse_calibration(const std::string& text, const std::filesystem::pa
 
 /// A commented calibration to start from, which reads as it stands beside a job "rock.toml" with a uniaxial, a Brazilian and a biaxial test.
 std::string calibration_template();
+
+/// The same with the numbers of this rock as targets.
+std::string calibration_template(const ReadRock& rock);
 
 /// What the targets need to be known of runs, each once.
 std::vector<Observable> observables_for(const Calibration& calibration);

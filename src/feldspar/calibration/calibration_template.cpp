@@ -1,4 +1,10 @@
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
 #include "feldspar/calibration/calibration.hpp"
+#include "feldspar/job/first_job.hpp"
 
 namespace feldspar {
 
@@ -46,6 +52,31 @@ name = "Gfs/Gfn"
 key = "material.contact.Gfs"
 times = "material.contact.Gfn"
 )";
+}
+
+std::string calibration_template(const ReadRock& rock) {
+    // A laboratory's numbers as targets; the tolerances of the template stay, and what is no target is left out.
+    constexpr std::array<std::string_view, 7> shown{"E", "nu", "UCS", "DTS", "BTS", "cohesion", "friction_angle"};
+    std::vector<std::pair<std::string, std::string>> targets;
+    bool friction = false, nu = false;
+    for (const auto& [key, value] : rock.laboratory) {
+        if (std::find(shown.begin(), shown.end(), key) == shown.end()) continue;
+        friction = friction || key == "friction_angle" || key == "cohesion";
+        nu = nu || key == "nu";
+        targets.emplace_back(key, key == "UCS" ? fmt::format("{{ value = {}, tolerance = \"5 %\" }}", value) : value);
+    }
+    std::string text = with_values(calibration_template(), "targets", targets, shown);
+    const std::size_t numbers = text.find("# The numbers are those of"), end = text.find('\n', numbers);
+    text.replace(numbers, end - numbers, "# " + (rock.source.empty() ? std::string("The targets are the numbers that were given; the job: feldspar new laboratory with the same options.") : "Laboratory: " + rock.source + "."));
+    // What no target tells of is no unknown.
+    const auto leave_out = [&](const std::string& key, const char* wants) {
+        const std::string unknown = "[[unknown]]\nkey = \"" + key + "\"\n";
+        const std::size_t at = text.find(unknown);
+        if (at != std::string::npos) text.replace(at, unknown.size(), "# [[unknown]]                       # wants a target: " + std::string(wants) + "\n# key = \"" + key + "\"\n");
+    };
+    if (!nu) leave_out("material.grain.nu", "nu");
+    if (!friction) leave_out("material.contact.mu", "friction_angle or cohesion");
+    return text;
 }
 
 }  // namespace feldspar

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/lab/scaling_rules.hpp"
 #include "feldspar/lab/specimen_shape.hpp"
 #include "feldspar/laws/softening.hpp"
 #include "feldspar/methods/method.hpp"
@@ -103,6 +104,25 @@ void look_at_slenderness(const Job& job, std::vector<std::string>& sentences) {
     }
 }
 
+// Whether these contacts can bear what the laboratory has measured, roughly: a unit that is wrong is wrong by a thousand, a strength that was taken for another by ten.
+void look_at_expectation(const Job& job, const Variant& variant, const std::string& of, std::vector<std::string>& sentences) {
+    constexpr double kFactor = 3.0;
+    const ContactMaterial& c = variant.contact;
+    if (variant.model.kind != GrainKind::flexible || variant.rock.any() || c.law == ContactLaw::brittle || !(c.Gfn_J_m2 > 0.0) || !(c.Gfs_J_m2 > 0.0) || !(c.sigma_nt_Pa > 0.0) || !(c.tau_Pa > 0.0) ||
+        !(c.eta > 0.0))
+        return;
+    const RockNumbers expected = expected_rock(variant.grain, c, typical_diameter_m(job.specimen.grain_sizes));
+    const auto look = [&](const char* name, double expected_Pa) {
+        const double measured_Pa = known(job, name, expected_Pa);
+        if (expected_Pa > kFactor * measured_Pa || measured_Pa > kFactor * expected_Pa)
+            sentences.push_back(fmt::format("{}such contacts bear a {} of about {:.3g} MPa by the scaling rules (docs/validation/first-parameters.md), the laboratory has {:.3g} MPa: are the strengths in the "
+                                            "unit that you mean? feldspar new laboratory --{} ... finds first ones", of, name, 1e-6 * expected_Pa, 1e-6 * measured_Pa, name));
+    };
+    look("UCS", expected.UCS_Pa);
+    look("BTS", expected.BTS_Pa);
+    look("DTS", expected.DTS_Pa);
+}
+
 // Narrow flats spare the disc's ends less: it may break there before its centre does.
 void look_at_flats(const Job& job, std::vector<std::string>& sentences) {
     constexpr double kDegrees = std::numbers::pi / 180.0, kEnough = 20.0 * kDegrees;
@@ -133,6 +153,7 @@ std::vector<std::string> warnings(const Job& job) {
         const std::string of = variant.name.empty() ? "" : variant.name + ": ";
         look_at_softening(variant.contact, of, sentences);
         look_at_plausibility(variant, of, sentences);
+        look_at_expectation(job, variant, of, sentences);
         look_at_softness(variant, typical_diameter_m(job.specimen.grain_sizes), of, sentences);
     }
     look_at_slenderness(job, sentences);

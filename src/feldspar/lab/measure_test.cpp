@@ -14,6 +14,7 @@
 #include "feldspar/lab/hole_failure.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/multi_stage.hpp"
+#include "feldspar/lab/odd_strength.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/quantities.hpp"
@@ -136,6 +137,7 @@ TestProperties measure(const TestResult& result) {
     note_section(result, p);
     note_widening(p);
     note_arcs(result, p);
+    for (std::string& sentence : why_odd(result, p)) p.remarks.push_back(std::move(sentence));
     return p;
 }
 

@@ -11,6 +11,7 @@
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/memory.hpp"
+#include "feldspar/lab/nearest_to_failure.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
@@ -97,6 +98,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     result.threads = e.team.size();
     recorder.finish();
     result.vanished_compressions = count_vanished(e.assembly);
+    result.nearest = nearest_to_failure(e.assembly);
     if (!result.history.empty()) result.energy_at_end = result.history.back().energy;
     result.energy_residual = largest_energy_residual(result.history);
     result.properties = measure(result);

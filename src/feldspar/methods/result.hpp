@@ -230,6 +230,15 @@ struct TestProperties {
     HoleProperties hole{};                ///< of a plate with a hole only
 };
 
+/// The whole contact that was nearest to breaking when the test ended, read from the state that it left. Not-a-number without a whole one.
+struct NearestToFailure {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    double share = none;        ///< traction over strength: of the mode that is nearer, 1 where softening has begun
+    bool in_tension = false;    ///< that mode; else shear
+    double damage = 0.0;        ///< the largest of contact points that are not broken, 0 ... 1
+    Vec2 place;                 ///< m, undeformed: the middle of its edge
+};
+
 struct TestResult {
     std::string variant;                  ///< which of the job's variants this is; empty if the job has none
     TestSpec test;
@@ -253,6 +262,7 @@ struct TestResult {
     QuasiStaticEvidence evidence;
     TestProperties properties{};
     AcousticEmission emission{};          ///< of its cracks
+    NearestToFailure nearest{};           ///< at the end
     std::string stop_reason;              ///< in words
     bool interrupted = false;
     long long steps = 0;                  ///< all steps of the loading, those of earlier passages too

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "feldspar/lab/odd_strength.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/quantities.hpp"
 #include "feldspar/methods/method.hpp"
@@ -125,6 +126,18 @@ Json gauges_json(const TestResult& result) {
     return json;
 }
 
+// Why nothing broke, or too early: the numbers behind the sentences, which stand among the remarks. Empty for an ordinary test.
+Json odd_json(const TestResult& result) {
+    Json json = Json::object();
+    const std::vector<std::string> why = why_odd(result, result.properties);
+    if (why.empty()) return json;
+    const NearestToFailure& n = result.nearest;
+    json["why"] = why;
+    json["nearest_to_failure"] = {{"share_of_strength", number(n.share)}, {"mode", n.in_tension ? "tension" : "shear"}, {"damage", n.damage}, {"place_mm", {n.place.x * 1e3, n.place.y * 1e3}}};
+    json["softening_length_over_grain"] = number(softening_over_grain(result));
+    return json;
+}
+
 Json test_json(const RunDirectory& directory, const TestResult& result) {
     Json test;
     if (!result.variant.empty()) test["variant"] = result.variant;
@@ -140,6 +153,7 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     add(test, result, QuantityGroup::strength);
     if (method_of(result.test).build.gauges != nullptr) add(test, result, QuantityGroup::load);
     test["remarks"] = result.properties.remarks;
+    if (Json odd = odd_json(result); !odd.empty()) test["odd"] = std::move(odd);
     add(test, result, QuantityGroup::peak);
     add(test, result, QuantityGroup::first_crack);
     const Reading reading = method_of(result.test).reading;

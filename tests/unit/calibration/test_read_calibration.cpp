@@ -1,6 +1,7 @@
 // Files of targets and unknowns: defaults, and what is said of mistakes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -242,6 +243,23 @@ TEST(CalibrationTemplate, ReadsBesideAJob) {
     EXPECT_EQ(all.targets.size(), 8u);
     EXPECT_EQ(all.seeds.size(), 10u);
     EXPECT_TRUE(contradictions(all.targets).empty());
+}
+
+TEST(CalibrationTemplate, TakesTheNumbersOfARock) {
+    const TemporaryFolder folder;
+    folder.write("rock.toml", job_template("laboratory"));
+    const auto unknown = [](const Calibration& calibration, const char* key) { return std::any_of(calibration.unknowns.begin(), calibration.unknowns.end(), [&](const Unknown& one) { return one.key == key; }); };
+    GivenRock rock{.rock = "", .values = {{"UCS", "120 MPa"}, {"E", "30 GPa"}, {"BTS", "9 MPa"}}};
+    const Calibration few = parse_calibration(calibration_template(read_rock_numbers(rock)), folder / "targets.toml");
+    ASSERT_EQ(few.targets.size(), 3u);   // no angle of another rock
+    EXPECT_FALSE(unknown(few, "material.contact.mu"));
+    EXPECT_FALSE(unknown(few, "material.grain.nu"));
+    rock.values["nu"] = "0.2";
+    rock.values["friction-angle"] = "48 deg";
+    const Calibration more = parse_calibration(calibration_template(read_rock_numbers(rock)), folder / "targets.toml");
+    EXPECT_EQ(more.targets.size(), 5u);
+    EXPECT_TRUE(unknown(more, "material.contact.mu"));
+    EXPECT_TRUE(unknown(more, "material.grain.nu"));
 }
 
 }  // namespace
