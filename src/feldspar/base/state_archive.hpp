@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -343,8 +344,8 @@ public:
     void column(char* data, std::size_t bytes);
     template <class Values>
     void resize(Values& values, std::size_t size) {
-        constexpr std::size_t kMost = std::size_t{1} << 36;   // bytes: a damaged count is no reason to ask for all memory
-        if (size > kMost / sizeof(typename Values::value_type)) throw StateError("a count is too large");
+        const std::size_t most = 64 * (data_.size() + values.size() * sizeof(typename Values::value_type)) + (std::size_t{1} << 20);   // bytes: a damaged count is no reason to ask for all memory
+        if (size > most / sizeof(typename Values::value_type)) throw StateError("a count is too large");
         values.resize(size);
     }
     std::size_t number_of(const void*) { return 0; }
@@ -356,7 +357,8 @@ private:
 
     std::span<const char> data_;
     std::size_t at_ = 0;
-    std::vector<std::span<const char>> columns_;
+    std::vector<std::span<const char>> columns_;   // those that others may refer to
+    std::deque<std::vector<char>> unpacked_;       // of these, what does not stand in the data as it is
     std::vector<std::shared_ptr<const void>> objects_;
 };
 

@@ -130,6 +130,7 @@ struct Passages {
     PassageLimits passed_with{};
     PassageLimits strict{};         // of the passage under way, until its peak
     long long balanced_step = 0;    // when the typical body was within the target last
+    double supplied_J = 0.0;        // largest so far
 };
 
 constexpr double kBetweenStates = 1.1;      // growth of the load between states that are kept
@@ -156,6 +157,7 @@ constexpr double kServoShare = 0.5;    // of the wanted accuracy: with half of i
 // A test with stages: the growth of the travel in a travel time with which a reversal of the volumetric strain is looked for; the share of the largest
 // load from which on states are kept in a later stage; and how long a change of pressure takes that changes it altogether, in travel times.
 constexpr double kGrowthSeen = 0.1, kKeptFrom = 0.5, kConfining = 30.0, kLeastConfining = 3.0;
+constexpr double kRunaway = 1.0;   // of all that was ever supplied: kinetic energy, and energy that nobody has supplied, of a motion that feeds itself
 constexpr double kPatience = 100.0;   // travel times after which it goes on faster, in proportion: what creeps for ever is not waited for
 
 class Loader {
@@ -200,11 +202,10 @@ public:
             try {
                 maintain_contacts(e_, lead_.finder, lead_.watch, result_, block);
             } catch (const NumericalError& error) {
-                throw NumericalError(fmt::format("{} at step {} (platen travel {:.3g} m): the motion has become unstable", error.what(), e_.step, e_.platen_travel_m));
+                throw NumericalError(fmt::format("{} at step {} (platen travel {:.3g} m): {}", error.what(), e_.step, e_.platen_travel_m, cause_of_runaway()));
             }
             const HistoryRow& row = recorder_.record(Phase::loading);
-            if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa))
-                throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g})", e_.step, row.axial_strain));
+            refuse_runaway(row);
             lead_.servo.observe(row, block);
             std::optional<std::string> reason = lead_.stop.ended(row, lead_.stages.loads(), lead_.servo.unloading());
             if (!reason && lead_.stages.staged()) reason = lead_.stages.stuck(row);
@@ -264,6 +265,39 @@ private:
 
     Loading present(double load_Pa) const {
         return {e_.state(), lead_, result_.stages, recorder_.mark(), result_.new_contacts, result_.shape_fallbacks, result_.angular_momentum_loss, load_Pa};
+    }
+
+    // A motion that feeds itself ends here, at the next record: before the numbers run out, by the energy that nobody has supplied.
+    void refuse_runaway(const HistoryRow& row) {
+        passages_.supplied_J = std::max(passages_.supplied_J, std::abs(row.energy.supplied()));
+        if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa) || !std::isfinite(row.energy.residual()))
+            throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g}), first {}: {}", e_.step, row.axial_strain, fastest_place(), cause_of_runaway()));
+        if (row.energy.kinetic > kRunaway * passages_.supplied_J && -row.energy.residual() > kRunaway * passages_.supplied_J)
+            throw NumericalError(fmt::format("the body has {:.3g} J more than was ever supplied ({:.3g} J) at step {} (axial strain {:.3g}), and moves fastest {}: {}", -row.energy.residual(), passages_.supplied_J,
+                                             e_.step, row.axial_strain, fastest_place(), cause_of_runaway()));
+    }
+
+    // Where a node has no finite velocity, else where it is largest.
+    std::string fastest_place() const {
+        const Nodes& nodes = e_.assembly.nodes;
+        int fastest = 0;
+        for (int n = 0; n < nodes.count(); ++n) {
+            const double speed = norm(nodes.velocity[n]);
+            if (!std::isfinite(speed)) {
+                fastest = n;
+                break;
+            }
+            if (speed > norm(nodes.velocity[fastest])) fastest = n;
+        }
+        const Vec2 at = nodes.reference[fastest];
+        return fmt::format("at ({:.4g}, {:.4g}) mm", 1e3 * at.x, 1e3 * at.y);
+    }
+
+    std::string cause_of_runaway() const {
+        const NumericsSpec& n = e_.setup.numerics;
+        if (n.kind == NumericsKind::dynamic && n.time_step_s) return "the time step may be too large for what has changed since it was judged; without numerics.time_step 0.8 of the stable one is taken";
+        if (n.mass_factor) return "numerics.mass_factor may be too small for what has changed since it was judged; without the key it is 1 + damping";
+        return "the motion has become unstable, most likely where a grain is crushed or a contact is very stiff (Kn against E over the size of a grain)";
     }
 
     // Keeps the states at which the load has grown by a tenth: the last ones, so that one lies before the peak, whenever that comes.

@@ -91,6 +91,11 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     } catch (const Interrupted&) {
         result.interrupted = true;
         result.stop_reason = "interrupted by the user";
+    } catch (const NumericalError& error) {
+        result.stop_reason = error.what();
+        recorder.finish();
+        if (control.failed && !result.history.empty()) control.failed(result);
+        throw;
     }
     result.preparation_steps = e.preparation_steps;
     result.travel_time = e.travel_time;

@@ -50,6 +50,7 @@ struct RunControl {
     const std::atomic<int>* more_threads = nullptr;      ///< may grow while the test runs: so many threads from then on
     std::function<void(const TestProgress&)> progress;   ///< may be empty
     const std::atomic<bool>* stop = nullptr;             ///< becomes true when the user interrupts: the test ends at the next record
+    std::function<void(const TestResult&)> failed;       ///< told the record of a test whose motion has become unstable, before its error; without properties; may be empty
     StateKeeper* keeper = nullptr;                       ///< if it has the state of this test, the test goes on from there
 };
 

@@ -11,6 +11,7 @@ namespace {
 constexpr double kPastPeak = 0.98;        // share of the peak below which it is one
 constexpr double kPressedOn = 2.0;        // a disc that was not split by then, or does not let go, is pressed no farther
 constexpr long long kStepsAfterPeak = 100;
+constexpr double kMostSteps = 200.0;      // times the usual number of steps, after which a test ends; the longest test of studies with much scatter has taken 60 times it
 constexpr double kOfDeadLoads = 0.01;     // a largest load of less is what they leave out of balance, and no strength
 
 }  // namespace
@@ -27,8 +28,9 @@ bool StopRule::past_peak(double load_Pa) const {
 bool StopRule::peak_counts() const { return peak_Pa_ * e_->section_m2 >= kOfDeadLoads * e_->dead_load_N; }
 
 bool StopRule::steps_are_spent() const {
-    const auto& most = e_->setup.numerics.maximum_steps;
-    return most && result_->steps >= *most;
+    const NumericsSpec& numerics = e_->setup.numerics;
+    if (numerics.maximum_steps) return result_->steps >= *numerics.maximum_steps;
+    return numerics.kind == NumericsKind::adaptive && static_cast<double>(result_->steps) >= kMostSteps * typical_steps(*e_);
 }
 
 std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bool unloading) {
@@ -56,7 +58,9 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bo
     }
     if (test.maximum_stress_Pa && load >= *test.maximum_stress_Pa)
         return fmt::format("the stress has reached its maximum of {:.4g} MPa", *test.maximum_stress_Pa / 1e6);
-    if (steps_are_spent()) return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);
+    if (steps_are_spent() && e_->setup.numerics.maximum_steps) return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);
+    if (steps_are_spent())
+        return fmt::format("it has made {} steps, {:g} times as many as such a test usually takes: its end may never come. numerics.maximum_steps allows more", result_->steps, kMostSteps);
     return std::nullopt;
 }
 

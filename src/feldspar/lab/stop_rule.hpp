@@ -34,7 +34,7 @@ public:
         stage_step_ = e_->step;
     }
 
-    /// Whether all steps that the user allows have been made, those of earlier passages too.
+    /// Whether all steps have been made that the user allows, or that such a test may take, those of earlier passages too.
     bool steps_are_spent() const;
 
     /// @param loads      the row is of a stage that loads: what falls elsewhere has not failed

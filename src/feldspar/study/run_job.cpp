@@ -165,12 +165,11 @@ public:
                                         [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
             RunControl own_control = run_control;
             own_control.keeper = &checkpoints;
+            own_control.failed = [&](const TestResult& record) { write_record(record, *run_control.more_threads); };
             TestResult result = run_test(setup_of(run, specimen), own_control);
             result.variant = run.variant->name;
             if (result.history.empty()) return result;   // interrupted before the first row
-            write_history_csv(directory_, result, control_.provenance);
-            write_events_csv(directory_, result);
-            write_vtu(directory_, result, *run_control.more_threads);
+            write_record(result, *run_control.more_threads);
             if (result.interrupted) return result;
             try {
                 write_checkpoint(directory_, kept_as(run, ".result"), owner, [&](const StatePut& put) { keep_result(result, put); });
@@ -250,6 +249,13 @@ private:
         std::mutex mutex_;
         std::vector<std::string> lines_;
     };
+
+    // What a test's own thread writes.
+    void write_record(const TestResult& result, int threads) const {
+        write_history_csv(directory_, result, control_.provenance);
+        write_events_csv(directory_, result);
+        write_vtu(directory_, result, threads);
+    }
 
     // Name of a file that is kept of a run until the job is complete.
     static std::string kept_as(const PlannedRun& run, const char* extension) {

@@ -225,7 +225,8 @@ TEST(ExamplesOfCalibrations, Read) {
     for (const auto& [name, targets, quantities] : {Example{"examples/calibration/augig.toml", 6, 5}, Example{"examples/calibration/augig-rigid.toml", 6, 5},
                                                     Example{"examples/calibration/transjurane.toml", 6, 5}, Example{"studies/twins/twin-granite.toml", 6, 6},
                                                     Example{"studies/twins/twin-sandstone.toml", 6, 6}, Example{"studies/twins/twin-marble.toml", 6, 6},
-                                                    Example{"studies/twins/twin-inner.toml", 4, 4}, Example{"examples/calibration/augig-scatter.toml", 6, 6}}) {
+                                                    Example{"studies/twins/twin-inner.toml", 4, 4}, Example{"examples/calibration/augig-scatter.toml", 6, 6},
+                                                    Example{"examples/calibration/granite.toml", 4, 5}}) {
         const Calibration calibration = read_calibration(std::filesystem::path(FELDSPAR_SOURCE_DIR) / name);
         EXPECT_EQ(calibration.targets.size(), targets) << name;
         EXPECT_TRUE(contradictions(calibration.targets).empty()) << name;
