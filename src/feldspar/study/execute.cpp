@@ -11,6 +11,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/stopwatch.hpp"
+#include "feldspar/study/notes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_files.hpp"
 #include "feldspar/study/schedule.hpp"
@@ -49,6 +50,7 @@ public:
     /// @param without_turn  so many runs had none  @throws OutputError if results could not be written
     Execution execution(std::size_t without_turn) {
         execution_.left = static_cast<int>(without_turn + others_.size()) + interrupted_;
+        tell_notes();
         if (lost_) std::rethrow_exception(lost_);
         return execution_;
     }
@@ -108,19 +110,26 @@ public:
     }
 
     void beat() override {
+        tell_notes();
         if (Clock::now() < next_beat_) return;
         ledger_.heartbeat();
         next_beat_ = Clock::now() + between_heartbeats;
     }
 
 private:
+    void tell_notes() {
+        for (const std::string& line : notes_.take())
+            if (control_.note) control_.note(line);
+    }
+
     // None if failed runs are to be repeated.
     const Provenance* whose_failures_count() const { return control_.retry_failed ? nullptr : &control_.provenance; }
 
     // On the run's own thread.
     TestResult run_one(const Run& run, const RunControl& run_control) {
         const Clock::time_point start = Clock::now();
-        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.checkpoints);
+        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.checkpoints,
+                                         [this](const std::string& line) { notes_.add(line); });
         result.wall_s = seconds_since(start);
         return result;
     }
@@ -160,6 +169,7 @@ private:
     Ledger& ledger_;
     const ExecuteControl& control_;
     Packings packings_;
+    Notes notes_;
     std::vector<const Run*> runs_;        // not settled at the beginning
     std::vector<std::size_t> others_;     // another process is at them
     int interrupted_ = 0;

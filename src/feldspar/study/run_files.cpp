@@ -30,7 +30,7 @@ RunDirectory cleared(const fs::path& path) {
 }  // namespace
 
 TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path, Keep keep, const Provenance& provenance,
-                        const RunControl& control, const CheckpointSettings& settings) {
+                        const RunControl& control, const CheckpointSettings& settings, const std::function<void(const std::string&)>& note) {
     const bool finished = finished_record(path, run).has_value();
     const RunDirectory directory = finished ? RunDirectory::open(path) : cleared(path);
     TestResult result;
@@ -39,7 +39,7 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
         const Variant& variant = run.job.variants.front();
         TestSpec test = run.test();
         if (keep != Keep::all) test.snapshots = 0;
-        TestCheckpoints checkpoints(directory, state_file, CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings, {});
+        TestCheckpoints checkpoints(directory, state_file, CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings, note);
         RunControl own_control = control;
         own_control.keeper = &checkpoints;
         result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock}, own_control);

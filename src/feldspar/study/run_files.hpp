@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
 
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/output/checkpoints.hpp"
@@ -13,8 +15,9 @@ namespace feldspar {
 
 /// Makes the specimen, runs the test and writes job.toml and what `keep` asks for, but for what finish_files() writes. May run on any thread.
 /// Goes on from the last state that an earlier attempt has kept in the directory; all else that it left there is replaced. An interrupted test leaves its state alone.
+/// @param note  told what the user should read, on the same thread; may be empty
 TestResult run_to_files(const Run& run, Packings& packings, const std::filesystem::path& directory, Keep keep, const Provenance& provenance,
-                        const RunControl& control, const CheckpointSettings& checkpoints = {});
+                        const RunControl& control, const CheckpointSettings& checkpoints = {}, const std::function<void(const std::string&)>& note = {});
 
 /// Writes the rest, run.json at the end. On the main thread only: the HDF5 library is not made for several.
 void finish_files(const Run& run, const TestResult& result, const std::filesystem::path& directory, Keep keep, const Provenance& provenance);

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <exception>
 #include <map>
-#include <mutex>
 #include <new>
 #include <set>
 #include <string_view>
@@ -17,6 +16,7 @@
 #include "feldspar/base/parallel.hpp"
 #include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/job_place.hpp"
+#include "feldspar/study/notes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/schedule.hpp"
 #include "feldspar/study/study.hpp"
@@ -234,23 +234,6 @@ public:
     }
 
 private:
-    // What a test's own thread has to say, for the main thread.
-    class Notes {
-    public:
-        void add(std::string line) {
-            const std::lock_guard lock(mutex_);
-            lines_.push_back(std::move(line));
-        }
-        std::vector<std::string> take() {
-            const std::lock_guard lock(mutex_);
-            return std::exchange(lines_, {});
-        }
-
-    private:
-        std::mutex mutex_;
-        std::vector<std::string> lines_;
-    };
-
     // Name of a file that is kept of a run until the job is complete.
     static std::string kept_as(const PlannedRun& run, const char* extension) {
         return fmt::format("{}/{}{}", kCheckpoints, test_stem(run.variant->name, *run.test, run.seed), extension);
