@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,9 +35,24 @@ std::string hdf5_reason() {
     return text;
 }
 
-/// @throws OutputError if an HDF5 call failed (they all answer with a negative number).
+/// Whether a failed call found too little memory.
+bool memory_was_missing() {
+    bool missing = false;
+    H5Ewalk2(
+        H5E_DEFAULT, H5E_WALK_UPWARD,
+        [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
+            const std::string_view words = error->desc != nullptr ? error->desc : "";
+            if (error->min_num == H5E_CANTALLOC || error->min_num == H5E_NOSPACE || words.find("alloc") != words.npos) *static_cast<bool*>(into) = true;
+            return 0;
+        },
+        &missing);
+    return missing;
+}
+
+/// @throws std::bad_alloc or OutputError if an HDF5 call failed (they all answer with a negative number).
 template <class Result>
 Result require(Result result) {
+    if (result < 0 && memory_was_missing()) throw std::bad_alloc();
     if (result < 0) throw OutputError(hdf5_reason());
     return result;
 }
@@ -307,6 +323,9 @@ std::string archive_bytes(const TestResult& result, const Job& job, const Proven
 void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance) {
     const std::string file = test_stem(result) + ".h5";
     std::string bytes;
+    // What the library would do at the end is to write open files. There are none on disk; and after a failed call it can crash there.
+    static const bool closes_nothing = H5dont_atexit() >= 0;
+    (void)closes_nothing;
     try {
         bytes = archive_bytes(result, job, provenance);
     } catch (const OutputError& problem) {
