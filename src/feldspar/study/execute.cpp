@@ -65,6 +65,7 @@ public:
             case Ledger::Claim::others: others_.push_back(i); return {};
             case Ledger::Claim::ours: break;
         }
+        if (const std::string damage = set_damaged_record_aside(ledger_.run_directory(run.id), run); !damage.empty()) notes_.add(damage);
         if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
             ledger_.record(*record);
             ++execution_.found_done;
@@ -89,6 +90,10 @@ public:
         const Run& run = *runs_[i];
         settle(run, [&] {
             if (result.interrupted) throw Interrupted();
+            if (!ledger_.holds(run.id)) {   // this process slept for so long that another took the run
+                others_.push_back(i);
+                return;
+            }
             execution_.run_s += result.wall_s;
             finish_files(run, result, ledger_.run_directory(run.id), control_.keep, control_.provenance);
             record(run, *finished_record(ledger_.run_directory(run.id), run));

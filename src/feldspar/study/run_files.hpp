@@ -22,6 +22,9 @@ TestResult run_to_files(const Run& run, Packings& packings, const std::filesyste
 /// Writes the rest, run.json at the end. On the main thread only: the HDF5 library is not made for several.
 void finish_files(const Run& run, const TestResult& result, const std::filesystem::path& directory, Keep keep, const Provenance& provenance);
 
+/// A run.json that is damaged, or another run's, becomes run.json.damaged, so that the run is made again. @return what the user should read; empty if there is none such
+std::string set_damaged_record_aside(const std::filesystem::path& directory, const Run& run);
+
 /// The record of a run that is done, from run.json; none if the directory is not that of a finished run.
 std::optional<RunRecord> finished_record(const std::filesystem::path& directory, const Run& run);
 
