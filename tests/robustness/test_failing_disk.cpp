@@ -102,7 +102,7 @@ std::vector<Fault> faults_of(const std::vector<Call>& calls) {
         }
     }
     std::vector<Fault> some;   // each file with another kind, error and duration
-    for (std::size_t i = 0; i < faults.size(); i += all_faults() > 0 ? all_faults() : 13) some.push_back(faults[i]);
+    for (std::size_t i = 0; i < faults.size(); i += all_faults() > 0 ? all_faults() : 17) some.push_back(faults[i]);
     return some;
 }
 
@@ -264,6 +264,29 @@ private:
 };
 
 TEST_F(FailingDisk, UnderARun) { sweep(); }
+
+// Files that a command makes where the user wants them.
+TEST_F(FailingDisk, UnderFilesThatCommandsMake) {
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"new", "uniaxial-compression", "--out", "made/job.toml"}, std::vector<std::string>{"export-cells", "job.toml", "--out", "made/cells.tess"}}) {
+        for (const char* kind : {"open", "write", "short", "fsync", "close"}) {
+            const TemporaryFolder place;
+            write_inputs(place);
+            fs::create_directory(place / "made");
+            const Outcome outcome = run_program(place.path(), arguments, Disk(place / "made").with({kind, 1, ENOSPC, true}));
+            SCOPED_TRACE(arguments.front() + ", " + kind + "\n" + outcome.err);
+            if (std::string(kind) == "short") {
+                EXPECT_EQ(outcome.code, 0);
+                EXPECT_EQ(count_entries(place / "made"), 1);
+                continue;
+            }
+            EXPECT_EQ(outcome.code, std::string(kind) == "open" ? 2 : 4);
+            EXPECT_NE(outcome.err.find(arguments.back()), std::string::npos);
+            EXPECT_NE(outcome.err.find(std::strerror(ENOSPC)), std::string::npos);
+            EXPECT_EQ(count_entries(place / "made"), 0);
+            EXPECT_EQ(run_program(place.path(), arguments).code, 0);
+        }
+    }
+}
 
 class FailingDiskUnderAStudy : public FailingDisk {
 protected:
