@@ -3,11 +3,14 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -107,13 +110,26 @@ constexpr const char* way_out = "move the file away, and the same command makes 
 
 struct Ledger::Database {
     fs::path directory;
+    std::string name;           // of the file
+    struct stat identity {};    // of the file, as it was first seen
     std::string me = this_process();
     Holders holders;
     std::set<std::string> failed_here;   // for good, recorded by this object
     SQLite::Database file;
 
-    Database(const fs::path& directory_, const std::string& name, int flags, std::chrono::milliseconds watched)
-        : directory(directory_), holders(watched), file(name, flags, busy_timeout_ms) {}
+    Database(const fs::path& directory_, const std::string& name_, int flags, std::chrono::milliseconds watched)
+        : directory(directory_), name(name_), holders(watched), file(name, flags, busy_timeout_ms) {
+        must_be_there();
+    }
+
+    // What is written to a file that was removed or moved away would be lost. @throws OutputError
+    void must_be_there() {
+        if (name == ":memory:") return;
+        struct stat now {};
+        if (::stat(name.c_str(), &now) != 0) throw OutputError(fmt::format("the ledger '{}' is not there any more: {}", name, std::strerror(errno)));
+        if (identity.st_ino == 0) identity = now;
+        if (now.st_ino != identity.st_ino || now.st_dev != identity.st_dev) throw OutputError(fmt::format("the ledger '{}' is not the file any more that it was: something has replaced it", name));
+    }
 
     void make() {
         SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
@@ -134,8 +150,8 @@ struct Ledger::Database {
         SQLite::Statement info(file, "PRAGMA table_info(run)");
         while (info.executeStep()) there.push_back(info.getColumn(1).getString());
         const auto add = [&](const char* type, const std::vector<std::string>& names) {
-            for (const std::string& name : names)
-                if (std::find(there.begin(), there.end(), name) == there.end()) file.exec(fmt::format("ALTER TABLE run ADD COLUMN {} {}", name, type));
+            for (const std::string& column : names)
+                if (std::find(there.begin(), there.end(), column) == there.end()) file.exec(fmt::format("ALTER TABLE run ADD COLUMN {} {}", column, type));
         };
         add("REAL", number_columns());
         add("TEXT", text_columns());
@@ -151,12 +167,12 @@ struct Ledger::Database {
         std::map<std::string, std::string> values;
         for (int at = 0; at < row.getColumnCount(); ++at) {
             const SQLite::Column column = row.getColumn(at);
-            const std::string name = column.getName();
-            if (column.isNull() || name == "checksum" || name == "holder" || name == "heard") continue;
-            values[name] = column.isFloat() ? fmt::format("{}", column.getDouble()) : column.getString();
+            const std::string key = column.getName();
+            if (column.isNull() || key == "checksum" || key == "holder" || key == "heard") continue;
+            values[key] = column.isFloat() ? fmt::format("{}", column.getDouble()) : column.getString();
         }
         std::string text;
-        for (const auto& [name, value] : values) text += fmt::format("{} {} {}\n", name, value.size(), value);
+        for (const auto& [key, value] : values) text += fmt::format("{} {} {}\n", key, value.size(), value);
         return hash_of_text(text);
     }
 
@@ -174,7 +190,7 @@ struct Ledger::Database {
                                                    fmt::join(std::vector<std::string>(count, "?"), ", ")));
         int at = 0;
         insert.bind(++at, record.id);
-        insert.bind(++at, name(record.state));
+        insert.bind(++at, feldspar::name(record.state));
         insert.bind(++at, record.reason);
         insert.bind(++at, record.test);
         bind(insert, ++at, record.sigma3_Pa);
@@ -307,6 +323,7 @@ void Ledger::enrol(const Study& study) {
 
 Ledger::Claim Ledger::claim(const Run& run, const Provenance* program) {
     return guarded(directory(), [&] {
+        database_->must_be_there();
         SQLite::Database& file = database_->file;
         SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
         database_->check(run.id);
@@ -355,6 +372,7 @@ void Ledger::record(const RunRecord& record) {
         }
         database_->write(record);
         transaction.commit();
+        database_->must_be_there();
         const auto failure = record.texts.find("failure");
         if (record.state == RunState::failed && failure != record.texts.end() && failure->second != name(Failure::other)) database_->failed_here.insert(record.id);
     });

@@ -181,6 +181,18 @@ TEST_F(LedgerOfAStudy, AClockThatJumpsTakesNoRunAway) {
     }
 }
 
+TEST_F(LedgerOfAStudy, AFileThatWasRemovedOrReplacedIsNotWrittenTo) {
+    for (const bool replaced : {false, true}) {
+        Ledger ledger(place_, Ledger::Access::write);
+        ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+        std::filesystem::rename(place_ / "ledger.sqlite", place_ / "elsewhere");
+        if (replaced) std::filesystem::copy_file(place_ / "elsewhere", place_ / "ledger.sqlite");
+        EXPECT_THROW((void)ledger.claim(study_.runs[1]), OutputError);
+        EXPECT_THROW(ledger.record(done(study_.runs[0], 4e6)), OutputError);
+        std::filesystem::remove_all(place_);
+    }
+}
+
 TEST_F(LedgerOfAStudy, ANumberThatChangedOnTheDiskIsNotBelieved) {
     Ledger ledger(place_, Ledger::Access::write);
     ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
