@@ -138,7 +138,8 @@ public:
             return;
         }
         mark_unfinished(directory_, job_);
-        (void)RunDirectory::open(directory_.path() / kCheckpoints);   // removes what was half written
+        for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path()))   // states and fields
+            if (entry.is_directory()) (void)RunDirectory::open(entry.path());   // removes what was half written
         for (std::size_t i = 0; i < runs_.count(); ++i) take_found(i);
         tell_.note(fmt::format("going on with the unfinished run in {}: {} of {} are done (--fresh begins anew)", directory_.path().string(), results_.size(), counted(runs_.count(), "test")));
     }
@@ -203,6 +204,7 @@ public:
 
     // The other tests go on. @throws OutputError: what is still running could not be written either
     void failed(std::size_t i, const std::exception_ptr& error) override {
+        beat();   // what the test has said on the way
         try {
             std::rethrow_exception(error);
         } catch (const Interrupted&) {
