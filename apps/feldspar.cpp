@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "say.hpp"
 #include "feldspar/base/printable.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/job_template.hpp"
@@ -38,14 +39,14 @@ Exit codes: 0 done, 2 mistake in the input (no file is left), 3 numerical failur
 130 interrupted (the results so far are kept).)";
 
 int complain(ExitCode code, const std::string& message) {
-    fmt::print(stderr, "feldspar: {}\n", printable(message));
+    put(stderr, "feldspar: " + printable(message) + "\n");
     return static_cast<int>(code);
 }
 
 int guarded(const std::function<ExitCode()>& command) {
     try {
         const ExitCode code = command();
-        if (std::fflush(stdout) != 0) return complain(ExitCode::output, "the results could not be printed");
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return complain(ExitCode::output, "the results could not be printed");
         return static_cast<int>(code);
     } catch (const InputError& error) {
         return complain(ExitCode::input, error.what());

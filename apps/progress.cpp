@@ -1,6 +1,7 @@
 #include "progress.hpp"
 
 #include "feldspar/base/printable.hpp"
+#include "say.hpp"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -66,7 +67,7 @@ void Progress::clear() {
     if (lines_shown_ == 0) return;
     std::string back = "\r";
     for (std::size_t line = 1; line < lines_shown_; ++line) back += "\x1b[A";
-    fmt::print(stderr, "{}\x1b[J", back);
+    put(stderr, back + "\x1b[J");
     lines_shown_ = 0;
 }
 
@@ -77,14 +78,14 @@ void Progress::rewrite(const std::vector<std::string>& lines) {
     std::string text;
     for (std::size_t i = 0; i < shown; ++i) text += (i > 0 ? "\n" : "") + printable(lines[i], LineEnds::escaped).substr(0, columns - 1);
     if (shown < lines.size()) text += fmt::format("\nand {} more", lines.size() - shown);
-    fmt::print(stderr, "{}", text);
+    put(stderr, text);
     std::fflush(stderr);
     lines_shown_ = shown + (shown < lines.size() ? 1 : 0);
 }
 
 void Progress::note(const std::string& line) {
     clear();
-    fmt::print(stderr, "{}\n", printable(line));
+    put(stderr, printable(line) + "\n");
     std::fflush(stderr);
     last_rewrite_ = {};
 }

@@ -1,10 +1,13 @@
 #include "whole_text.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace feldspar {
 
@@ -15,21 +18,33 @@ ExitCode print_whole(const std::string& text) {
 }
 
 void write_whole(const std::string& text, const std::string& path, const std::string& option) {
-    errno = 0;
-    std::FILE* file = std::fopen(path.c_str(), "wx");  // x: never an existing file
-    if (file == nullptr) {
-        const bool exists = errno == EEXIST;
+    namespace fs = std::filesystem;
+    const auto refuse = [&](int error) {
         throw InputError(
             {{}, 0, 0, option},
-            fmt::format("'{}' {}", path, exists ? "exists already and is not overwritten" : fmt::format("cannot be made: {}", std::strerror(errno))),
+            fmt::format("'{}' {}", path, error == EEXIST ? "exists already and is not overwritten" : fmt::format("cannot be made: {}", std::strerror(error))),
             "the name of a new file in a directory that exists");
+    };
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(path, ignored))) refuse(EEXIST);
+    const std::string aside = (fs::path(path).parent_path() / fmt::format(".feldspar-{}.part", ::getpid())).string();
+    std::FILE* file = std::fopen(aside.c_str(), "w");
+    if (file == nullptr) refuse(errno);
+    errno = 0;
+    bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;
+    int error = errno;
+    if (std::fclose(file) != 0 && whole) {
+        whole = false;
+        error = errno;
     }
-    bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    whole = std::fclose(file) == 0 && whole;
-    if (!whole) {
-        std::remove(path.c_str());
-        throw OutputError(fmt::format("'{}' could not be written to its end", path));
+    // a link is never made over a file that is there; where the file system has none, a file that came in the meantime is lost
+    if (whole && ::link(aside.c_str(), path.c_str()) != 0 && (errno == EEXIST || ::rename(aside.c_str(), path.c_str()) != 0)) {
+        whole = false;
+        error = errno;
     }
+    ::unlink(aside.c_str());
+    if (error == EEXIST && !whole) refuse(error);
+    if (!whole) throw OutputError(fmt::format("cannot write '{}': {}", path, std::strerror(error)));
 }
 
 }  // namespace feldspar

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,9 +35,24 @@ std::string hdf5_reason() {
     return text;
 }
 
-/// @throws OutputError if an HDF5 call failed (they all answer with a negative number).
+/// Whether a failed call found too little memory.
+bool memory_was_missing() {
+    bool missing = false;
+    H5Ewalk2(
+        H5E_DEFAULT, H5E_WALK_UPWARD,
+        [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
+            const std::string_view words = error->desc != nullptr ? error->desc : "";
+            if (error->min_num == H5E_CANTALLOC || error->min_num == H5E_NOSPACE || words.find("alloc") != words.npos) *static_cast<bool*>(into) = true;
+            return 0;
+        },
+        &missing);
+    return missing;
+}
+
+/// @throws std::bad_alloc or OutputError if an HDF5 call failed (they all answer with a negative number).
 template <class Result>
 Result require(Result result) {
+    if (result < 0 && memory_was_missing()) throw std::bad_alloc();
     if (result < 0) throw OutputError(hdf5_reason());
     return result;
 }
@@ -281,6 +297,16 @@ void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
     }
 }
 
+/// HDF5 1.10 can leave the heap in disorder when memory ends in one of its calls, so what the archive will need is asked for before.
+/// @throws std::bad_alloc
+void require_memory(const TestResult& result) {
+    std::size_t numbers = 64 * result.history.size() + 16 * result.cracks.size();
+    for (const Snapshot& snapshot : result.snapshots) numbers += 2 * snapshot.displacement_m.size() + 4 * snapshot.stress_xx_Pa.size() + snapshot.crack_opening_m.size();
+    if (result.specimen) numbers += 2 * result.specimen->mesh.nodes.size() + 4 * result.specimen->mesh.triangles.size();
+    const std::size_t bytes = 3 * numbers * sizeof(double) + (std::size_t{24} << 20);   // the file as it grows, its copy, and what the library keeps
+    ::operator delete(::operator new(bytes));   // called by name: a new-expression might be left out by the compiler
+}
+
 std::string archive_bytes(const TestResult& result, const Job& job, const Provenance& provenance) {
     const Silence silence;
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -307,6 +333,10 @@ std::string archive_bytes(const TestResult& result, const Job& job, const Proven
 void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance) {
     const std::string file = test_stem(result) + ".h5";
     std::string bytes;
+    // What the library would do at the end is to write open files. There are none on disk; and after a failed call it can crash there.
+    static const bool closes_nothing = H5dont_atexit() >= 0;
+    (void)closes_nothing;
+    require_memory(result);
     try {
         bytes = archive_bytes(result, job, provenance);
     } catch (const OutputError& problem) {

@@ -99,6 +99,7 @@ CheckpointOwner CheckpointOwner::of(const std::string& test, const Provenance& p
 void write_checkpoint(const RunDirectory& directory, const std::string& name, const CheckpointOwner& owner, const std::function<void(const StatePut&)>& write) {
     const fs::path file = directory.path() / name;
     directory.write(name, [&](const fs::path& aside) {
+        errno = 0;
         std::ofstream stream(aside, std::ios::binary);
         Sum sum;
         const auto put = [&](const void* data, std::size_t bytes) {

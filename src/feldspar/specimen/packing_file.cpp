@@ -1,9 +1,11 @@
 // A packing as text, so that it can be kept, exchanged and loaded again with the same bits.
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -186,10 +188,11 @@ void save_packing(const Specimen& specimen, const std::filesystem::path& file) {
         text += fmt::format("{:.17g} {:.17g} {:.17g}\n", packing.centres[i].x, packing.centres[i].y, packing.radii_m[i]);
     }
     text += "end\n";
+    errno = 0;
     std::ofstream stream(file, std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) throw OutputError(fmt::format("the packing could not be written to {}", file.string()));
+    if (!stream) throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), fmt::format("the packing could not be written to {}", file.string()));
 }
 
 Packing load_packing(const std::filesystem::path& file, const Outline& outline) {

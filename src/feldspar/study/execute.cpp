@@ -11,6 +11,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/stopwatch.hpp"
+#include "feldspar/study/notes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_files.hpp"
 #include "feldspar/study/schedule.hpp"
@@ -49,6 +50,7 @@ public:
     /// @param without_turn  so many runs had none  @throws OutputError if results could not be written
     Execution execution(std::size_t without_turn) {
         execution_.left = static_cast<int>(without_turn + others_.size()) + interrupted_;
+        tell_notes();
         if (lost_) std::rethrow_exception(lost_);
         return execution_;
     }
@@ -63,6 +65,7 @@ public:
             case Ledger::Claim::others: others_.push_back(i); return {};
             case Ledger::Claim::ours: break;
         }
+        if (const std::string damage = set_damaged_record_aside(ledger_.run_directory(run.id), run); !damage.empty()) notes_.add(damage);
         if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
             ledger_.record(*record);
             ++execution_.found_done;
@@ -87,6 +90,10 @@ public:
         const Run& run = *runs_[i];
         settle(run, [&] {
             if (result.interrupted) throw Interrupted();
+            if (!ledger_.holds(run.id)) {   // this process slept for so long that another took the run
+                others_.push_back(i);
+                return;
+            }
             execution_.run_s += result.wall_s;
             finish_files(run, result, ledger_.run_directory(run.id), control_.keep, control_.provenance);
             record(run, *finished_record(ledger_.run_directory(run.id), run));
@@ -108,19 +115,26 @@ public:
     }
 
     void beat() override {
+        tell_notes();
         if (Clock::now() < next_beat_) return;
         ledger_.heartbeat();
         next_beat_ = Clock::now() + between_heartbeats;
     }
 
 private:
+    void tell_notes() {
+        for (const std::string& line : notes_.take())
+            if (control_.note) control_.note(line);
+    }
+
     // None if failed runs are to be repeated.
     const Provenance* whose_failures_count() const { return control_.retry_failed ? nullptr : &control_.provenance; }
 
     // On the run's own thread.
     TestResult run_one(const Run& run, const RunControl& run_control) {
         const Clock::time_point start = Clock::now();
-        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.checkpoints);
+        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.checkpoints,
+                                         [this](const std::string& line) { notes_.add(line); });
         result.wall_s = seconds_since(start);
         return result;
     }
@@ -160,6 +174,7 @@ private:
     Ledger& ledger_;
     const ExecuteControl& control_;
     Packings packings_;
+    Notes notes_;
     std::vector<const Run*> runs_;        // not settled at the beginning
     std::vector<std::size_t> others_;     // another process is at them
     int interrupted_ = 0;

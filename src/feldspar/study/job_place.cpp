@@ -91,7 +91,7 @@ FoundPlace find_place(const std::optional<fs::path>& wanted, const Job& job, boo
     return {*newest, std::move(lock)};
 }
 
-FileLock begin_unfinished(const RunDirectory& directory, const Job& job) {
+FileLock begin_unfinished(const RunDirectory& directory, const Job& job) try {
     const fs::path folder = directory.path() / kCheckpoints;
     std::error_code error;
     fs::create_directory(folder, error);
@@ -100,6 +100,10 @@ FileLock begin_unfinished(const RunDirectory& directory, const Job& job) {
     if (!lock) throw OutputError(fmt::format("another program has taken '{}'", directory.path().string()));   // it was made a moment ago
     mark_unfinished(directory, job);
     return std::move(*lock);
+} catch (const OutputError&) {
+    std::error_code ignored;
+    fs::remove(directory.path(), ignored);   // if it is empty: nothing could be begun in it, and the same command would find it in its way
+    throw;
 }
 
 void mark_unfinished(const RunDirectory& directory, const Job& job) { directory.write_text(fmt::format("{}/{}", kCheckpoints, kJobFile.string()), identity_of_job(job)); }

@@ -3,16 +3,22 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/study/text_hash.hpp"
 
 namespace feldspar {
 namespace {
@@ -21,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr int schema_version = 1;            // PRAGMA user_version
 constexpr int busy_timeout_ms = 120'000;     // another program's transaction is over long before
-constexpr std::int64_t silent_s = 600;       // a process of another machine that has not been heard of for so long is gone
+constexpr std::int64_t silent_s = 600;       // a process of another machine that has not been heard of for so long may be gone
 
 std::int64_t now_s() {
     return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -51,13 +57,32 @@ std::string this_process() {
     return host() + " " + pid + " " + beginning_of(pid);
 }
 
-bool alive(const std::string& holder, std::int64_t last_heard_s) {
-    std::stringstream words(holder);
-    std::string machine, pid, beginning;
-    words >> machine >> pid >> beginning;
-    if (machine != host()) return now_s() - last_heard_s < silent_s;
-    return !beginning.empty() && beginning_of(pid) == beginning;
-}
+// Whether the processes that hold runs are still there.
+class Holders {
+public:
+    explicit Holders(std::chrono::milliseconds watched) : watched_(watched) {}
+
+    bool alive(const std::string& holder, std::int64_t last_heard_s) {
+        std::stringstream words(holder);
+        std::string machine, pid, beginning;
+        words >> machine >> pid >> beginning;
+        if (machine == host()) return !beginning.empty() && beginning_of(pid) == beginning;
+        if (std::abs(now_s() - last_heard_s) < silent_s) return true;
+        // Clocks of two machines may differ, and jump. So it is gone only if it says nothing while this process watches, by a clock that does not jump.
+        const auto now = std::chrono::steady_clock::now();
+        const auto [seen, first] = seen_.try_emplace(holder, Seen{last_heard_s, now});
+        if (!first && seen->second.heard_s != last_heard_s) seen->second = {last_heard_s, now};
+        return first || now - seen->second.since < watched_;
+    }
+
+private:
+    struct Seen {
+        std::int64_t heard_s = 0;
+        std::chrono::steady_clock::time_point since;
+    };
+    std::chrono::milliseconds watched_;
+    std::map<std::string, Seen> seen_;
+};
 
 std::string columns(const char* type, const std::vector<std::string>& names) {
     std::string text;
@@ -79,13 +104,32 @@ double number_in(const SQLite::Column& column) { return column.isNull() ? std::n
 
 }  // namespace
 
+namespace {
+constexpr const char* way_out = "move the file away, and the same command makes it again from the directories of the runs";
+}
+
 struct Ledger::Database {
     fs::path directory;
+    std::string name;           // of the file
+    struct stat identity {};    // of the file, as it was first seen
     std::string me = this_process();
+    Holders holders;
     std::set<std::string> failed_here;   // for good, recorded by this object
     SQLite::Database file;
 
-    Database(const fs::path& directory_, const std::string& name, int flags) : directory(directory_), file(name, flags, busy_timeout_ms) {}
+    Database(const fs::path& directory_, const std::string& name_, int flags, std::chrono::milliseconds watched)
+        : directory(directory_), name(name_), holders(watched), file(name, flags, busy_timeout_ms) {
+        must_be_there();
+    }
+
+    // What is written to a file that was removed or moved away would be lost. @throws OutputError
+    void must_be_there() {
+        if (name == ":memory:") return;
+        struct stat now {};
+        if (::stat(name.c_str(), &now) != 0) throw OutputError(fmt::format("the ledger '{}' is not there any more: {}", name, std::strerror(errno)));
+        if (identity.st_ino == 0) identity = now;
+        if (now.st_ino != identity.st_ino || now.st_dev != identity.st_dev) throw OutputError(fmt::format("the ledger '{}' is not the file any more that it was: something has replaced it", name));
+    }
 
     void make() {
         SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
@@ -106,11 +150,38 @@ struct Ledger::Database {
         SQLite::Statement info(file, "PRAGMA table_info(run)");
         while (info.executeStep()) there.push_back(info.getColumn(1).getString());
         const auto add = [&](const char* type, const std::vector<std::string>& names) {
-            for (const std::string& name : names)
-                if (std::find(there.begin(), there.end(), name) == there.end()) file.exec(fmt::format("ALTER TABLE run ADD COLUMN {} {}", name, type));
+            for (const std::string& column : names)
+                if (std::find(there.begin(), there.end(), column) == there.end()) file.exec(fmt::format("ALTER TABLE run ADD COLUMN {} {}", column, type));
         };
         add("REAL", number_columns());
         add("TEXT", text_columns());
+        add("TEXT", {"checksum"});
+    }
+
+    // Of all that a row says but for who is at it and when, whichever version of the program has written it. SQLite itself finds pages
+    // that are no pages, but not a digit that has changed.
+    std::string checksum_of(const std::string& id) {
+        SQLite::Statement row(file, "SELECT * FROM run WHERE id = ?");
+        row.bind(1, id);
+        if (!row.executeStep()) return {};
+        std::map<std::string, std::string> values;
+        for (int at = 0; at < row.getColumnCount(); ++at) {
+            const SQLite::Column column = row.getColumn(at);
+            const std::string key = column.getName();
+            if (column.isNull() || key == "checksum" || key == "holder" || key == "heard") continue;
+            values[key] = column.isFloat() ? fmt::format("{}", column.getDouble()) : column.getString();
+        }
+        std::string text;
+        for (const auto& [key, value] : values) text += fmt::format("{} {} {}\n", key, value.size(), value);
+        return hash_of_text(text);
+    }
+
+    // A row without a checksum is of an earlier version. @throws OutputError if a row is not what was written
+    void check(const std::string& id) {
+        SQLite::Statement look(file, "SELECT checksum FROM run WHERE id = ? AND checksum IS NOT NULL");
+        look.bind(1, id);
+        if (look.executeStep() && look.getColumn(0).getString() != checksum_of(id))
+            throw OutputError(fmt::format("the ledger '{}' is damaged: the row of run {} is not what was written; {}", (directory / "ledger.sqlite").string(), id, way_out));
     }
 
     void write(const RunRecord& record) {
@@ -119,7 +190,7 @@ struct Ledger::Database {
                                                    fmt::join(std::vector<std::string>(count, "?"), ", ")));
         int at = 0;
         insert.bind(++at, record.id);
-        insert.bind(++at, name(record.state));
+        insert.bind(++at, feldspar::name(record.state));
         insert.bind(++at, record.reason);
         insert.bind(++at, record.test);
         bind(insert, ++at, record.sigma3_Pa);
@@ -137,6 +208,10 @@ struct Ledger::Database {
         insert.bind(++at, me);
         insert.bind(++at, now_s());
         insert.exec();
+        SQLite::Statement sign(file, "UPDATE run SET checksum = ? WHERE id = ?");
+        sign.bind(1, checksum_of(record.id));
+        sign.bind(2, record.id);
+        sign.exec();
     }
 
     RunRecord read(SQLite::Statement& row) const {
@@ -161,19 +236,24 @@ struct Ledger::Database {
 
 namespace {
 
-// SQLite's own words about a ledger, with its place.
+// SQLite's own words about a ledger, with its place, and what helps if it is damaged.
+std::string reason_of(const fs::path& file, const SQLite::Exception& problem) {
+    const bool damaged = problem.getErrorCode() == 1 || problem.getErrorCode() == 11;   // SQLITE_ERROR (tables are not ours), SQLITE_CORRUPT
+    return fmt::format("the ledger '{}': {}{}{}", file.string(), problem.what(), damaged ? "; if it is damaged, " : "", damaged ? way_out : "");
+}
+
 template <class Action>
 auto guarded(const fs::path& directory, Action action) {
     try {
         return action();
     } catch (const SQLite::Exception& problem) {
-        throw OutputError(fmt::format("the ledger '{}': {}", (directory / "ledger.sqlite").string(), problem.what()));
+        throw OutputError(reason_of(directory / "ledger.sqlite", problem));
     }
 }
 
 }  // namespace
 
-Ledger::Ledger(const fs::path& directory, Access access) {
+Ledger::Ledger(const fs::path& directory, Access access, std::chrono::milliseconds watched) {
     const fs::path file = directory / "ledger.sqlite";
     std::error_code error;
     if (access != Access::read) fs::create_directories(directory / "runs", error);
@@ -182,10 +262,10 @@ Ledger::Ledger(const fs::path& directory, Access access) {
     if (error) throw OutputError(fmt::format("cannot make the directory '{}': {}", directory.string(), error.message()));
     try {
         const int flags = SQLite::OPEN_READWRITE | (access == Access::read ? 0 : SQLite::OPEN_CREATE);
-        database_ = std::make_unique<Database>(directory, access == Access::memory ? ":memory:" : file.string(), flags);
+        database_ = std::make_unique<Database>(directory, access == Access::memory ? ":memory:" : file.string(), flags, watched);
         const int version = database_->file.execAndGet("PRAGMA user_version").getInt();
         if (version > schema_version)
-            throw InputError({file.string(), 0, 0, {}}, "was made by a later version of this program", "the version that made it, or another `results`");
+            throw InputError({file.string(), 0, 0, {}}, "was made by a later version of this program", fmt::format("the version that made it, or another `results`; if the file is damaged, {}", way_out));
         if (access == Access::write) {
             database_->file.exec("PRAGMA journal_mode = WAL");     // readers and writers side by side
             database_->file.exec("PRAGMA synchronous = NORMAL");   // a power cut may lose the last rows; run.json has them
@@ -193,8 +273,8 @@ Ledger::Ledger(const fs::path& directory, Access access) {
         if (access != Access::read || version < schema_version) database_->make();
         else database_->add_missing_columns();
     } catch (const SQLite::Exception& problem) {
-        if (problem.getErrorCode() == 26) throw InputError({file.string(), 0, 0, {}}, "is not a ledger");   // SQLITE_NOTADB
-        throw OutputError(fmt::format("the ledger '{}': {}", file.string(), problem.what()));
+        if (problem.getErrorCode() == 26) throw InputError({file.string(), 0, 0, {}}, "is not a ledger, or is damaged", way_out);   // SQLITE_NOTADB
+        throw OutputError(reason_of(file, problem));
     }
 }
 
@@ -243,8 +323,10 @@ void Ledger::enrol(const Study& study) {
 
 Ledger::Claim Ledger::claim(const Run& run, const Provenance* program) {
     return guarded(directory(), [&] {
+        database_->must_be_there();
         SQLite::Database& file = database_->file;
         SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
+        database_->check(run.id);
         {
             SQLite::Statement look(file, "SELECT state, holder, heard, failure, version, commit_id FROM run WHERE id = ?");
             look.bind(1, run.id);
@@ -257,7 +339,7 @@ Ledger::Claim Ledger::claim(const Run& run, const Provenance* program) {
                     for (int column = 3; column <= 5; ++column) failed.texts[look.getColumn(column).getName()] = look.getColumn(column).getString();
                     if (database_->failed_here.contains(run.id) || (program != nullptr && failed_for_good(failed, *program))) return Claim::failed;
                 }
-                if (state == "running" && alive(look.getColumn(1).getString(), look.getColumn(2).getInt64())) return Claim::others;
+                if (state == "running" && database_->holders.alive(look.getColumn(1).getString(), look.getColumn(2).getInt64())) return Claim::others;
             }
         }
         RunRecord record;
@@ -290,6 +372,7 @@ void Ledger::record(const RunRecord& record) {
         }
         database_->write(record);
         transaction.commit();
+        database_->must_be_there();
         const auto failure = record.texts.find("failure");
         if (record.state == RunState::failed && failure != record.texts.end() && failure->second != name(Failure::other)) database_->failed_here.insert(record.id);
     });
@@ -301,6 +384,15 @@ void Ledger::heartbeat() {
         beat.bind(1, now_s());
         beat.bind(2, database_->me);
         beat.exec();
+    });
+}
+
+bool Ledger::holds(const std::string& id) const {
+    return guarded(directory(), [&] {
+        SQLite::Statement look(database_->file, "SELECT 1 FROM run WHERE id = ? AND state = 'running' AND holder = ?");
+        look.bind(1, id);
+        look.bind(2, database_->me);
+        return look.executeStep();
     });
 }
 
@@ -316,7 +408,10 @@ std::vector<RunRecord> Ledger::find(std::span<const std::string> ids) const {
         std::vector<RunRecord> records;
         for (const std::string& id : ids) {
             look.bind(1, id);
-            if (look.executeStep()) records.push_back(database_->read(look));
+            if (look.executeStep()) {
+                database_->check(id);
+                records.push_back(database_->read(look));
+            }
             look.reset();
         }
         return records;

@@ -2,6 +2,7 @@
 // who claimed it, and goes back to all when that process is no longer there.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -21,8 +22,9 @@ public:
     enum class Access { read, write, memory };
 
     /// Opens `directory`/ledger.sqlite; with write access makes it if it is not there. @throws InputError for a file that is not a
-    /// ledger, or that a later version has made; OutputError when it cannot be written.
-    Ledger(const std::filesystem::path& directory, Access access);
+    /// ledger, or that a later version has made; OutputError when it cannot be written, or is damaged (so do all calls that read).
+    /// @param watched  a process of another machine whose sign of life is old is taken for gone only if it gives none for so long while this object looks
+    Ledger(const std::filesystem::path& directory, Access access, std::chrono::milliseconds watched = std::chrono::minutes(1));
     ~Ledger();
     Ledger(Ledger&&) noexcept;
 
@@ -42,6 +44,9 @@ public:
 
     /// Gives a claimed run back as if it had never been taken (interrupted).
     void release(const std::string& id);
+
+    /// Whether a claimed run is still this process's; not if it was silent for so long (asleep) that another has taken it.
+    bool holds(const std::string& id) const;
 
     /// Records the end of a run. Never replaces a run that is done.
     void record(const RunRecord& record);

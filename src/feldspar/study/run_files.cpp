@@ -11,16 +11,16 @@ namespace fs = std::filesystem;
 
 const fs::path record_file = "run.json";
 
-const std::string state_file = "test.state";
+const std::string state_file = "test.state", damaged_record = "run.json.damaged";
 
-// An empty directory, but for the state of the test.
+// An empty directory, but for the state of the test and a record that was set aside.
 RunDirectory cleared(const fs::path& path) {
     std::error_code error;
     fs::create_directories(path, error);
     if (error) throw OutputError("cannot make the directory '" + path.string() + "': " + error.message());
     std::vector<fs::path> left;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-        if (!entry->path().filename().string().starts_with(state_file)) left.push_back(entry->path());
+        if (!entry->path().filename().string().starts_with(state_file) && entry->path().filename() != damaged_record) left.push_back(entry->path());
     for (const fs::path& one : left)
         if (!error) fs::remove_all(one, error);
     if (error) throw OutputError("cannot remove what an earlier attempt left in '" + path.string() + "': " + error.message());
@@ -30,7 +30,7 @@ RunDirectory cleared(const fs::path& path) {
 }  // namespace
 
 TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path, Keep keep, const Provenance& provenance,
-                        const RunControl& control, const CheckpointSettings& settings) {
+                        const RunControl& control, const CheckpointSettings& settings, const std::function<void(const std::string&)>& note) {
     const bool finished = finished_record(path, run).has_value();
     const RunDirectory directory = finished ? RunDirectory::open(path) : cleared(path);
     TestResult result;
@@ -39,7 +39,7 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
         const Variant& variant = run.job.variants.front();
         TestSpec test = run.test();
         if (keep != Keep::all) test.snapshots = 0;
-        TestCheckpoints checkpoints(directory, state_file, CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings, {});
+        TestCheckpoints checkpoints(directory, state_file, CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings, note);
         RunControl own_control = control;
         own_control.keeper = &checkpoints;
         result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock}, own_control);
@@ -77,6 +77,18 @@ std::optional<RunRecord> record_in(const fs::path& directory, const Run& run, Ru
 }
 
 }  // namespace
+
+std::string set_damaged_record_aside(const fs::path& directory, const Run& run) {
+    try {
+        (void)record_in(directory, run, RunState::done);
+        return {};
+    } catch (const InputError& problem) {
+        std::error_code error;
+        fs::rename(directory / record_file, directory / damaged_record, error);
+        if (error) throw OutputError("cannot rename '" + (directory / record_file).string() + "': " + error.message());
+        return std::string(problem.what()) + "; its run is made again, and the file stays as '" + damaged_record + "'";
+    }
+}
 
 std::optional<RunRecord> finished_record(const fs::path& directory, const Run& run) { return record_in(directory, run, RunState::done); }
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <exception>
 #include <map>
-#include <mutex>
 #include <new>
 #include <set>
 #include <string_view>
@@ -17,6 +16,7 @@
 #include "feldspar/base/parallel.hpp"
 #include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/job_place.hpp"
+#include "feldspar/study/notes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/schedule.hpp"
 #include "feldspar/study/study.hpp"
@@ -138,7 +138,8 @@ public:
             return;
         }
         mark_unfinished(directory_, job_);
-        (void)RunDirectory::open(directory_.path() / kCheckpoints);   // removes what was half written
+        for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path()))   // states and fields
+            if (entry.is_directory()) (void)RunDirectory::open(entry.path());   // removes what was half written
         for (std::size_t i = 0; i < runs_.count(); ++i) take_found(i);
         tell_.note(fmt::format("going on with the unfinished run in {}: {} of {} are done (--fresh begins anew)", directory_.path().string(), results_.size(), counted(runs_.count(), "test")));
     }
@@ -202,6 +203,7 @@ public:
 
     // The other tests go on. @throws OutputError: what is still running could not be written either
     void failed(std::size_t i, const std::exception_ptr& error) override {
+        beat();   // what the test has said on the way
         try {
             std::rethrow_exception(error);
         } catch (const Interrupted&) {
@@ -233,23 +235,6 @@ public:
     }
 
 private:
-    // What a test's own thread has to say, for the main thread.
-    class Notes {
-    public:
-        void add(std::string line) {
-            const std::lock_guard lock(mutex_);
-            lines_.push_back(std::move(line));
-        }
-        std::vector<std::string> take() {
-            const std::lock_guard lock(mutex_);
-            return std::exchange(lines_, {});
-        }
-
-    private:
-        std::mutex mutex_;
-        std::vector<std::string> lines_;
-    };
-
     // What a test's own thread writes.
     void write_record(const TestResult& result, int threads) const {
         write_history_csv(directory_, result, control_.provenance);

@@ -8,6 +8,7 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/quantities.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/study/text_hash.hpp"
 
 namespace feldspar {
 namespace {
@@ -31,6 +32,9 @@ RunRecord record_for(const Run& run, const Provenance& provenance) {
 }
 
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+// Of all that stands before it.
+std::string checksum_of(const Json& json) { return hash_of_text(json.dump(-1, ' ', false, Json::error_handler_t::replace)); }
 
 double number_in(const Json& json) { return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>(); }
 
@@ -136,6 +140,7 @@ std::string to_json(const RunRecord& record) {
         if (const auto found = record.numbers.find(column); found != record.numbers.end()) json["numbers"][column] = number_json(found->second);
     json["texts"] = record.texts;
     json["job"] = record.job;
+    json["checksum"] = checksum_of(json);
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -143,7 +148,12 @@ RunRecord read_record(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError({file.string(), 0, 0, {}}, "cannot be read");
     try {
-        const Json json = Json::parse(stream);
+        Json json = Json::parse(stream);
+        if (const auto checksum = json.find("checksum"); checksum != json.end()) {   // records of earlier versions have none
+            const Json expected = *checksum;
+            json.erase("checksum");
+            if (expected != checksum_of(json)) throw InputError({file.string(), 0, 0, {}}, "is damaged: it is not what was written");
+        }
         RunRecord record;
         record.id = json.at("id");
         const std::string state = json.at("state");

@@ -63,13 +63,7 @@ Keep keep_of(const std::string& word) {
 }
 
 void write_text(const fs::path& file, const std::string& text) {
-    const fs::path aside = file.parent_path() / fmt::format(".{}.part", file.filename().string());
-    std::ofstream out(aside, std::ios::binary);
-    out << text;
-    out.close();
-    std::error_code error;
-    if (out) fs::rename(aside, file, error);
-    if (!out || error) throw OutputError(fmt::format("cannot write '{}'", file.string()));
+    RunDirectory::open(file.parent_path()).write_text(file.filename().string(), text);
 }
 
 // The next free number below `parent`; mkdir claims it, so that two submissions at once never share a directory.

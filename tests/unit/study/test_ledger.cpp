@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/ledger.hpp"
@@ -124,6 +125,7 @@ TEST_F(LedgerOfAStudy, WhatFailedBeforeThereWereKindsOfFailuresMayBeTakenAgain) 
         ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
         ledger.record(failed_record(study_.runs[0], "a force is not a number", Failure::numerical, program));
         raw().exec("ALTER TABLE run DROP COLUMN failure");
+        raw().exec("ALTER TABLE run DROP COLUMN checksum");
     }
     Ledger ledger(place_, Ledger::Access::write);
     EXPECT_EQ(ledger.claim(study_.runs[0], &program), Ledger::Claim::ours);
@@ -145,12 +147,64 @@ TEST_F(LedgerOfAStudy, WhatADeadProcessHadIsFree) {
 }
 
 TEST_F(LedgerOfAStudy, WhatASilentMachineHadIsFreeAfterAWhile) {
+    Ledger ledger(place_, Ledger::Access::write, std::chrono::milliseconds(100));
+    ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+    EXPECT_TRUE(ledger.holds(study_.runs[0].id));
+    raw().exec("UPDATE run SET holder = 'elsewhere 1 2'");
+    EXPECT_FALSE(ledger.holds(study_.runs[0].id));
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);   // heard of a moment ago
+    raw().exec("UPDATE run SET heard = heard - 3600");
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);   // is watched first
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+}
+
+// The clock of the other machine, or of this one, is hours wrong, or jumps: whoever gives signs of life keeps the run.
+TEST_F(LedgerOfAStudy, AClockThatJumpsTakesNoRunAway) {
+    for (const char* jump : {"UPDATE run SET heard = heard - 36000", "UPDATE run SET heard = heard + 36000"}) {
+        Ledger ledger(place_, Ledger::Access::write, std::chrono::milliseconds(300));
+        ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+        raw().exec("UPDATE run SET holder = 'elsewhere 1 2'");
+        raw().exec(jump);
+        for (int beat = 0; beat < 6; ++beat) {
+            EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            raw().exec("UPDATE run SET heard = heard + 20");
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);
+        std::this_thread::sleep_for(std::chrono::milliseconds(350));
+        EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);   // silent at last
+        ledger.release(study_.runs[0].id);
+    }
+}
+
+TEST_F(LedgerOfAStudy, AFileThatWasRemovedOrReplacedIsNotWrittenTo) {
+    for (const bool replaced : {false, true}) {
+        Ledger ledger(place_, Ledger::Access::write);
+        ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+        std::filesystem::rename(place_ / "ledger.sqlite", place_ / "elsewhere");
+        if (replaced) std::filesystem::copy_file(place_ / "elsewhere", place_ / "ledger.sqlite");
+        EXPECT_THROW((void)ledger.claim(study_.runs[1]), OutputError);
+        EXPECT_THROW(ledger.record(done(study_.runs[0], 4e6)), OutputError);
+        std::filesystem::remove_all(place_);
+    }
+}
+
+TEST_F(LedgerOfAStudy, ANumberThatChangedOnTheDiskIsNotBelieved) {
     Ledger ledger(place_, Ledger::Access::write);
     ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
-    raw().exec("UPDATE run SET holder = 'elsewhere 1 2'");
-    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);
-    raw().exec("UPDATE run SET heard = heard - 3600");
-    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
+    ledger.record(done(study_.runs[0], 4e6));
+    EXPECT_TRUE(ledger.find(study_.runs[0].id));
+    for (const char* change : {"UPDATE run SET strength_Pa = 4000000.5", "UPDATE run SET strength_Pa = 4e6, verdict = 'good'", "UPDATE run SET verdict = NULL, job = ''"}) {
+        raw().exec(change);
+        EXPECT_THROW((void)ledger.find(study_.runs[0].id), OutputError);
+        EXPECT_THROW((void)ledger.claim(study_.runs[0]), OutputError);
+    }
+    raw().exec("UPDATE run SET checksum = NULL");   // as an earlier version writes it
+    EXPECT_TRUE(ledger.find(study_.runs[0].id));
 }
 
 TEST_F(LedgerOfAStudy, SaysWhichRunsAStudyConsistsOf) {
@@ -167,6 +221,7 @@ TEST_F(LedgerOfAStudy, LearnsColumnsThatAnEarlierVersionDidNotKnow) {
         (void)ledger.claim(study_.runs[0]);
         ledger.record(done(study_.runs[0], 4e6));
         raw().exec("ALTER TABLE run DROP COLUMN energy_residual");
+        raw().exec("ALTER TABLE run DROP COLUMN checksum");
     }
     Ledger ledger(place_, Ledger::Access::write);
     EXPECT_EQ(ledger.find(study_.runs[0].id)->numbers.at("strength_Pa"), 4e6);
