@@ -211,6 +211,16 @@ TEST_F(DamagedLedger, ARecordThatIsDamagedTooIsMadeAgain) {
     }
 }
 
+// The program was ended when run.json was written, and neither its row nor the state was settled.
+TEST_F(DamagedLedger, AStateOfARunThatIsDoneIsRemoved) {
+    for (const auto& entry : fs::directory_iterator(place_ / "results/runs"))
+        for (const char* ending : {"", ".before"}) write_text(entry.path() / (std::string("test.state") + ending), "left behind");
+    fs::remove(place_ / "results/ledger.sqlite");
+    const Outcome outcome = run_program(place_.path(), study_command);
+    EXPECT_NE(outcome.out.find("0 runs done now, 3 before"), std::string::npos) << outcome.out << outcome.err;
+    for (const auto& entry : fs::recursive_directory_iterator(place_ / "results")) EXPECT_FALSE(entry.path().filename().string().starts_with("test.state")) << entry.path();
+}
+
 // Another program writes; the study waits for it.
 TEST_F(DamagedLedger, LockedForAWhile) {
     write_text(place_ / "results/ledger.sqlite", whole_);

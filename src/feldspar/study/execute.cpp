@@ -68,6 +68,7 @@ public:
         if (const std::string damage = set_damaged_record_aside(ledger_.run_directory(run.id), run); !damage.empty()) notes_.add(damage);
         if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
             ledger_.record(*record);
+            forget_state(ledger_.run_directory(run.id));
             ++execution_.found_done;
             return {};
         }

@@ -62,8 +62,10 @@ void finish_files(const Run& run, const TestResult& result, const fs::path& path
         write_report(directory, run.job, one, properties, provenance, true);
     }
     directory.write_text(record_file.string(), to_json(record_of(run, result, provenance)));
-    remove_checkpoint(path, state_file);
+    forget_state(path);
 }
+
+void forget_state(const fs::path& directory) { remove_checkpoint(directory, state_file); }
 
 namespace {
 

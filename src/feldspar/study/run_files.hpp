@@ -25,6 +25,9 @@ void finish_files(const Run& run, const TestResult& result, const std::filesyste
 /// A run.json that is damaged, or another run's, becomes run.json.damaged, so that the run is made again. @return what the user should read; empty if there is none such
 std::string set_damaged_record_aside(const std::filesystem::path& directory, const Run& run);
 
+/// Removes the state of a test whose run is done: the program was ended, or the disk failed, between the two.
+void forget_state(const std::filesystem::path& directory);
+
 /// The record of a run that is done, from run.json; none if the directory is not that of a finished run.
 std::optional<RunRecord> finished_record(const std::filesystem::path& directory, const Run& run);
 
