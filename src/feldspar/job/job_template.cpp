@@ -68,7 +68,7 @@ Gfs = "800 N/m"                     # fracture energy in shear (leave out for "b
 kind = "adaptive"                   # finds its own loading rate; also "paper" (fixed speed, local damping), "dynamic" (real masses)
 accuracy = "1 %"                    # wanted of a strength: 0.05 % to 10 %; looser is faster
 #= confirm
-# maximum_steps = 2000000           # stop there with what there is (unless given: 200 times what such a test usually takes)
+# maximum_steps = 2000000           # stop there with what there is (unless given: 2000 times what such a test usually takes)
 )";
 
 constexpr const char* common_test =

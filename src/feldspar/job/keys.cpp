@@ -471,7 +471,7 @@ std::vector<JobKey> numerics_keys() {
         {"mass_factor", number(positive), words("found by the program"), "for experts: multiplies the masses; judged before the run",
          numerics_that_are(not_dynamic)},
         {"time_step", quantity(Dimension::time), words("found by the program"), "for experts: judged before the run", numerics_that_are(dynamic)},
-        {"maximum_steps", integer(1), words("200 times what such a test usually takes; with fixed speeds no limit"), "stop there with what there is"},
+        {"maximum_steps", integer(1), words("2000 times what such a test usually takes; with fixed speeds no limit"), "stop there with what there is"},
         {"confirm", flag(), usual(spec.confirm ? 1.0 : 0.0),
          "repeat each test at a third of the target, and once more at another damping, and report both changes of the strength"},
     };

@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <exception>
 #include <fstream>
 #include <sstream>
 #include <string_view>
@@ -192,7 +193,13 @@ void save_packing(const Specimen& specimen, const std::filesystem::path& file) {
     std::ofstream stream(file, std::ios::binary);
     stream << text;
     stream.close();
-    if (!stream) throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(), fmt::format("the packing could not be written to {}", file.string()));
+    if (stream) return;
+    const std::system_error reason(errno != 0 ? errno : EIO, std::generic_category());
+    try {
+        throw reason;
+    } catch (const std::system_error&) {
+        std::throw_with_nested(OutputError(fmt::format("the packing could not be written to {}: {}", file.string(), reason.code().message())));
+    }
 }
 
 Packing load_packing(const std::filesystem::path& file, const Outline& outline) {

@@ -112,6 +112,16 @@ private:
     Packings packings_;
 };
 
+// As RunDirectory::write() wants it: with the system's reason alone, since the directory knows the file by its final name.
+void write_packing(const Specimen& specimen, const fs::path& file) {
+    try {
+        save_packing(specimen, file);
+    } catch (const OutputError& error) {
+        std::rethrow_if_nested(error);
+        throw;
+    }
+}
+
 // In words for the user.
 std::string reason_of(const std::exception_ptr& error) {
     try {
@@ -158,7 +168,7 @@ public:
         const std::string packing = given ? "cells" + packing_stem(run).substr(std::string_view("packing").size()) + ".tess" : packing_stem(run) + ".txt";
         if (packings_.insert(packing).second) {
             if (given) directory_.write_text(packing, cells_as_text(*specimen, CellFormat::tess));
-            else directory_.write(packing, [&](const fs::path& file) { save_packing(*specimen, file); });
+            else directory_.write(packing, [&](const fs::path& file) { write_packing(*specimen, file); });
         }
         return [this, i, &run, specimen](const RunControl& run_control) {
             const CheckpointOwner owner = owner_of(run);
