@@ -157,7 +157,7 @@ constexpr double kServoShare = 0.5;    // of the wanted accuracy: with half of i
 // A test with stages: the growth of the travel in a travel time with which a reversal of the volumetric strain is looked for; the share of the largest
 // load from which on states are kept in a later stage; and how long a change of pressure takes that changes it altogether, in travel times.
 constexpr double kGrowthSeen = 0.1, kKeptFrom = 0.5, kConfining = 30.0, kLeastConfining = 3.0;
-constexpr double kRunaway = 1.0;   // of all that was ever supplied: kinetic energy, and energy that nobody has supplied, of a motion that feeds itself
+constexpr double kRunaway = 1.0;   // of all that was ever supplied: energy of the motion that is not the loading's, and gap of the balance, of a motion that feeds itself
 constexpr double kPatience = 100.0;   // travel times after which it goes on faster, in proportion: what creeps for ever is not waited for
 
 class Loader {
@@ -272,8 +272,8 @@ private:
         passages_.supplied_J = std::max(passages_.supplied_J, std::abs(row.energy.supplied()));
         if (!std::isfinite(row.residual) || !std::isfinite(row.axial_stress_Pa) || !std::isfinite(row.energy.residual()))
             throw NumericalError(fmt::format("a force is not a number at step {} (axial strain {:.3g}), first {}: {}", e_.step, row.axial_strain, fastest_place(), cause_of_runaway()));
-        if (row.energy.kinetic > kRunaway * passages_.supplied_J && -row.energy.residual() > kRunaway * passages_.supplied_J)
-            throw NumericalError(fmt::format("the body has {:.3g} J more than was ever supplied ({:.3g} J) at step {} (axial strain {:.3g}), and moves fastest {}: {}", -row.energy.residual(), passages_.supplied_J,
+        if (row.kinetic_deviation > kRunaway * passages_.supplied_J && std::abs(row.energy.residual()) > kRunaway * passages_.supplied_J)
+            throw NumericalError(fmt::format("the body moves with {:.3g} J, more than was ever supplied ({:.3g} J), at step {} (axial strain {:.3g}), and fastest {}: {}", row.kinetic_deviation, passages_.supplied_J,
                                              e_.step, row.axial_strain, fastest_place(), cause_of_runaway()));
     }
 
