@@ -7,9 +7,8 @@
 
 namespace feldspar {
 
-// Sutherland and Hodgman: what is left of the polygon behind one edge of the convex one after the other. A polygon that falls apart keeps edges of no
-// width between its pieces, which add no area.
-double overlap_area(std::span<const Vec2> polygon, std::span<const Vec2> convex) {
+// Sutherland and Hodgman: what is left of the polygon behind one edge of the convex one after the other.
+std::vector<Vec2> clipped(std::span<const Vec2> polygon, std::span<const Vec2> convex) {
     std::vector<Vec2> left(polygon.begin(), polygon.end()), cut;
     for (std::size_t k = 0; k < convex.size() && !left.empty(); ++k) {
         const Vec2 a = convex[k], along = convex[(k + 1) % convex.size()] - a;
@@ -22,7 +21,9 @@ double overlap_area(std::span<const Vec2> polygon, std::span<const Vec2> convex)
         }
         left.swap(cut);
     }
-    return std::max(0.0, signed_area(left));
+    return left;
 }
+
+double overlap_area(std::span<const Vec2> polygon, std::span<const Vec2> convex) { return std::max(0.0, signed_area(clipped(polygon, convex))); }
 
 }  // namespace feldspar

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/plain_text.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/job/rocks.hpp"
@@ -46,10 +47,9 @@ std::string tidy(std::string_view text) {
 }
 
 double pure_number(std::string_view text, const std::string& option) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) throw InputError({.key = option}, "'" + std::string(text) + "' is no number", "a plain number, such as 0.25");
-    return value;
+    const std::optional<double> value = finite_number(text);
+    if (!value) throw InputError({.key = option}, "'" + std::string(text) + "' is no number", "a plain number, such as 0.25");
+    return *value;
 }
 
 // A quantity of the command line, whose errors name the option.

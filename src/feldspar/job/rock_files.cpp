@@ -1,8 +1,6 @@
 #include "feldspar/job/rock_files.hpp"
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cstring>
 #include <map>
 #include <set>
@@ -13,6 +11,7 @@
 #include <png.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/plain_text.hpp"
 #include "feldspar/base/units.hpp"
 
 namespace feldspar {
@@ -26,12 +25,6 @@ std::string names_of(const std::vector<Mineral>& phases) {
     std::string names;
     for (const Mineral& phase : phases) names += (names.empty() ? "" : ", ") + phase.name;
     return names;
-}
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
-    return text;
 }
 
 std::vector<std::string_view> lines_of(std::string_view text) {
@@ -48,10 +41,9 @@ std::vector<std::string_view> lines_of(std::string_view text) {
 
 double number_of(std::string_view text, const std::filesystem::path& file, int line) {
     text = trimmed(text);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) fail(file, line, fmt::format("'{}' is not a number", text), "a number such as 12.5");
-    return value;
+    const std::optional<double> value = finite_number(text);
+    if (!value) fail(file, line, fmt::format("'{}' is not a number", text), "a number such as 12.5");
+    return *value;
 }
 
 double metres(const std::string& unit) { return parse_quantity("1 " + unit, Dimension::length); }
@@ -157,10 +149,9 @@ std::vector<Group> groups_of(const std::string& contents, const std::filesystem:
     std::vector<Group> groups;
     for (std::size_t i = 0; i + 1 < lines.size(); i += 2) {
         const std::string_view code = trimmed(lines[i]);
-        int value = 0;
-        const auto [end, error] = std::from_chars(code.data(), code.data() + code.size(), value);
-        if (error != std::errc() || end != code.data() + code.size()) fail(file, static_cast<int>(i) + 1, fmt::format("'{}' is no group code", code), "an ASCII DXF file: a code on one line, its value on the next");
-        groups.push_back({value, trimmed(lines[i + 1]), static_cast<int>(i) + 2});
+        const std::optional<int> value = whole_number<int>(code);
+        if (!value) fail(file, static_cast<int>(i) + 1, fmt::format("'{}' is no group code", code), "an ASCII DXF file: a code on one line, its value on the next");
+        groups.push_back({*value, trimmed(lines[i + 1]), static_cast<int>(i) + 2});
     }
     return groups;
 }

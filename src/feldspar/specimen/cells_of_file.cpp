@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -15,12 +14,16 @@
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/plain_text.hpp"
 
 namespace feldspar {
 namespace {
 
 constexpr std::size_t largest_file = std::size_t{1} << 30;
 constexpr long long most_things = 50'000'000;   // of one kind in a file; beyond it a count is damaged
+
+// Other programs write a plus sign, too.
+std::optional<double> signed_number(std::string_view word) { return finite_number(word.starts_with('+') ? word.substr(1) : word); }
 
 /// The words of a text, one after the other, each with its line.
 class Words {
@@ -53,18 +56,15 @@ public:
 
     double number(std::string_view what) {
         const std::string_view word = next(what);
-        const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) fail(fmt::format("'{}' is not a number", clipped(word)), std::string(what));
-        return value;
+        const std::optional<double> value = signed_number(word);
+        if (!value) fail(fmt::format("'{}' is not a number", clipped(word)), std::string(what));
+        return *value;
     }
     long long whole(std::string_view what) {
         const std::string_view word = next(what);
-        long long value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size()) fail(fmt::format("'{}' is not a whole number", clipped(word)), std::string(what));
-        return value;
+        const std::optional<long long> value = whole_number(word);
+        if (!value) fail(fmt::format("'{}' is not a whole number", clipped(word)), std::string(what));
+        return *value;
     }
     /// A count, from `least` on.
     long long count(std::string_view what, long long least = 0) {
@@ -530,12 +530,6 @@ private:
 
 // polygons as CSV
 
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())) != 0) text.remove_prefix(1);
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
-    return text;
-}
-
 class CsvReader {
 public:
     CsvReader(std::string_view contents, const std::filesystem::path& file) : contents_(contents), file_(file.string()) {}
@@ -595,11 +589,9 @@ private:
     }
 
     double number(std::string_view field) const {
-        const std::string_view digits = field.starts_with('+') ? field.substr(1) : field;
-        double value = 0.0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-        if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) fail(line_, fmt::format("'{}' is not a number", Words::clipped(field)), "a number such as 12.5");
-        return value;
+        const std::optional<double> value = signed_number(field);
+        if (!value) fail(line_, fmt::format("'{}' is not a number", Words::clipped(field)), "a number such as 12.5");
+        return *value;
     }
 
     void read_row(std::string_view line) {

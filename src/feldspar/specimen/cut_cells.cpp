@@ -86,17 +86,18 @@ public:
         const double mean_area = mean_cell_area();
         for (const Cutout& cutout : outline_.cutouts) cut(cutout);
         divide_bent();
-        const int joined = join_small(mean_area);
-        remove_straight();
-        CutCells result = in_order();
-        result.joined = joined;
-        require_one_piece();
-        return result;
+        return in_whole_pieces(mean_area);
     }
 
     CutCells join_pieces_of(std::vector<char> reshaped, double mean_area) {
         touched_ = reshaped;
         reshaped_ = std::move(reshaped);
+        return in_whole_pieces(mean_area);
+    }
+
+private:
+    // What was cut, without pieces that are too small for a grain. @param mean_area  of the cells before
+    CutCells in_whole_pieces(double mean_area) {
         const int joined = join_small(mean_area);
         remove_straight();
         CutCells result = in_order();
@@ -105,7 +106,6 @@ public:
         return result;
     }
 
-private:
     // faces and vertices
 
     std::vector<Vec2> corners(const Face& face) const {

@@ -1,6 +1,5 @@
 // A packing as text, so that it can be kept, exchanged and loaded again with the same bits.
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <exception>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/plain_text.hpp"
 #include "feldspar/specimen/outline.hpp"
 #include "feldspar/specimen/specimen.hpp"
 
@@ -63,12 +63,9 @@ public:
         if (words.size() != count) fail(fmt::format("'{}'", text_), what);
         std::vector<double> result;
         for (const std::string& word : words) {
-            double value = 0.0;
-            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-            if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-                fail(fmt::format("'{}' is not a number", word), what);
-            }
-            result.push_back(value);
+            const std::optional<double> value = finite_number(word);
+            if (!value) fail(fmt::format("'{}' is not a number", word), what);
+            result.push_back(*value);
         }
         return result;
     }

@@ -14,6 +14,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
+#include "feldspar/geometry/overlap.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/geometry/triangulate.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
@@ -30,23 +31,12 @@ struct Common {
     Vec2 moment;
 };
 
-/// Sutherland and Hodgman.
-Common common_part(std::vector<Vec2> polygon, const std::vector<Vec2>& convex) {
-    std::vector<Vec2> cut;
-    for (std::size_t k = 0; k < convex.size() && !polygon.empty(); ++k) {
-        const Vec2 a = convex[k], along = convex[(k + 1) % convex.size()] - a;
-        cut.clear();
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const Vec2 p = polygon[i], q = polygon[(i + 1) % polygon.size()];
-            const double at_p = cross(along, p - a), at_q = cross(along, q - a);
-            if (at_p >= 0.0) cut.push_back(p);
-            if ((at_p >= 0.0) != (at_q >= 0.0)) cut.push_back(p + at_p / (at_p - at_q) * (q - p));
-        }
-        polygon.swap(cut);
-    }
-    const double area = polygon.size() < 3 ? 0.0 : signed_area(polygon);
+/// @param convex  counter-clockwise
+Common common_part(const std::vector<Vec2>& polygon, const std::vector<Vec2>& convex) {
+    const std::vector<Vec2> part = clipped(polygon, convex);
+    const double area = part.size() < 3 ? 0.0 : signed_area(part);
     if (!(area > 0.0)) return {};
-    return {area, area * centroid(polygon)};
+    return {area, area * centroid(part)};
 }
 
 std::vector<std::vector<Vec2>> convex_parts(const std::vector<Vec2>& corners) {
