@@ -9,11 +9,9 @@ than the sheet or higher than a page; no console error and no request. Exit code
 """
 import base64
 import pathlib
-import shutil
 import sys
-import tempfile
 
-from report_opens import SKIPPED, Browser, problems
+from report_opens import opened_browser, problems
 
 WIDTHS, DENSITIES = (390, 1000, 1600), (1, 2)
 SHEET = (8.27, 11.69)      # inches, A4
@@ -169,55 +167,43 @@ def main():
     pictures = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else report.parent
     if not report.is_file():
         raise SystemExit(f"{report} does not exist")
-    program = next((p for p in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if p), None)
-    if not program:
-        print("skipped: no chromium is installed")
-        sys.exit(SKIPPED)
-    pictures.mkdir(parents=True, exist_ok=True)
     address, wrong, charts, pages = report.as_uri(), [], 0, b""
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        browser = Browser(program, profile)
-        try:
-            target = browser.ask("Target.createTarget", url="about:blank")["targetId"]
-            browser.session = browser.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-            for domain in ("Page", "Runtime", "Log", "Network"):
-                browser.ask(domain + ".enable")
-            browser.ask("Page.addScriptToEvaluateOnNewDocument", source=LISTEN)
+    with opened_browser() as browser:
+        pictures.mkdir(parents=True, exist_ok=True)
+        browser.ask("Page.addScriptToEvaluateOnNewDocument", source=LISTEN)
 
-            def open_at(width, density, scheme="light"):
-                browser.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=density, mobile=width < 500)
-                browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
-                browser.ask("Page.navigate", url=address)
-                for _ in range(40):   # until everything is drawn, at most ten seconds
-                    browser.listen(0.25)
-                    if browser.evaluate(DRAWN):
-                        break
+        def open_at(width, density, scheme="light"):
+            browser.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=density, mobile=width < 500)
+            browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+            browser.ask("Page.navigate", url=address)
+            for _ in range(40):   # until everything is drawn, at most ten seconds
                 browser.listen(0.25)
+                if browser.evaluate(DRAWN):
+                    break
+            browser.listen(0.25)
 
-            for width in WIDTHS:
-                for density in DENSITIES:
-                    open_at(width, density, "dark" if (width, density) == (1000, 2) else "light")
-                    found, charts = browser.evaluate(CHECK)
-                    wrong += [f"{width} pixels at density {density}: {line}" for line in found]
-                    browser.picture(pictures / f"report-{width}-at-{density}.png", "main")
-                    if (width, density) == (1000, 1):
-                        wrong += browser.evaluate(VIEWER) + browser.evaluate(CHART) + drag_zooms(browser)
-            # paper: the page as it is laid out for a sheet, then the sheets themselves
-            inside = [round(96 * (side - 2 * MARGIN)) for side in SHEET]
-            open_at(inside[0], 1)
-            browser.ask("Emulation.setEmulatedMedia", media="print", features=[])
-            browser.evaluate("dispatchEvent(new Event('beforeprint'))")
-            browser.listen(0.5)
-            wrong += browser.evaluate(PRINT % {"width": inside[0], "height": inside[1]})
-            wrong += ["on paper: " + line for line in browser.evaluate(CHECK)[0]]
-            browser.evaluate("dispatchEvent(new Event('afterprint'))")
-            browser.ask("Emulation.setEmulatedMedia", media="", features=[])
-            pages = base64.b64decode(browser.ask("Page.printToPDF", printBackground=True, preferCSSPageSize=True, paperWidth=SHEET[0], paperHeight=SHEET[1])["data"])
-            (pictures / "report.pdf").write_bytes(pages)
-            browser.listen(0.5)
-            wrong += problems(browser.events, address)
-        finally:
-            browser.close()
+        for width in WIDTHS:
+            for density in DENSITIES:
+                open_at(width, density, "dark" if (width, density) == (1000, 2) else "light")
+                found, charts = browser.evaluate(CHECK)
+                wrong += [f"{width} pixels at density {density}: {line}" for line in found]
+                browser.picture(pictures / f"report-{width}-at-{density}.png", "main")
+                if (width, density) == (1000, 1):
+                    wrong += browser.evaluate(VIEWER) + browser.evaluate(CHART) + drag_zooms(browser)
+        # paper: the page as it is laid out for a sheet, then the sheets themselves
+        inside = [round(96 * (side - 2 * MARGIN)) for side in SHEET]
+        open_at(inside[0], 1)
+        browser.ask("Emulation.setEmulatedMedia", media="print", features=[])
+        browser.evaluate("dispatchEvent(new Event('beforeprint'))")
+        browser.listen(0.5)
+        wrong += browser.evaluate(PRINT % {"width": inside[0], "height": inside[1]})
+        wrong += ["on paper: " + line for line in browser.evaluate(CHECK)[0]]
+        browser.evaluate("dispatchEvent(new Event('afterprint'))")
+        browser.ask("Emulation.setEmulatedMedia", media="", features=[])
+        pages = base64.b64decode(browser.ask("Page.printToPDF", printBackground=True, preferCSSPageSize=True, paperWidth=SHEET[0], paperHeight=SHEET[1])["data"])
+        (pictures / "report.pdf").write_bytes(pages)
+        browser.listen(0.5)
+        wrong += problems(browser.events, address)
     if not charts:
         wrong.append("the page has no chart")
     if not pages.startswith(b"%PDF"):

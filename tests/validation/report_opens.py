@@ -7,6 +7,7 @@ Saves report.png (the whole page), report-viewer.png and report-dark.png, for lo
 wrong (said in words); 77: no browser is installed (skipped).
 """
 import base64
+import contextlib
 import json
 import os
 import pathlib
@@ -147,19 +148,13 @@ USE_EVERYTHING = """(async () => {
 })()"""
 
 
-def main():
-    if len(sys.argv) < 2:
-        raise SystemExit(__doc__)
-    report = pathlib.Path(sys.argv[1]).resolve() / "report.html"
-    pictures = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else sys.argv[1])
-    if not report.is_file():
-        raise SystemExit(f"{report} does not exist")
+@contextlib.contextmanager
+def opened_browser():
+    """A browser with an empty page that tells what happens in it. Ends the program as skipped where no chromium is installed."""
     program = next((p for p in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if p), None)
     if not program:
         print("skipped: no chromium is installed")
         sys.exit(SKIPPED)
-    pictures.mkdir(parents=True, exist_ok=True)
-    address = report.as_uri()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         browser = Browser(program, profile)
         try:
@@ -167,28 +162,41 @@ def main():
             browser.session = browser.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
             for domain in ("Page", "Runtime", "Log", "Network"):
                 browser.ask(domain + ".enable")
-            browser.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
-            browser.events.clear()
-            browser.ask("Page.navigate", url=address)
-            browser.listen(4)
-            counts = browser.evaluate("[document.querySelectorAll('h2').length, document.querySelectorAll('table').length, document.querySelectorAll('canvas').length]")
-            browser.picture(pictures / "report.png")
-            used = browser.evaluate(USE_EVERYTHING)
-            has_viewer = browser.evaluate("document.querySelector('.viewer') !== null")
-            drawn = True
-            if has_viewer:
-                browser.picture(pictures / "report-viewer.png", ".viewer")
-                drawn = browser.evaluate("(() => { const c = document.querySelector('.stage canvas');"
-                                         "return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v > 0); })()")
-            browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
-            browser.listen(1.5)
-            browser.picture(pictures / "report-dark.png")
-            browser.ask("Emulation.setEmulatedMedia", features=[])
-            (pictures / "report.pdf").write_bytes(base64.b64decode(browser.ask("Page.printToPDF", printBackground=True)["data"]))
-            browser.listen(0.5)
-            found = problems(browser.events, address)
+            yield browser
         finally:
             browser.close()
+
+
+def main():
+    if len(sys.argv) < 2:
+        raise SystemExit(__doc__)
+    report = pathlib.Path(sys.argv[1]).resolve() / "report.html"
+    pictures = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else sys.argv[1])
+    if not report.is_file():
+        raise SystemExit(f"{report} does not exist")
+    address = report.as_uri()
+    with opened_browser() as browser:
+        pictures.mkdir(parents=True, exist_ok=True)
+        browser.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
+        browser.events.clear()
+        browser.ask("Page.navigate", url=address)
+        browser.listen(4)
+        counts = browser.evaluate("[document.querySelectorAll('h2').length, document.querySelectorAll('table').length, document.querySelectorAll('canvas').length]")
+        browser.picture(pictures / "report.png")
+        used = browser.evaluate(USE_EVERYTHING)
+        has_viewer = browser.evaluate("document.querySelector('.viewer') !== null")
+        drawn = True
+        if has_viewer:
+            browser.picture(pictures / "report-viewer.png", ".viewer")
+            drawn = browser.evaluate("(() => { const c = document.querySelector('.stage canvas');"
+                                     "return c.getContext('2d').getImageData(0, 0, c.width, c.height).data.some((v) => v > 0); })()")
+        browser.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark"}])
+        browser.listen(1.5)
+        browser.picture(pictures / "report-dark.png")
+        browser.ask("Emulation.setEmulatedMedia", features=[])
+        (pictures / "report.pdf").write_bytes(base64.b64decode(browser.ask("Page.printToPDF", printBackground=True)["data"]))
+        browser.listen(0.5)
+        found = problems(browser.events, address)
     if counts[0] < 3 or counts[1] < 2 or counts[2] < 1:
         found.append(f"the page looks empty: {counts} headings, tables and canvases")
     if not drawn:

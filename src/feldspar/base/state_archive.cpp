@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include <xxhash.h>
-
 namespace feldspar {
 namespace {
 
@@ -50,8 +48,6 @@ bool all_zero(const char* data, std::size_t bytes) {
 }
 
 }  // namespace
-
-std::uint64_t hash_of_bytes(const void* data, std::size_t bytes) { return XXH3_64bits(data, bytes); }
 
 void StateWriter::count(std::size_t& count) {
     const std::uint64_t value = count;

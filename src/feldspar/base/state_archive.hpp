@@ -28,6 +28,7 @@
 #include <vector>
 
 #include "feldspar/base/members.hpp"
+#include "feldspar/base/running_hash.hpp"
 
 namespace feldspar {
 
@@ -35,9 +36,6 @@ namespace feldspar {
 struct StateError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
-
-/// XXH3, 64 bits.
-std::uint64_t hash_of_bytes(const void* data, std::size_t bytes);
 
 /// Specialised for a union or the like that is a block of doubles and no more.
 template <class T>

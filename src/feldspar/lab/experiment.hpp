@@ -24,7 +24,6 @@ struct ElasticGuess {
 
 /// How far dead loads have been brought up on a body with the real law.
 struct Ramp {
-    bool under_way = false;
     long long step = 0;
     double already = 0.0;      ///< share that acts at its beginning
     double travel_m = 0.0;     ///< loading motion at the first damage of the elastic body, where that is known

@@ -241,13 +241,24 @@ public:
     }
 
 private:
-    // Everything that changes here and in what this leads; between two blocks of steps. The states to go back to stand first: they are read over the base state too.
+    // A state to go back to. Its members stand where those of the live state do, so that its body is compared with the base state, too.
+    template <class Archive>
+    static void keep_loading(Archive& archive, Loading& state) {
+        with_members(state, archive);
+    }
+
+    // Everything that changes here and in what this leads; between two blocks of steps.
+    template <class Archive>
+    void keep_live(Archive& archive) {
+        archive(e_.state(), lead_, passages_, loading_s_, recorder_);
+        keep_course(archive, result_);
+    }
+
+    // The states to go back to stand first: they are read over the base state too.
     void keep(StateWriter& writer) {
         writer.write(states_.size());
-        for (const Loading& state : states_)
-            writer.write(state.body, state.lead, state.stage_records, state.record, state.new_contacts, state.shape_fallbacks, state.angular_momentum_loss, state.load_Pa);
-        writer.write(e_.state(), lead_, passages_, loading_s_, recorder_);
-        keep_course(writer, result_);
+        for (Loading& state : states_) keep_loading(writer, state);
+        keep_live(writer);
     }
 
     void go_on(StateReader& reader) {
@@ -256,11 +267,9 @@ private:
         if (states > kStates) throw StateError("it has more states to go back to than a test keeps");
         for (std::size_t i = 0; i < states; ++i) {
             states_.push_back(present(0.0));
-            Loading& state = states_.back();
-            reader.read(state.body, state.lead, state.stage_records, state.record, state.new_contacts, state.shape_fallbacks, state.angular_momentum_loss, state.load_Pa);
+            keep_loading(reader, states_.back());
         }
-        reader.read(e_.state(), lead_, passages_, loading_s_, recorder_);
-        keep_course(reader, result_);
+        keep_live(reader);
     }
 
     Loading present(double load_Pa) const {

@@ -315,12 +315,11 @@ void bring_up_dead_loads(Experiment& e) {
                                               : "the specimen does not come to rest under its pressures and its weight: it fails before it is loaded");
     }
     e.change_speed(0.0);
-    e.ramp.under_way = false;
 }
 
 // @param already  share of the dead loads that acts already
 void consolidate_by_ramp(Experiment& e, double already = 0.0) {
-    e.ramp = {.under_way = true, .step = 0, .already = already, .travel_m = e.ramp.travel_m};
+    e.ramp = {.step = 0, .already = already, .travel_m = e.ramp.travel_m};
     bring_up_dead_loads(e);
 }
 

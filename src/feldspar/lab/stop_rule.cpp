@@ -27,10 +27,16 @@ bool StopRule::past_peak(double load_Pa) const {
 
 bool StopRule::peak_counts() const { return peak_Pa_ * e_->section_m2 >= kOfDeadLoads * e_->dead_load_N; }
 
-bool StopRule::steps_are_spent() const {
+bool StopRule::steps_are_spent() const { return spent().has_value(); }
+
+std::optional<std::string> StopRule::spent() const {
     const NumericsSpec& numerics = e_->setup.numerics;
-    if (numerics.maximum_steps) return result_->steps >= *numerics.maximum_steps;
-    return numerics.kind == NumericsKind::adaptive && static_cast<double>(result_->steps) >= kMostSteps * typical_steps(*e_);
+    if (numerics.maximum_steps) {
+        if (result_->steps < *numerics.maximum_steps) return std::nullopt;
+        return fmt::format("the maximum number of steps ({}) is reached", *numerics.maximum_steps);
+    }
+    if (numerics.kind != NumericsKind::adaptive || static_cast<double>(result_->steps) < kMostSteps * typical_steps(*e_)) return std::nullopt;
+    return fmt::format("it has made {} steps, {:g} times as many as such a test usually takes: its end may never come. numerics.maximum_steps allows more", result_->steps, kMostSteps);
 }
 
 std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bool unloading) {
@@ -58,10 +64,7 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bo
     }
     if (test.maximum_stress_Pa && load >= *test.maximum_stress_Pa)
         return fmt::format("the stress has reached its maximum of {:.4g} MPa", *test.maximum_stress_Pa / 1e6);
-    if (steps_are_spent() && e_->setup.numerics.maximum_steps) return fmt::format("the maximum number of steps ({}) is reached", *e_->setup.numerics.maximum_steps);
-    if (steps_are_spent())
-        return fmt::format("it has made {} steps, {:g} times as many as such a test usually takes: its end may never come. numerics.maximum_steps allows more", result_->steps, kMostSteps);
-    return std::nullopt;
+    return spent();
 }
 
 std::string StopRule::fallen() const { return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * e_->setup.test.stop_fraction); }

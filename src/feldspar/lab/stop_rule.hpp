@@ -52,6 +52,7 @@ public:
     }
 
 private:
+    std::optional<std::string> spent() const;   // that all steps have been made, in words
     bool split() const { return splitting_ && splitting_->split(); }
     bool peak_counts() const;
     void look_for_split();

@@ -1,36 +1,28 @@
 #include "feldspar/model/state_hash.hpp"
 
-#include <new>
 #include <type_traits>
 
-#include <xxhash.h>
+#include "feldspar/base/running_hash.hpp"
 
 namespace feldspar {
 namespace {
 
-// XXH3 of values as they come.
+// Of values as they come.
 class Hasher {
 public:
-    Hasher() : state_(XXH3_createState()) {
-        if (state_ == nullptr || XXH3_64bits_reset(state_) != XXH_OK) throw std::bad_alloc();
-    }
-    Hasher(const Hasher&) = delete;
-    Hasher& operator=(const Hasher&) = delete;
-    ~Hasher() { XXH3_freeState(state_); }
-
     template <class T>
     void add(const T& value) {
         static_assert(std::is_arithmetic_v<T>, "a structure may have bytes between its members");
-        XXH3_64bits_update(state_, &value, sizeof value);
+        hash_.add(&value, sizeof value);
     }
     void add(Vec2 value) {
         add(value.x);
         add(value.y);
     }
-    std::uint64_t digest() const { return XXH3_64bits_digest(state_); }
+    std::uint64_t digest() const { return hash_.digest(); }
 
 private:
-    XXH3_state_t* state_;
+    RunningHash hash_;
 };
 
 }  // namespace

@@ -1,18 +1,17 @@
 #include "feldspar/output/checkpoints.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <new>
 #include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/running_hash.hpp"
 #include "feldspar/fast/kernels.hpp"
 
 namespace feldspar {
@@ -36,27 +35,6 @@ std::string header_of(const CheckpointOwner& owner) {
 
 fs::path before_of(const fs::path& file) { return file.string() + ".before"; }
 
-// XXH3 of what is put, and how much it was.
-class Sum {
-public:
-    Sum() : state_(XXH3_createState()) {
-        if (state_ == nullptr || XXH3_64bits_reset(state_) != XXH_OK) throw std::bad_alloc();
-    }
-    Sum(const Sum&) = delete;
-    Sum& operator=(const Sum&) = delete;
-    ~Sum() { XXH3_freeState(state_); }
-
-    void add(const void* data, std::size_t bytes) {
-        XXH3_64bits_update(state_, data, bytes);
-        bytes_ += bytes;
-    }
-    Trailer trailer() const { return {bytes_, XXH3_64bits_digest(state_), kMark}; }
-
-private:
-    XXH3_state_t* state_;
-    std::uint64_t bytes_ = 0;
-};
-
 // The state in a file, or why there is none.
 Checkpoint read_file(const fs::path& file, const CheckpointOwner& owner) {
     std::error_code error;
@@ -70,7 +48,7 @@ Checkpoint read_file(const fs::path& file, const CheckpointOwner& owner) {
     if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) return no("it cannot be read");
     std::memcpy(&trailer, bytes.data() + size - sizeof trailer, sizeof trailer);
     bytes.resize(size - sizeof trailer);
-    if (trailer.mark != kMark || trailer.bytes != bytes.size() || trailer.hash != XXH3_64bits(bytes.data(), bytes.size())) return no("it is damaged");
+    if (trailer.mark != kMark || trailer.bytes != bytes.size() || trailer.hash != hash_of_bytes(bytes.data(), bytes.size())) return no("it is damaged");
     const std::string wanted = header_of(owner);
     if (bytes.size() >= wanted.size() && std::equal(wanted.begin(), wanted.end(), bytes.begin())) {
         bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(wanted.size()));
@@ -101,15 +79,17 @@ void write_checkpoint(const RunDirectory& directory, const std::string& name, co
     directory.write(name, [&](const fs::path& aside) {
         errno = 0;
         std::ofstream stream(aside, std::ios::binary);
-        Sum sum;
+        RunningHash hash;
+        std::uint64_t written = 0;
         const auto put = [&](const void* data, std::size_t bytes) {
-            sum.add(data, bytes);
+            hash.add(data, bytes);
+            written += bytes;
             stream.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
         };
         const std::string header = header_of(owner);
         put(header.data(), header.size());
         write(put);
-        const Trailer trailer = sum.trailer();
+        const Trailer trailer{written, hash.digest(), kMark};
         stream.write(reinterpret_cast<const char*>(&trailer), sizeof trailer);
         stream.close();
         if (!stream) throw std::system_error(errno != 0 ? errno : EIO, std::generic_category());

@@ -72,8 +72,8 @@ std::string identity_of_job(const Job& job) {
 FoundPlace find_place(const std::optional<fs::path>& wanted, const Job& job, bool fresh) {
     const auto same_job = [&](const fs::path& directory) { return text_of(directory / kCheckpoints / kJobFile) == identity_of_job(job); };
     if (wanted) {
-        const bool untouched = !is_unfinished(*wanted) && is_untouched(*wanted);
-        if (!is_unfinished(*wanted) && !untouched) return {};   // RunDirectory says whether it may be made
+        const bool untouched = !is_unfinished(*wanted);
+        if (untouched && !is_untouched(*wanted)) return {};   // RunDirectory says whether it may be made
         const auto refuse = [&](const std::string& problem, const std::string& allowed) {
             throw InputError({.file = "", .line = 0, .column = 0, .key = "--out"}, fmt::format("'{}' {}", wanted->string(), problem), allowed);
         };

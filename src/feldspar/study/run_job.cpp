@@ -264,9 +264,9 @@ private:
     void take_found(std::size_t i) {
         const PlannedRun& run = runs_[i];
         Checkpoint kept = read_checkpoint(directory_.path(), kept_as(run, ".result"), owner_of(run));
-        if (!kept.refused.empty()) tell_.note(fmt::format("{}: what it had left is not used, and it is made again: {}", numbered_label(i), kept.refused));
-        if (kept.state.empty()) return;
         try {
+            if (!kept.refused.empty()) throw StateError(kept.refused);
+            if (kept.state.empty()) return;
             TestResult result = kept_result(setup_of(run, runs_.specimen(run)), kept.state);
             result.variant = run.variant->name;
             found_.insert(i);
