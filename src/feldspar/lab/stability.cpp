@@ -1,5 +1,7 @@
 #include "feldspar/lab/stability.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -10,12 +12,11 @@
 namespace feldspar {
 namespace {
 
-// Takes what a load or a motion leaves off a body, and puts it back at the end. A copy of the body would be several times as large.
+// Takes loads and bonds off a body at rest, and puts them back at the end. A copy of the body would be several times as large.
 class Unloaded {
 public:
     explicit Unloaded(Assembly& body) : body_(body), dead_loads_(body.dead_loads) {
         exchange();
-        for (Array<Vec2>* state : {&body_.nodes.displacement, &body_.nodes.velocity, &body_.nodes.force}) state->resize(body_.nodes.reference.size());
         body_.bonds.resize(body_.points.size());
         for (DeadLoad& load : body_.dead_loads) {   // springs press plates, whose masses allow for them
             load.pressure_Pa = 0.0;
@@ -25,22 +26,21 @@ public:
     ~Unloaded() {
         exchange();
         body_.dead_loads = std::move(dead_loads_);
+        Nodes& nodes = body_.nodes;
+        for (Array<Vec2>* state : {&nodes.displacement, &nodes.velocity, &nodes.force}) std::fill(state->begin(), state->end(), Vec2{});
     }
     Unloaded(const Unloaded&) = delete;
     Unloaded& operator=(const Unloaded&) = delete;
 
 private:
     void exchange() {
-        std::swap(body_.nodes.displacement, displacement_);
-        std::swap(body_.nodes.velocity, velocity_);
-        std::swap(body_.nodes.force, force_);
         std::swap(body_.bonds, bonds_);
         std::swap(body_.weight, weight_);
     }
 
     Assembly& body_;
-    Array<Vec2> displacement_, velocity_, force_, weight_;
     Bonds bonds_;
+    Array<Vec2> weight_;
     std::vector<DeadLoad> dead_loads_;
 };
 
@@ -67,6 +67,7 @@ void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& fact
 }  // namespace
 
 double largest_omega2(Assembly& assembly, Team& team) {
+    assert(std::all_of(assembly.nodes.displacement.begin(), assembly.nodes.displacement.end(), [](Vec2 u) { return u == Vec2{}; }));
     const Unloaded unloaded(assembly);
     const int dofs = 2 * assembly.nodes.count(), iterations = 80;
     Eigen::VectorXd root_inverse_mass(dofs);   // 0 where the motion is imposed
