@@ -24,6 +24,7 @@ import tempfile
 import time
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
+SMALL = "times as wide as its largest grain"     # the one warning that a job of these pages may give: they are small to be quick
 BLOCK = re.compile(r"^(?:<!-- *([^\n]*?) *-->\n)?^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 
@@ -70,7 +71,7 @@ def follow(page, feldspar, slow, where):
             continue
         if outcome.returncode != expected:
             wrong.append(f"{place}: ends with {outcome.returncode}, not {expected}:\n{outcome.stdout[-2000:]}")
-        elif "warning:" in outcome.stdout.lower() and language == "toml":
+        elif language == "toml" and any("warning:" in line and SMALL not in line for line in outcome.stdout.splitlines()):
             wrong.append(f"{place}: warns:\n{outcome.stdout[-2000:]}")
         print(f"{place}: {time.monotonic() - began:.1f} s")
     return wrong, done
