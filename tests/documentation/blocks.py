@@ -83,7 +83,7 @@ def main():
     options.add_argument("--all", action="store_true")
     options.add_argument("--keep", type=pathlib.Path, help="the directory to work in, which stays")
     options.add_argument("pages", nargs="*", type=pathlib.Path)
-    given = options.parse_args()
+    given = options.parse_intermixed_args()
     pages = [page.resolve() for page in given.pages] or [TOP / "docs/first-rock.md", TOP / "docs/own-test.md", *sorted((TOP / "docs/how-to").glob("*.md"))]
     wrong, done = [], 0
     for page in pages:
