@@ -12,7 +12,8 @@ Pages are docs/first-rock.md, docs/own-test.md and docs/how-to/*.md unless given
     <!-- shown -->     not run: output, or something that needs what a test does not have
     <!-- exit 2 -->    of ```sh: the last command ends with this exit code
 
-Blocks of other languages, or of none, are output and not run. Exit code 0: fine; 1: a block fails, or a marker is not known.
+Blocks of other languages, or of none, are output and not run. Beside that every command with options that any page names, run or not, is held against
+`feldspar COMMAND --help`. Exit code 0: fine; 1: a block fails, a marker is not known, or a page names an option that the program does not have.
 """
 import argparse
 import os
@@ -77,6 +78,29 @@ def follow(page, feldspar, slow, where):
     return wrong, done
 
 
+def unknown_options(feldspar):
+    """Sentences on options of `feldspar COMMAND` in pages, examples and studies that the program does not know."""
+    known, wrong = {}, []
+
+    def help_of(command):
+        if command not in known:
+            answer = subprocess.run([feldspar, *command.split(), "--help"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            known[command] = (answer.returncode == 0, set(re.findall(r"--[a-zA-Z][\w-]*", answer.stdout)))
+        return known[command]
+
+    files = [*TOP.glob("*.md"), *(f for folder in ("docs", "examples", "studies") for f in (TOP / folder).rglob("*") if f.suffix in (".md", ".toml"))]
+    for file in files:
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+            for match in re.finditer(r"\bfeldspar (study (?:status|table|gather)\b|[a-z][a-z-]+)((?:[^`|;&#\n]|\|(?= ))*)", line):
+                command, rest = match.groups()
+                fine, options = help_of(command)
+                named = re.findall(r"(?<![\w-])--[a-zA-Z][\w-]*", rest)
+                if named and not fine:
+                    wrong.append(f"{file.relative_to(TOP)}:{number}: no such command: feldspar {command}")
+                wrong += [f"{file.relative_to(TOP)}:{number}: feldspar {command} has no option {option}" for option in named if fine and option not in options]
+    return wrong
+
+
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("feldspar", type=pathlib.Path)
@@ -85,7 +109,7 @@ def main():
     options.add_argument("pages", nargs="*", type=pathlib.Path)
     given = options.parse_intermixed_args()
     pages = [page.resolve() for page in given.pages] or [TOP / "docs/first-rock.md", TOP / "docs/own-test.md", *sorted((TOP / "docs/how-to").glob("*.md"))]
-    wrong, done = [], 0
+    wrong, done = unknown_options(given.feldspar.resolve()), 0
     for page in pages:
         with tempfile.TemporaryDirectory() as folder:
             where = given.keep / page.stem if given.keep else pathlib.Path(folder)
