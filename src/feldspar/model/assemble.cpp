@@ -450,6 +450,13 @@ void set_contacts(Assembly& assembly, const Texture& texture, const ContactMater
     if (!rock.contacts_differ()) return;
     assembly.own_laws.form = {contact.law, contact.shear_measure == ShearMeasure::beyond_friction, contact.tension_unloading == TensionUnloading::secant};
     const bool own_inside = !rock.minerals.phases.empty();
+    std::vector<std::int16_t> dilation_of(rock.joints.size(), -1);
+    for (std::size_t j = 0; j < rock.joints.size(); ++j) {
+        if (!(rock.joints[j].dilation > 0.0)) continue;
+        dilation_of[j] = static_cast<std::int16_t>(assembly.dilations.size());
+        assembly.dilations.push_back({rock.joints[j].dilation, rock.joints[j].dilation_slip_m});
+    }
+    if (!assembly.dilations.empty()) assembly.bonds.slip_m.assign(assembly.points.size(), 0.0);
     for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
         Contact& made = assembly.contacts[c];
         const ContactOrigin& origin = assembly.origins[c];
@@ -462,6 +469,7 @@ void set_contacts(Assembly& assembly, const Texture& texture, const ContactMater
         } else {
             const GrainContact joined = texture.contact(a, b, origin.from, origin.to);
             made.own_law = assembly.own_laws.add(law_constants(joined.material));
+            if (joined.joint >= 0) made.dilation = dilation_of[joined.joint];
             if (joined.broken) open(assembly, made, joined.opening_m);
         }
     }

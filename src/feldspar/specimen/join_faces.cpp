@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "feldspar/base/error.hpp"
@@ -127,7 +128,39 @@ private:
 
 }  // namespace
 
-void join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
+namespace {
+
+// Where cuts meet each has made vertices of its own: they become one. @return at how many places
+int share_crossings(Tessellation& cells, const Outline& outline, double snap_m) {
+    std::map<int, std::set<int>> cuts_at;   // of vertices on joined cuts: which
+    for (const Cell& cell : cells.cells)
+        for (std::size_t k = 0; k < cell.vertices.size(); ++k)
+            for (int n = 0; n < std::ssize(outline.cutouts); ++n) {
+                const Cutout& cut = outline.cutouts[n];
+                if (!cut.joined || cell.outline_edges[k] < cut.first_edge || cell.outline_edges[k] > cut.first_edge + 1) continue;
+                cuts_at[cell.vertices[k]].insert(n);
+                cuts_at[cell.vertices[(k + 1) % cell.vertices.size()]].insert(n);
+            }
+    std::vector<std::pair<int, std::set<int>>> several;   // a place by its first vertex
+    std::map<int, int> instead;
+    for (const auto& [v, cuts] : cuts_at)
+        if (cuts.size() > 1) {
+            const auto known = std::find_if(several.begin(), several.end(), [&](const auto& one) { return norm(cells.vertices[one.first] - cells.vertices[v]) < 1e-6 * snap_m; });
+            if (known == several.end()) several.push_back({v, cuts});
+        }
+    for (const auto& [v, cuts] : cuts_at)
+        for (const auto& [first, all] : several)
+            if (v != first && norm(cells.vertices[first] - cells.vertices[v]) < 1e-6 * snap_m) instead[v] = first;
+    for (Cell& cell : cells.cells)
+        for (int& v : cell.vertices)
+            if (const auto found = instead.find(v); found != instead.end()) v = found->second;
+    return static_cast<int>(several.size());
+}
+
+}  // namespace
+
+int join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
+    const int crossings = std::count_if(outline.cutouts.begin(), outline.cutouts.end(), [](const Cutout& cut) { return cut.joined; }) > 1 ? share_crossings(cells, outline, snap_m) : 0;
     std::map<std::pair<int, int>, int> seam_of_pair;   // of two cells; those of one joint may meet on several edges, of which all lie on it or none
     for (int n = 0; n < std::ssize(outline.cutouts); ++n) {
         if (!outline.cutouts[n].joined) continue;
@@ -135,7 +168,7 @@ void join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
         joiner.run();
         for (const auto& [c, k] : joiner.seams()) seam_of_pair[{std::min(c, cells.cells[c].neighbours[k]), std::max(c, cells.cells[c].neighbours[k])}] = n;
     }
-    if (seam_of_pair.empty()) return;
+    if (seam_of_pair.empty()) return 0;
     for (int c = 0; c < std::ssize(cells.cells); ++c) {
         Cell& cell = cells.cells[c];
         cell.seams.assign(cell.vertices.size(), -1);
@@ -159,6 +192,7 @@ void join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
     cells.vertices = std::move(kept);
     for (Cell& cell : cells.cells)
         for (int& v : cell.vertices) v = number[v];
+    return crossings;
 }
 
 }  // namespace feldspar
