@@ -337,8 +337,8 @@ void read_phase_sizes(const JobTable& grains, const std::vector<Mineral>& phases
         spec.grain_sizes = mixture_of(spec.phase_sizes, spec.porosity);
     } catch (const InputError&) {   // told where the sizes stand; here what fits in any case
         spec.phase_sizes.clear();
-        const double d = std::max(1e-6, smallest_extent_m(spec.outline) / 30.0);
-        spec.grain_sizes = {.kind = GrainSizeKind::uniform, .minimum_m = d, .maximum_m = d};
+        spec.grain_sizes = GrainSizeSpec{};
+        spec.grain_sizes.minimum_m = spec.grain_sizes.maximum_m = std::max(1e-6, smallest_extent_m(spec.outline) / 30.0);
     }
 }
 

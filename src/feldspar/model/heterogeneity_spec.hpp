@@ -88,7 +88,7 @@ struct Mineral {
     GrainMaterial grain;
     std::uint32_t colour = 0;              ///< 0xRRGGBB, in pictures and in a map
     int value = -1;                        ///< of its pixels in a grey map, 0 ... 255; -1: they have its colour
-    std::optional<GrainSizeSpec> sizes;    ///< of its grains, as given; absent: those of [specimen.grains]. What counts is SpecimenSpec::phase_sizes
+    std::optional<GrainSizeSpec> sizes{};  ///< of its grains, as given; absent: those of [specimen.grains]. What counts is SpecimenSpec::phase_sizes
 };
 
 /// What of a contact material a pair of phases has of its own.

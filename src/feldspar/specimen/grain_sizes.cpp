@@ -201,32 +201,42 @@ SizeSummary summary_of(std::vector<double> diameters) {
 
 namespace {
 
-/// (H7): the width e of the film by which cells exceed their discs, from sum f E[d^2] / E[(d + 2e)^2] = 1 - n.
-double film_width(const std::vector<PhaseSizes>& phases, double porosity) {
+/// Grains of each phase for a unit of area, 1/m^2, by (H7) and (H8): each cell is a disc with a film e = e0 D / (d + D) around it, where D is the mean diameter of
+/// the neighbours, by their perimeters; e0 is such that the discs have the share 1 - n of the area.
+std::vector<double> grains_per_area(const std::vector<PhaseSizes>& phases, double porosity) {
     std::vector<DiameterMoments> moments;
     double widest = 0.0;
     for (const PhaseSizes& phase : phases) {
         moments.push_back(diameter_moments(phase.sizes));
         widest = std::max(widest, largest_of(phase.sizes));
     }
-    const auto share_of_discs = [&](double e) {
+    std::vector<double> numbers(phases.size());
+    double neighbours = widest;
+    const auto share_of_discs = [&](double e0) {
         double sum = 0.0;
-        for (std::size_t p = 0; p < phases.size(); ++p) sum += phases[p].share * moments[p].mean_square_m2 / (moments[p].mean_square_m2 + 4.0 * e * moments[p].mean_m + 4.0 * e * e);
+        for (std::size_t p = 0; p < phases.size(); ++p) {
+            const DiameterMoments& m = moments[p];
+            const double e = e0 * neighbours / (m.mean_m + neighbours);
+            numbers[p] = phases[p].share / (0.25 * std::numbers::pi * (m.mean_square_m2 + 4.0 * e * m.mean_m + 4.0 * e * e));
+            sum += 0.25 * std::numbers::pi * numbers[p] * m.mean_square_m2;
+        }
         return sum;
     };
-    double low = 0.0, high = widest;
-    while (share_of_discs(high) > 1.0 - porosity) high *= 2.0;
-    for (int i = 0; i < 100; ++i) {
-        const double middle = 0.5 * (low + high);
-        (share_of_discs(middle) > 1.0 - porosity ? low : high) = middle;
+    for (int round = 0; round < 20; ++round) {   // each numbers for the next mean of the neighbours
+        double low = 0.0, high = widest;
+        while (share_of_discs(high) > 1.0 - porosity) high *= 2.0;
+        for (int i = 0; i < 100; ++i) {
+            const double middle = 0.5 * (low + high);
+            (share_of_discs(middle) > 1.0 - porosity ? low : high) = middle;
+        }
+        double squares = 0.0, perimeters = 0.0;
+        for (std::size_t p = 0; p < phases.size(); ++p) {
+            squares += numbers[p] * moments[p].mean_square_m2;
+            perimeters += numbers[p] * moments[p].mean_m;
+        }
+        neighbours = squares / perimeters;
     }
-    return 0.5 * (low + high);
-}
-
-/// (H8) Grains of a phase for each unit of area, 1/m^2.
-double grains_per_area(const PhaseSizes& phase, double film_m) {
-    const DiameterMoments m = diameter_moments(phase.sizes);
-    return phase.share / (0.25 * std::numbers::pi * (m.mean_square_m2 + 4.0 * film_m * m.mean_m + 4.0 * film_m * film_m));
+    return numbers;
 }
 
 /// E[d^2; d <= D] of a distribution by number, m^2, in closed form.
@@ -261,10 +271,11 @@ std::vector<int> grains_of_phases(const std::vector<PhaseSizes>& phases, double 
         sum += phase.share;
     }
     if (!(std::abs(sum - 1.0) < 1e-6)) throw InputError({"", 0, 0, "material.phase.share"}, fmt::format("the shares of the minerals add up to {:.6g}", sum), "1 (100 %)");
-    const double film = film_width(phases, porosity);
+    const std::vector<double> numbers = grains_per_area(phases, porosity);
     std::vector<int> counts;
-    for (const PhaseSizes& phase : phases) {
-        const double count = area_m2 * grains_per_area(phase, film);
+    for (std::size_t p = 0; p < phases.size(); ++p) {
+        const PhaseSizes& phase = phases[p];
+        const double count = area_m2 * numbers[p];
         if (count < 0.5)
             throw InputError({"", 0, 0, "material.phase.diameter"}, fmt::format("the share of \"{}\", {:.3g} %, is less than half a grain of its size", phase.name, 100.0 * phase.share), "a share of a grain or more",
                              "smaller grains of it, a larger share, or a larger specimen");
@@ -313,17 +324,20 @@ std::vector<PhaseFill> fill_of_phases(const Specimen& specimen) {
 
 GrainSizeSpec mixture_of(const std::vector<PhaseSizes>& phases, double porosity) {
     constexpr int kPoints = 200;
-    const double film = film_width(phases, porosity);
+    const std::vector<double> numbers = grains_per_area(phases, porosity);
     double low = std::numeric_limits<double>::infinity(), high = 0.0, all = 0.0;
-    std::vector<double> numbers;
-    for (const PhaseSizes& phase : phases) {
-        low = std::min(low, smallest_of(phase.sizes));
-        high = std::max(high, largest_of(phase.sizes));
-        numbers.push_back(grains_per_area(phase, film));
-        all += numbers.back() * diameter_moments(phase.sizes).mean_square_m2;
+    for (std::size_t p = 0; p < phases.size(); ++p) {
+        low = std::min(low, smallest_of(phases[p].sizes));
+        high = std::max(high, largest_of(phases[p].sizes));
+        all += numbers[p] * diameter_moments(phases[p].sizes).mean_square_m2;
     }
-    if (!(high > low * (1.0 + 1e-9))) return {.kind = GrainSizeKind::uniform, .minimum_m = low, .maximum_m = high};
-    GrainSizeSpec mixture{.kind = GrainSizeKind::sieve};
+    GrainSizeSpec mixture;
+    if (!(high > low * (1.0 + 1e-9))) {
+        mixture.minimum_m = low;
+        mixture.maximum_m = high;
+        return mixture;
+    }
+    mixture.kind = GrainSizeKind::sieve;
     for (int i = 0; i <= kPoints; ++i) {
         const double d = i == kPoints ? high : low * std::pow(high / low, static_cast<double>(i) / kPoints);
         double passing = 0.0;

@@ -54,7 +54,7 @@ struct PhasedDiameters {
 };
 
 /// How many grains each mineral has in a packing of this area (docs/theory/heterogeneity.md, H7 and H8). The cells fill the plane: each has, beside its
-/// disc, a film of even width, of which small grains have more. The counts are such that the cells, not the discs, have the shares.
+/// disc, a film around it, which is wider around small grains. The counts are such that the cells, not the discs, have the shares.
 /// @throws InputError  shares that do not add up to 1; what check_grain_sizes refuses
 std::vector<int> grains_of_phases(const std::vector<PhaseSizes>& phases, double area_m2, double porosity);
 
