@@ -333,7 +333,7 @@ void read_phase_sizes(const JobTable& grains, const std::vector<Mineral>& phases
     if (!spec.given_cells.file.empty()) return;
     for (const Mineral& phase : phases) spec.phase_sizes.push_back({phase.name, phase.share, phase.sizes.value_or(others)});
     try {
-        grains_of_phases(spec.phase_sizes, 1e3 * rough_area_m2(spec.outline), spec.porosity);   // of a larger specimen: that a mineral has less than a grain is told when the packing is made
+        grains_of_phases(spec.phase_sizes, 1e3 * rough_area_m2(spec.outline), spec.porosity);   // of a larger specimen: that a mineral has less than a grain is told apart
         spec.grain_sizes = mixture_of(spec.phase_sizes, spec.porosity);
     } catch (const InputError&) {   // told where the sizes stand; here what fits in any case
         spec.phase_sizes.clear();
@@ -359,6 +359,14 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     if (grains.has("crystals")) spec.crystal_sizes = read_grain_sizes(grains, "crystals");
     spec.porosity = grains.number("porosity");
     if (!phases.empty()) read_phase_sizes(grains, phases, spec);
+    if (!spec.phase_sizes.empty() && table.sound({"shape", "width", "height", "diameter", "vertices"}) && grains.sound({"porosity"}))
+        root.check({}, [&] {
+            try {
+                grains_of_phases(spec.phase_sizes, rough_area_m2(spec.outline), spec.porosity);
+            } catch (const InputError& problem) {
+                root.fail("material", problem.problem(), problem.allowed(), problem.suggestion());
+            }
+        });
     spec.triangles_per_grain = static_cast<int>(grains.integer("triangles_per_grain"));
     if (!filled)
         grains.number("particles_per_grain");

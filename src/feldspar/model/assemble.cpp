@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/heap_bytes.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/model/attachment.hpp"
 #include "feldspar/model/masses.hpp"
@@ -592,14 +593,6 @@ void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_ove
     add_contact(assembly, contact, {});
 }
 
-double Assembly::memory_bytes() const {
-    const auto bytes = [](const auto& v) { return static_cast<double>(v.capacity() * sizeof(v[0])); };
-    double sum = bytes(nodes.reference) * 6.0 + bytes(nodes.mass) + bytes(triangles) + bytes(bodies) + bytes(edges) + bytes(node_of_mesh) + bytes(contacts) +
-                 bytes(origins) + bytes(points) + bytes(bonds.un_m) * 9.0 + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) +
-                 bytes(pressure_edges) + bytes(body_work) + bytes(weight) + own_laws.memory_bytes();
-    sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.line_of_edge) + bytes(packs.lines) + bytes(packs.inverse_cross) +
-           bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0 + bytes(packs.normal_x) * 2.0 + bytes(packs.rigid);
-    return sum;
-}
+double Assembly::memory_bytes() const { return heap_bytes(*this); }
 
 }  // namespace feldspar

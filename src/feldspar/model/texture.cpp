@@ -15,6 +15,7 @@
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/model/joints.hpp"
+#include "feldspar/model/log_normal.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 
 namespace feldspar {
@@ -62,7 +63,7 @@ double share_below(const Distribution& d, double f) {
     switch (d.kind) {
         case DistributionKind::weibull: return -std::expm1(-std::pow(f * std::tgamma(1.0 + 1.0 / d.weibull_modulus), d.weibull_modulus));
         case DistributionKind::log_normal: {
-            const double s = std::sqrt(std::log1p(d.variation * d.variation));
+            const double s = log_deviation(d.variation);
             return normal_share_below((std::log(f) + 0.5 * s * s) / s);
         }
         case DistributionKind::normal: return normal_share_below((f - 1.0) / d.variation);
@@ -423,11 +424,7 @@ double factor_at(const Distribution& d, double u) {
     double factor = 1.0;
     switch (d.kind) {
         case DistributionKind::weibull: factor = std::pow(-std::log1p(-v), 1.0 / d.weibull_modulus) / std::tgamma(1.0 + 1.0 / d.weibull_modulus); break;
-        case DistributionKind::log_normal: {
-            const double s = std::sqrt(std::log1p(d.variation * d.variation));
-            factor = std::exp(s * standard_normal_at(v) - 0.5 * s * s);
-            break;
-        }
+        case DistributionKind::log_normal: factor = log_normal_factor(d.variation, standard_normal_at(v)); break;
         case DistributionKind::normal: factor = 1.0 + d.variation * standard_normal_at(v); break;
         case DistributionKind::none: break;
     }
