@@ -14,6 +14,7 @@
 #include "feldspar/base/thread_shares.hpp"
 #include "feldspar/methods/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/planned_runs.hpp"
 #include "feldspar/study/sharing.hpp"
@@ -46,6 +47,11 @@ void print_specimen(const std::string& what, const Specimen& specimen) {
         100.0 * q.overlap_max);
     say("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
     if (!specimen.spec.given_cells.given()) say("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
+    const std::vector<PhaseFill> fills = fill_of_phases(specimen);
+    for (std::size_t p = 0; p < fills.size(); ++p)
+        say("  {:<22}{} grains, {:.2f} % of the area ({:.4g} % asked for), mm: {}; discs {}\n", specimen.packing.phase_names[p], fills[p].grains, 100.0 * fills[p].area_share,
+            100.0 * specimen.spec.phase_sizes[p].share, sizes_text(fills[p].cells), sizes_text(fills[p].discs));
+    if (q.crossings > 0) say("  cuts that cross       {} crossings, or ends on another cut; {} pieces were too small for a grain and went to a neighbour\n", q.crossings, q.joined_pieces);
     say("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
     say("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
     say("  area error            {:.1e}\n", q.area_error);

@@ -6,6 +6,7 @@
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/laws/bond.hpp"
+#include "feldspar/laws/dilation.hpp"
 #include "../table7.hpp"
 
 namespace feldspar {
@@ -239,6 +240,132 @@ TEST(Softening, BreakPointHasAQuarterOfTheStrength) {
 TEST(Softening, WithoutEnergyToSoftenTheDirectionIsBrittle) {
     EXPECT_TRUE(SofteningEnvelope::make(ContactLaw::bilinear, 8.5e6, 18e13, 0.19).brittle);   // 2 G / F below F / k
     EXPECT_FALSE(SofteningEnvelope::make(ContactLaw::bilinear, 8.5e6, 18e13, 0.21).brittle);
+}
+
+// ------------------------------------------------------------------------------------------------------------------------- dilation
+
+constexpr double kTanPsi = 0.2, kLimit = 1e-4;
+
+// A broken joint under a normal stress, sheared by `reach`. @param stiffness_Pa_m  of what presses it: 0, a constant stress
+struct Sheared {
+    double opening_m = 0.0, shear_N = 0.0, normal_N = 0.0, work_J = 0.0, slip_m = 0.0, first_slip_u_m = -1.0;
+    BondState state;
+};
+
+Sheared shear(double reach_m, double stiffness_Pa_m, const Dilation& dilation, int steps = 4000) {
+    ContactMaterial m = fixtures::table7();
+    m.sigma_nt_Pa = m.tau_Pa = 0.0;
+    m.mu = 0.5;
+    const BondLaw law = BondLaw::make(m);
+    constexpr double kStress = 5e6;
+    const double kn = law.Kn_Pa_m * kArea, K = stiffness_Pa_m * kArea;
+    Sheared r;
+    r.state.damage = 1.0;
+    r.state.un_m = -kStress * kArea / kn;
+    r.state.Fn_N = kStress * kArea;
+    double un = 0.0;   // since then
+    for (int k = 0; k < steps; ++k) {
+        const double du = reach_m / steps, Fn_before = r.state.Fn_N, Fs_before = r.state.Fs_N;
+        // The opening at which what presses it and the joint are in balance: both forces fall or grow with it.
+        double low = -1e-5, high = 1e-5;
+        BondState after;
+        double slip = 0.0, dun = 0.0;
+        for (int i = 0; i < 80; ++i) {
+            dun = 0.5 * (low + high);
+            after = r.state;
+            slip = r.slip_m;
+            slide_with_dilation(law, dilation, kArea, dun, du, after, slip);
+            (after.Fn_N > kStress * kArea + K * (un + dun) ? low : high) = dun;
+        }
+        if (r.first_slip_u_m < 0.0 && slip > 0.0) r.first_slip_u_m = (k + 1) * du;
+        un += dun;
+        r.state = after;
+        r.slip_m = slip;
+        r.work_J -= 0.5 * (Fn_before + after.Fn_N) * dun + 0.5 * (Fs_before + after.Fs_N) * du;
+    }
+    r.opening_m = un;
+    r.shear_N = -r.state.Fs_N;
+    r.normal_N = r.state.Fn_N;
+    return r;
+}
+
+TEST(Dilation, UnderAConstantStressIsTheTangentOfItsAngleUntilItsLimit) {
+    const Dilation d{kTanPsi, kLimit};
+    const Sheared one = shear(0.5 * kLimit, 0.0, d), two = shear(0.7 * kLimit, 0.0, d);
+    EXPECT_NEAR((two.opening_m - one.opening_m) / (0.2 * kLimit), kTanPsi, 1e-3 * kTanPsi);
+    EXPECT_NEAR(two.shear_N / two.normal_N, 0.5, 1e-9) << "the strength is that of the whole friction angle";
+    EXPECT_NEAR(two.normal_N / kArea, 5e6, 1.0);
+    const Sheared far = shear(2.0 * kLimit, 0.0, d), farther = shear(2.5 * kLimit, 0.0, d);
+    EXPECT_NEAR(far.opening_m, kTanPsi * kLimit, 1e-3 * kTanPsi * kLimit);
+    EXPECT_NEAR(farther.opening_m, far.opening_m, 1e-6 * kTanPsi * kLimit);
+    EXPECT_NEAR(farther.shear_N / farther.normal_N, 0.5, 1e-9);
+}
+
+TEST(Dilation, AgainstASpringMakesTheNormalStressGrow) {
+    const double K = 2e9;   // Pa/m; the joint's own is 9e4 times that, and adds 1e-5 to the answer
+    const Sheared one = shear(0.3 * kLimit, K, {kTanPsi, kLimit}), two = shear(0.7 * kLimit, K, {kTanPsi, kLimit});
+    const double slip = two.slip_m - one.slip_m;
+    EXPECT_NEAR((two.normal_N - one.normal_N) / kArea / (K * kTanPsi * slip), 1.0, 1e-3);
+    EXPECT_NEAR((two.normal_N - one.normal_N) / kArea / (K * kTanPsi * 0.4 * kLimit), 1.0, 1e-3) << "shear displacement is slip but for the shear spring";
+    EXPECT_NEAR(two.shear_N / two.normal_N, 0.5, 1e-9);
+}
+
+TEST(Dilation, DissipatesWhatTheShearForceDoesNotLift) {
+    for (const double K : {0.0, 2e9, 2e12}) {
+        const Sheared r = shear(1.5 * kLimit, K, {kTanPsi, kLimit});
+        ContactMaterial m = fixtures::table7();
+        m.sigma_nt_Pa = m.tau_Pa = 0.0;
+        const BondLaw law = BondLaw::make(m);
+        BondState before;
+        before.damage = 1.0;
+        before.Fn_N = 5e6 * kArea;
+        const double stored = elastic_energy(law, kArea, r.state) - elastic_energy(law, kArea, before);
+        EXPECT_NEAR((r.work_J - stored) / (r.state.friction_J + r.state.fracture_J), 1.0, 1e-9) << K;
+        EXPECT_LT(std::abs(r.state.fracture_J), 1e-3 * r.state.friction_J) << K;
+        EXPECT_GT(r.state.friction_J, 0.0);
+    }
+    const Sheared r = shear(0.9 * kLimit, 0.0, {kTanPsi, kLimit});
+    EXPECT_NEAR(r.state.friction_J / ((0.5 - kTanPsi) * 5e6 * kArea * r.slip_m), 1.0, 1e-3) << "(mu - tan psi) Fn of the slip";
+}
+
+TEST(Dilation, StopsWithinAStepAtItsLimitAndWorksBothWays) {
+    // Steps of any size leave the same opening, since the step in which the limit is reached is divided there.
+    const double fine = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 6000).opening_m, coarse = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 7).opening_m;
+    EXPECT_NEAR(coarse / fine, 1.0, 1e-3);
+    const BondLaw law = BondLaw::make(fixtures::table7());
+    const Dilation d{kTanPsi, kLimit};
+    BondState s;
+    s.damage = 1.0;
+    s.un_m = -1e-7;
+    s.Fn_N = law.Kn_Pa_m * kArea * 1e-7;
+    double slip = 0.0;
+    slide_with_dilation(law, d, kArea, 0.0, 1e-5, s, slip);
+    const double there = slip;
+    EXPECT_GT(there, 0.0);
+    slide_with_dilation(law, d, kArea, 0.0, -3e-5, s, slip);
+    EXPECT_GT(slip, there) << "slip back counts too";
+    slide_with_dilation(law, d, kArea, 1e-4, 1e-5, s, slip);
+    EXPECT_EQ(s.Fn_N, 0.0);
+    EXPECT_EQ(s.Fs_N, 0.0) << "open faces carry nothing";
+}
+
+// Without dilation the step is that of broken points.
+TEST(Dilation, OfNoAngleIsCoulombsFriction) {
+    const BondLaw law = BondLaw::make(fixtures::table7());
+    RandomStream random(1, "dilation");
+    BondState a, b;
+    a.damage = b.damage = 1.0;
+    double slip = 0.0;
+    for (int k = 0; k < 2000; ++k) {
+        const double dun = 2e-8 * (random.uniform() - 0.52), dus = 1e-7 * (random.uniform() - 0.5);
+        update_bond(law, kArea, dun, dus, a);
+        slide_with_dilation(law, {0.0, 1.0}, kArea, dun, dus, b, slip);
+        EXPECT_EQ(a.un_m, b.un_m);
+        EXPECT_EQ(a.Fn_N, b.Fn_N);
+        EXPECT_EQ(a.Fs_N, b.Fs_N);
+        EXPECT_NEAR(a.friction_J, b.friction_J, 1e-9 * std::abs(a.friction_J) + 1e-18);
+        EXPECT_NEAR(a.fracture_J, b.fracture_J, 1e-9 * std::abs(a.fracture_J) + 1e-18);
+    }
 }
 
 }  // namespace

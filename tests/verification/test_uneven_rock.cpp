@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "feldspar/base/regression.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/texture.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
@@ -250,6 +251,67 @@ TEST(Joints, ThatAreSmoothSlideAtTheirFriction) {
         EXPECT_NEAR(along / across / 0.5, 1.0, grains == GrainKind::rigid ? 1e-3 : 5e-3) << name(grains);
         EXPECT_NEAR(r.properties.peak_stress_Pa / 1e6, 1.0, 0.02) << name(grains);
     }
+}
+
+// A smooth joint that dilates in direct shear: the upper half rises by tan psi of the slip until the limit, under the friction of the whole angle; behind a spring
+// the normal stress grows by what the spring gives for the rise. Rigid grains: nothing else gives way.
+TestResult dilating_shear(GrainKind grains, double tan_psi, double limit_m, double stiffness_Pa_m, double strain) {
+    TestSetup setup = fixtures::setup(with_joint(0.04, 0.02, 0.0), methods::direct_shear, fixtures::model(grains));
+    setup.test = usual_test(methods::direct_shear);
+    JointSpec joint = smooth_joint(setup.contact, 0.5, 0.0, 0.0);
+    joint.dilation = tan_psi;
+    joint.dilation_slip_m = limit_m;
+    setup.rock.joints = {joint};
+    setup.test.sigma3_Pa = 2e6;
+    setup.test.maximum_strain = strain;
+    setup.test.stop_fraction = 0.5;
+    if (stiffness_Pa_m > 0.0) setup.test.own["normal_stiffness"] = {stiffness_Pa_m};
+    return run_test(setup, fixtures::threads(1));
+}
+
+TEST(Joints, ThatDilateRiseByTheTangentOfTheirAngleUntilTheirLimit) {
+    constexpr double kTanPsi = 0.2, kLimit = 1e-4;
+    for (const GrainKind grains : {GrainKind::rigid, GrainKind::flexible}) {
+        const TestResult r = dilating_shear(grains, kTanPsi, kLimit, 0.0, 0.005);
+        std::vector<double> u, v;   // while it dilates
+        double along = 0.0, across = 0.0, highest = 0.0, at_end = 0.0;
+        for (const HistoryRow& row : r.history) {
+            if (row.phase != Phase::loading) continue;
+            const double slip = row.axial_strain * r.length_m;
+            if (slip > 0.3 * kLimit && slip < 0.9 * kLimit) {
+                u.push_back(slip);
+                v.push_back(row.gauges[0]);
+            }
+            if (slip > 0.3 * kLimit) {
+                along += row.axial_stress_Pa * r.section_m2;
+                across += row.gauges[1];
+            }
+            highest = std::max(highest, row.gauges[0]);
+            at_end = row.gauges[0];
+        }
+        ASSERT_GT(u.size(), 10U) << name(grains);
+        // The joint of rigid grains dilates as its law says. That of flexible grains tilts with their edges, as above.
+        const double tolerance = grains == GrainKind::rigid ? 1e-3 : 2e-2;
+        EXPECT_NEAR(regression_line(u, v).slope / kTanPsi, 1.0, tolerance) << name(grains);
+        EXPECT_NEAR(along / across / 0.5, 1.0, grains == GrainKind::rigid ? 2e-3 : 1e-2) << name(grains);
+        EXPECT_NEAR(highest / (kTanPsi * kLimit), 1.0, grains == GrainKind::rigid ? 1e-2 : 5e-2) << name(grains);
+        EXPECT_NEAR(at_end / highest, 1.0, 2e-2) << name(grains) << ": beyond the limit it slides on";
+        EXPECT_LT(r.energy_residual, 0.01) << name(grains);
+    }
+}
+
+TEST(Joints, ThatDilateBehindASpringArePressedHarder) {
+    constexpr double kTanPsi = 0.2, kStiffness = 5e9;   // Pa/m; what is between the spring and the joint gives way 2e-4 of what the spring does
+    const TestResult r = dilating_shear(GrainKind::rigid, kTanPsi, 1e-3, kStiffness, 0.004);
+    std::vector<double> u, stress;
+    for (const HistoryRow& row : r.history)
+        if (const double slip = row.axial_strain * r.length_m; row.phase == Phase::loading && slip > 4e-5) {
+            u.push_back(slip);
+            stress.push_back(row.gauges[1] / r.section_m2);
+        }
+    ASSERT_GT(u.size(), 10U);
+    EXPECT_NEAR(regression_line(u, stress).slope / (kStiffness * kTanPsi), 1.0, 1e-3);
+    EXPECT_LT(r.energy_residual, 0.01);
 }
 
 // Every crack dissipates, and the events hold all of it.

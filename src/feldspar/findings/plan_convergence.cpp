@@ -84,6 +84,7 @@ Step grain_step(const Job& job, double factor) {
     const double diameter_mm = 1e3 * middle_diameter_m(job.specimen.grain_sizes) * factor;
     return {fmt::format("{:.4g} mm", diameter_mm), diameter_mm, changed(job, [factor](SpecimenSpec& s) {
                 scale(s.grain_sizes, factor);
+                for (PhaseSizes& phase : s.phase_sizes) scale(phase.sizes, factor);
                 if (s.merge_length_m) *s.merge_length_m *= factor;
             })};
 }

@@ -68,7 +68,7 @@ public:
         if (kinds_known(root, job_.variants))
             filled = std::any_of(job_.variants.begin(), job_.variants.end(),
                                  [](const Variant& v) { return v.model.kind == GrainKind::inner_particles; });
-        job_.specimen = read_specimen(root, job_.file.parent_path(), filled);
+        job_.specimen = read_specimen(root, job_.file.parent_path(), filled, minerals_with_sizes(root, job_.variants));
         job_.tests = read_tests(root, job_.specimen, job_.variants, job_.seeds);
         check_variants(root, job_);
         job_.laboratory = read_laboratory(root);

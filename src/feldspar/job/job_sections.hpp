@@ -18,8 +18,11 @@ namespace feldspar {
 Job read_tree(toml::table tree, const std::string& text, const std::string& name);
 
 /// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles; nothing if a
-/// mistake in the models leaves that open.
-SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled);
+/// mistake in the models leaves that open. @param phases  minerals, some of which have sizes of their own; empty: none has. The others take those of [specimen.grains]
+SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled, const std::vector<Mineral>& phases);
+
+/// `diameter` or `crystals`: how grains' diameters are distributed.
+GrainSizeSpec read_grain_sizes(const JobTable& table, std::string_view key);
 
 /// `holes`, `notches` and `labels` of [specimen].
 void read_cutouts(const JobTable& table, OutlineSpec& outline);
@@ -48,6 +51,9 @@ bool kinds_known(const TableReader& root, const std::vector<Variant>& variants);
 
 /// [[variant]]: always one at least; a job without the list has one without a name.
 std::vector<Variant> read_variants(const JobTable& root);
+
+/// The minerals of the job, if some have sizes of their own; else none. A mistake where variants do not agree in them: they share packings.
+std::vector<Mineral> minerals_with_sizes(const JobTable& root, const std::vector<Variant>& variants);
 
 /// A mistake for each variant whose seeds or tests are not the job's, or which would run nothing.
 void check_variants(const JobTable& root, const Job& job);

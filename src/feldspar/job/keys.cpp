@@ -211,7 +211,7 @@ std::vector<JobKey> notch_keys() {
         {"to", point(), needed, "where it ends"},
         {"width", quantity(length, not_negative), needed, "`\"0 mm\"`: a cut whose faces touch, and nothing joins them"},
         {"label", text(), words("`\"notch-1\"`, `\"notch-2\"`, ..."), "label of its faces"},
-        {"joined", flag(), usual(0.0), "the faces of a cut of width 0 stay in contact: a smooth joint, to which a `[[material.joint]]` with `cut` gives its law; it may go through the specimen"},
+        {"joined", flag(), usual(0.0), "the faces of a cut of width 0 stay in contact: a smooth joint, to which a `[[material.joint]]` with `cut` gives its law; it may go through the specimen, cross other joined cuts, or end on one"},
     };
 }
 
@@ -228,7 +228,7 @@ std::vector<JobKey> label_keys() {
 std::vector<JobKey> grains_keys() {
     const SpecimenSpec spec;
     return {
-        {"diameter", table("specimen.grains.diameter"), words("must be given, or `file`"),
+        {"diameter", table("specimen.grains.diameter"), words("must be given, or `file`, or that of each `[[material.phase]]`"),
          "the distribution of diameters; of discs, which the cells exceed ([by how much](theory/specimen.md))"},
         {"crystals", table("specimen.grains.diameter"), words("each grain is a crystal"),
          "the distribution of diameters of crystals that consist of several grains each, and can break between them (`[material.crystal]`)"},
@@ -304,6 +304,8 @@ std::vector<JobKey> phase_keys() {
         {"density", quantity(density), words("that of `[material.grain]`"), "density of its grains"},
         {"colour", text("a colour such as \"#b08050\""), words("one of a palette"), "in pictures and in a map"},
         {"value", integer(0, 255), words("its `colour`"), "of its pixels in a map that is a grey picture of numbers"},
+        {"diameter", table("specimen.grains.diameter"), words("that of `[specimen.grains]`"),
+         "the distribution of the diameters of its grains ([theory](theory/heterogeneity.md#7-sizes-by-mineral)): the packing then says which grain is of which mineral. If every mineral has its own, `[specimen.grains]` has none"},
     };
 }
 
@@ -388,7 +390,7 @@ std::vector<JobKey> initial_cracks_keys() {
 std::vector<JobKey> joint_keys() {
     return {
         {"name", text("1 to 40 letters, digits, '_' and '-'"), words("`\"joint-1\"`, `\"joint-2\"`, ..."), "the joint"},
-        {"cut", text("the label of a notch with `joined = true`"), words("`trace`, `cut`, `file` or `set` must be given"), "a smooth joint: the faces of this cut"},
+        {"cut", text("the label of a notch with `joined = true`"), words("`trace`, `cut`, `file` or `set` must be given"), "a smooth joint: the faces of this cut, or of all cuts with this label"},
         {"trace", pairs_of(quantity(length, any_value), quantity(length, any_value)), words("`trace`, `cut`, `file` or `set` must be given"), "a rough joint: a polyline of two points or more"},
         {"file", text("a CSV or DXF file, its path relative to the job file"), words("`trace`, `cut`, `file` or `set` must be given"),
          "rough joints: traces: CSV with a head `x1,y1,x2,y2` and lengths in m or in the `unit`, or DXF with LINE, LWPOLYLINE and POLYLINE"},
@@ -404,6 +406,9 @@ std::vector<JobKey> joint_keys() {
         {"Gfn", quantity(fracture_energy, not_negative), words("0: brittle in tension"), "fracture energy in tension"},
         {"Gfs", quantity(fracture_energy, not_negative), words("0: brittle in shear"), "fracture energy in shear"},
         {"opening", quantity(length, not_negative), usual(0.0), "of a joint without strength: its faces meet when the gap has closed by it"},
+        {"dilation", quantity(angle, {0.0, 89.0 * degree, true, true, "from 0 to the friction angle"}), usual(0.0),
+         "dilation angle: broken faces that are closed and slide open by its tangent times the slip; a part of the friction angle, which is the whole one ([theory](theory/heterogeneity.md#8-joints-that-dilate))"},
+        {"dilation_slip", quantity(length), words("must be given beside `dilation`"), "the slip after which the joint dilates no more"},
     };
 }
 

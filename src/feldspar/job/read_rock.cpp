@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -111,6 +112,7 @@ private:
             }
             phase.colour = read_colour(table, palette[rock_.minerals.phases.size() % most_phases]);
             if (table.has("value")) phase.value = static_cast<int>(table.integer("value"));
+            if (table.has("diameter")) phase.sizes = read_grain_sizes(table, "diameter");
             rock_.minerals.phases.push_back(std::move(phase));
         }
         material_.check({"phase"}, [&] {
@@ -167,6 +169,12 @@ private:
         table.check({"map", "list", "cluster_length"}, [&] {
             if (ways > 1) table.fail(table.has("map") ? "map" : "list", "the place of the minerals is given in two ways", "one of: map, list, cluster_length");
         });
+        const bool sized = std::any_of(minerals.phases.begin(), minerals.phases.end(), [](const Mineral& phase) { return phase.sizes.has_value(); });
+        for (const char* key : {"map", "list", "cluster_length"})
+            if (sized && table.has(key) && (std::string_view(key) != "cluster_length" || minerals.cluster_length_m > 0.0))
+                table.check({}, [&] {
+                    table.fail(key, "says which grain is of which mineral, but minerals have sizes of their own (diameter of [[material.phase]]): then each grain is of the mineral whose size it has", "one of them");
+                });
         table.check({"unlike"}, [&] {
             if (minerals.unlike != UnlikeRule::given) return;
             for (int a = 0; a < std::ssize(minerals.phases); ++a)
@@ -288,11 +296,24 @@ private:
             c.Gfn_J_m2 = table.quantity("Gfn", 0.0);
             c.Gfs_J_m2 = table.quantity("Gfs", 0.0);
             joint.opening_m = table.quantity("opening");
+            read_dilation(table, joint);
             table.check({"opening", "sigma_nt", "tau"}, [&] {
                 if (joint.opening_m > 0.0 && c.sigma_nt_Pa + c.tau_Pa > 0.0) table.fail("opening", "a joint with strength cannot be open", "opening without sigma_nt and tau");
             });
             rock_.joints.push_back(std::move(joint));
         }
+    }
+
+    static void read_dilation(const JobTable& table, JointSpec& joint) {
+        joint.dilation = std::tan(table.quantity("dilation"));
+        joint.dilation_slip_m = table.quantity("dilation_slip", 0.0);
+        table.check({"dilation", "dilation_slip", "mu", "phi"}, [&] {
+            if (joint.dilation > 0.0 && !table.has("dilation_slip")) table.fail("dilation_slip", "missing key: dilation_slip", "the slip after which the joint dilates no more, such as \"2 mm\"");
+            if (joint.dilation == 0.0 && table.has("dilation_slip")) table.fail("dilation_slip", "of a joint that does not dilate", "beside dilation");
+            if (joint.dilation > joint.contact.mu * (1.0 + 1e-12))   // it would give out more than the shear force puts in
+                table.fail("dilation", fmt::format("{} is more than the friction angle, {:.4g} degrees", shown(*table.find("dilation")), std::atan(joint.contact.mu) * 180.0 / std::numbers::pi), "at most the friction angle, of which it is a part",
+                           "phi is the whole angle: that of a smooth surface, and what climbing takes");
+        });
     }
 
     static JointSet read_set(const JobTable& table) {

@@ -132,8 +132,24 @@ void read_sieve(const JobTable& table, GrainSizeSpec& sizes) {
     });
 }
 
-GrainSizeSpec read_grain_sizes(const JobTable& grains, std::string_view key) {
-    const JobTable table = grains.table(key);
+// An upper estimate is enough here: the specimen counts exactly.
+double rough_area_m2(const OutlineSpec& outline) {
+    if (outline.shape == Shape::rectangle) return outline.width_m * outline.height_m;
+    if (outline.shape != Shape::polygon) return 0.25 * std::numbers::pi * outline.diameter_m * outline.diameter_m;
+    if (!outline.arcs.empty()) {
+        try {
+            return make_outline(outline).area_m2;
+        } catch (const InputError&) {   // told with the arcs
+            return 0.0;
+        }
+    }
+    return std::abs(signed_area(outline.vertices_m));
+}
+
+}  // namespace
+
+GrainSizeSpec read_grain_sizes(const JobTable& of, std::string_view key) {
+    const JobTable table = of.table(key);
     GrainSizeSpec sizes;
     sizes.kind = table.choice("distribution", grain_size_kinds);
     if (!table.sound({"distribution"})) {
@@ -161,22 +177,6 @@ GrainSizeSpec read_grain_sizes(const JobTable& grains, std::string_view key) {
     }
     return sizes;
 }
-
-// An upper estimate is enough here: the specimen counts exactly.
-double rough_area_m2(const OutlineSpec& outline) {
-    if (outline.shape == Shape::rectangle) return outline.width_m * outline.height_m;
-    if (outline.shape != Shape::polygon) return 0.25 * std::numbers::pi * outline.diameter_m * outline.diameter_m;
-    if (!outline.arcs.empty()) {
-        try {
-            return make_outline(outline).area_m2;
-        } catch (const InputError&) {   // told with the arcs
-            return 0.0;
-        }
-    }
-    return std::abs(signed_area(outline.vertices_m));
-}
-
-}  // namespace
 
 double largest_diameter_m(const GrainSizeSpec& sizes) {
     return sizes.kind == GrainSizeKind::sieve ? largest_of_sieve_m(sizes.sieve) : sizes.maximum_m;
@@ -315,7 +315,36 @@ SpecimenSpec read_own_specimen(const JobTable& test, const SpecimenSpec& of_job,
     return spec;
 }
 
-SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled) {
+namespace {
+
+// Sizes by mineral, and the mixture that they make, by which the job is judged.
+void read_phase_sizes(const JobTable& grains, const std::vector<Mineral>& phases, SpecimenSpec& spec) {
+    const bool all = std::all_of(phases.begin(), phases.end(), [](const Mineral& phase) { return phase.sizes.has_value(); });
+    grains.check({"file"}, [&] {
+        if (!spec.given_cells.file.empty()) grains.fail("file", "brings its grains, but minerals have sizes of their own (diameter of [[material.phase]])", "one of them", "`list` of [material.minerals] says the mineral of each cell of a file");
+    });
+    grains.check({"crystals"}, [&] {
+        if (grains.has("crystals")) grains.fail("crystals", "have sizes, but minerals have sizes of their own too (diameter of [[material.phase]])", "one of them");
+    });
+    GrainSizeSpec others;
+    if (!all) others = read_grain_sizes(grains, "diameter");
+    else if (grains.has("diameter"))
+        grains.check({}, [&] { grains.fail("diameter", "is of no grain: each mineral has sizes of its own", "diameter here for minerals without sizes of their own", "leave it out") ; });
+    if (!spec.given_cells.file.empty()) return;
+    for (const Mineral& phase : phases) spec.phase_sizes.push_back({phase.name, phase.share, phase.sizes.value_or(others)});
+    try {
+        grains_of_phases(spec.phase_sizes, 1e3 * rough_area_m2(spec.outline), spec.porosity);   // of a larger specimen: that a mineral has less than a grain is told apart
+        spec.grain_sizes = mixture_of(spec.phase_sizes, spec.porosity);
+    } catch (const InputError&) {   // told where the sizes stand; here what fits in any case
+        spec.phase_sizes.clear();
+        spec.grain_sizes = GrainSizeSpec{};
+        spec.grain_sizes.minimum_m = spec.grain_sizes.maximum_m = std::max(1e-6, smallest_extent_m(spec.outline) / 30.0);
+    }
+}
+
+}  // namespace
+
+SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled, const std::vector<Mineral>& phases) {
     const JobTable table = root.table("specimen");
     table.require({"shape", "grains"});
     SpecimenSpec spec;
@@ -326,9 +355,18 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     spec.thickness_m = table.quantity("thickness");
 
     const bool of_file = !spec.given_cells.file.empty();
-    if (!of_file) spec.grain_sizes = read_grain_sizes(grains, "diameter");
+    if (!of_file && phases.empty()) spec.grain_sizes = read_grain_sizes(grains, "diameter");
     if (grains.has("crystals")) spec.crystal_sizes = read_grain_sizes(grains, "crystals");
     spec.porosity = grains.number("porosity");
+    if (!phases.empty()) read_phase_sizes(grains, phases, spec);
+    if (!spec.phase_sizes.empty() && table.sound({"shape", "width", "height", "diameter", "vertices"}) && grains.sound({"porosity"}))
+        root.check({}, [&] {
+            try {
+                grains_of_phases(spec.phase_sizes, rough_area_m2(spec.outline), spec.porosity);
+            } catch (const InputError& problem) {
+                root.fail("material", problem.problem(), problem.allowed(), problem.suggestion());
+            }
+        });
     spec.triangles_per_grain = static_cast<int>(grains.integer("triangles_per_grain"));
     if (!filled)
         grains.number("particles_per_grain");

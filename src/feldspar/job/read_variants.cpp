@@ -2,6 +2,8 @@
 #include <cctype>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/methods/method.hpp"
 
@@ -126,6 +128,32 @@ std::vector<Variant> read_variants(const JobTable& root) {
         variants.push_back(std::move(variant));
     }
     return variants;
+}
+
+std::vector<Mineral> minerals_with_sizes(const JobTable& root, const std::vector<Variant>& variants) {
+    const auto sized = [](const Variant& variant) {
+        return std::any_of(variant.rock.minerals.phases.begin(), variant.rock.minerals.phases.end(), [](const Mineral& phase) { return phase.sizes.has_value(); });
+    };
+    const auto first = std::find_if(variants.begin(), variants.end(), sized);
+    if (first == variants.end()) return {};
+    const std::vector<Mineral>& phases = first->rock.minerals.phases;
+    const auto same_sizes = [](const GrainSizeSpec& a, const GrainSizeSpec& b) {
+        return a.kind == b.kind && a.minimum_m == b.minimum_m && a.maximum_m == b.maximum_m && a.median_m == b.median_m && a.log_standard_deviation == b.log_standard_deviation &&
+               std::equal(a.sieve.begin(), a.sieve.end(), b.sieve.begin(), b.sieve.end(), [](SievePoint p, SievePoint q) { return p.diameter_m == q.diameter_m && p.passing == q.passing; });
+    };
+    const auto same = [&](const Mineral& a, const Mineral& b) {
+        return a.name == b.name && a.share == b.share && a.sizes.has_value() == b.sizes.has_value() && (!a.sizes || same_sizes(*a.sizes, *b.sizes));
+    };
+    for (const Variant& variant : variants) {
+        const std::vector<Mineral>& other = variant.rock.minerals.phases;
+        if (other.empty() || std::equal(phases.begin(), phases.end(), other.begin(), other.end(), same)) continue;   // a rock of one mineral takes the same packing
+        root.check({}, [&] {
+            root.fail("variant", fmt::format("\"{}\" and \"{}\" differ in the minerals of which their packing is made: names, shares or diameters of [[material.phase]]", first->name, variant.name),
+                      "the same minerals, shares and diameters in all variants, since these share packings", "two jobs");
+        });
+        break;
+    }
+    return phases;
 }
 
 void check_variants(const JobTable& root, const Job& job) {

@@ -160,7 +160,7 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
         if (!cells.file.empty()) out.word("file", std::filesystem::absolute(cells.file).string());
         out.raw("unit", si(cells.unit_m, Dimension::length));
         out.number("tolerance", cells.tolerance);
-    } else {
+    } else if (specimen.phase_sizes.empty()) {   // else each mineral has its own
         out.raw("diameter", grain_sizes(specimen.grain_sizes));
     }
     if (specimen.crystal_sizes) out.raw("crystals", grain_sizes(*specimen.crystal_sizes));
@@ -223,7 +223,7 @@ void write_changes(Lines& out, const ContactChanges& c) {
         if (value) out.number(key, *value);
 }
 
-void write_minerals(Lines& out, const Variant& variant, const std::string& place) {
+void write_minerals(Lines& out, const Variant& variant, const std::string& place, const std::vector<PhaseSizes>& sizes) {
     const MineralSpec& minerals = variant.rock.minerals;
     for (const Mineral& phase : minerals.phases) {
         out.head("material.phase", "[[" + place + "material.phase]]");
@@ -236,6 +236,8 @@ void write_minerals(Lines& out, const Variant& variant, const std::string& place
         out.quantity("density", phase.grain.density_kg_m3);
         out.word("colour", fmt::format("#{:06x}", phase.colour));
         if (phase.value >= 0) out.raw("value", std::to_string(phase.value));
+        for (const PhaseSizes& one : sizes)
+            if (one.name == phase.name) out.raw("diameter", grain_sizes(one.sizes));
     }
     for (const PhasePair& pair : minerals.pairs) {
         out.head("material.pair", "[[" + place + "material.pair]]");
@@ -285,12 +287,15 @@ void write_joints(Lines& out, const Variant& variant, const std::string& place) 
         out.quantity("Gfn", c.Gfn_J_m2);
         out.quantity("Gfs", c.Gfs_J_m2);
         out.quantity("opening", joint.opening_m);
+        if (!(joint.dilation > 0.0)) continue;
+        out.raw("dilation", si(std::atan(joint.dilation), Dimension::angle));
+        out.quantity("dilation_slip", joint.dilation_slip_m);
     }
 }
 
 // What makes the rock uneven; nothing of a rock that is even, so that identities of its runs stay as they were.
-void write_rock(Lines& out, const Variant& variant, const std::string& place) {
-    write_minerals(out, variant, place);
+void write_rock(Lines& out, const Variant& variant, const std::string& place, const std::vector<PhaseSizes>& sizes) {
+    write_minerals(out, variant, place, sizes);
     const ScatterSpec& scatter = variant.rock.scatter;
     if (scatter.any()) {
         out.head("material.scatter", "[" + place + "material.scatter]");
@@ -518,21 +523,21 @@ void write_test(Lines& out, const TestSpec& test, const Job& job) {
 }
 
 // The physics of one variant under `place`: "" for the job's own tables, "variant." for a list.
-void write_physics(Lines& out, const Variant& variant, const std::string& place) {
+void write_physics(Lines& out, const Variant& variant, const std::string& place, const Job& job) {
     write_model(out, variant.model, place);
     write_materials(out, variant, place);
-    write_rock(out, variant, place);
+    write_rock(out, variant, place, job.specimen.phase_sizes);
     write_numerics(out, variant.numerics, place);
 }
 
-void write_variant(Lines& out, const Variant& variant) {
+void write_variant(Lines& out, const Variant& variant, const Job& job) {
     out.head("variant");
     out.word("name", variant.name);
     if (!variant.seeds.empty()) out.raw("seeds", list(variant.seeds));
     std::vector<std::string> kinds;
     for (MethodId kind : variant.tests) kinds.push_back(quote(name(kind)));
     if (!kinds.empty()) out.raw("tests", list(kinds));
-    write_physics(out, variant, "variant.");
+    write_physics(out, variant, "variant.", job);
 }
 
 void write_laboratory(Lines& out, const Job& job) {
@@ -556,9 +561,9 @@ std::string resolved_toml(const Job& job) {
     out.word("name", job.name);
     write_specimen(out, job.specimen);
     if (job.has_variants())
-        for (const Variant& variant : job.variants) write_variant(out, variant);
+        for (const Variant& variant : job.variants) write_variant(out, variant, job);
     else
-        write_physics(out, job.variants.front(), "");
+        write_physics(out, job.variants.front(), "", job);
     for (const TestSpec& test : job.tests) write_test(out, test, job);
     out.head("run");
     out.raw("seeds", list(job.seeds));

@@ -47,7 +47,7 @@ BodyState superpose(const BodyState& base, const BodyState& state, double factor
     sum.platen_travel_m = mix(base.platen_travel_m, state.platen_travel_m);
     for (std::size_t n = 0; n < sum.displacement_m.size(); ++n)
         sum.displacement_m[n] += factor * (state.displacement_m[n] - base.displacement_m[n]);
-    for (Array<double> Bonds::*quantity : {&Bonds::un_m, &Bonds::us_m, &Bonds::Fn_N, &Bonds::Fs_N})
+    for (Array<double> Bonds::*quantity : {&Bonds::un_m, &Bonds::us_m, &Bonds::Fn_N, &Bonds::Fs_N, &Bonds::slip_m})
         for (std::size_t i = 0; i < (sum.bonds.*quantity).size(); ++i)
             (sum.bonds.*quantity)[i] = mix((base.bonds.*quantity)[i], (state.bonds.*quantity)[i]);
     return sum;

@@ -1,24 +1,13 @@
 #include "feldspar/lab/memory.hpp"
 
+#include "feldspar/base/heap_bytes.hpp"
+
 namespace feldspar {
-namespace {
-
-template <class List>
-double bytes(const List& list) {
-    return static_cast<double>(list.capacity() * sizeof(list[0]));
-}
-
-}  // namespace
 
 double memory_of(const Specimen& specimen) {
     constexpr double kHeapBlock = 16.0;   // what an allocation takes besides
-    double sum = bytes(specimen.packing.centres) + bytes(specimen.packing.radii_m) + bytes(specimen.cells.vertices) + bytes(specimen.cells.cells);
-    for (const Cell& cell : specimen.cells.cells) sum += bytes(cell.vertices) + bytes(cell.neighbours) + bytes(cell.outline_edges) + 3.0 * kHeapBlock;
-    const GrainMesh& m = specimen.mesh;
-    sum += bytes(m.nodes) + bytes(m.node_begin) + bytes(m.triangles) + bytes(m.triangle_begin) + bytes(m.vertex_count) + bytes(m.centre_node) +
-           bytes(m.edge_begin) + bytes(m.edge_triangle);
-    const Filling& f = specimen.filling;
-    return sum + bytes(f.particle_begin) + bytes(f.centres) + bytes(f.radii_m) + bytes(f.places) + bytes(f.inside) + bytes(f.across) + bytes(f.outline);
+    const double lists = 4.0 * static_cast<double>(specimen.cells.cells.size());   // of cells, each an allocation
+    return heap_bytes(specimen.packing) + heap_bytes(specimen.packed) + heap_bytes(specimen.cells) + heap_bytes(specimen.mesh) + heap_bytes(specimen.filling) + heap_bytes(specimen.crystal_of_cell) + kHeapBlock * lists;
 }
 
 double memory_of_run(const Specimen& specimen, const Assembly& assembly, const TestSpec& test) {

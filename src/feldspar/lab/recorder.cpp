@@ -176,6 +176,9 @@ Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& ro
         f.damage.push_back(static_cast<float>(e_.assembly.bonds.damage[point.state]));
         f.opening.push_back(e_.assembly.bonds.un_m[point.state]);
     }
+    if (!e_.assembly.dilations.empty())
+        for (const Contact& contact : e_.assembly.contacts)
+            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) f.opening[p] += e_.assembly.dilated_m(contact, p);
     return f;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/heap_bytes.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/model/attachment.hpp"
 #include "feldspar/model/masses.hpp"
@@ -470,6 +471,13 @@ void set_contacts(Assembly& assembly, const Texture& texture, const ContactMater
     if (!rock.contacts_differ()) return;
     assembly.own_laws.form = {contact.law, contact.shear_measure == ShearMeasure::beyond_friction, contact.tension_unloading == TensionUnloading::secant};
     const bool own_inside = !rock.minerals.phases.empty();
+    std::vector<std::int16_t> dilation_of(rock.joints.size(), -1);
+    for (std::size_t j = 0; j < rock.joints.size(); ++j) {
+        if (!(rock.joints[j].dilation > 0.0)) continue;
+        dilation_of[j] = static_cast<std::int16_t>(assembly.dilations.size());
+        assembly.dilations.push_back({rock.joints[j].dilation, rock.joints[j].dilation_slip_m});
+    }
+    if (!assembly.dilations.empty()) assembly.bonds.slip_m.assign(assembly.points.size(), 0.0);
     for (std::size_t c = 0; c < assembly.contacts.size(); ++c) {
         Contact& made = assembly.contacts[c];
         const ContactOrigin& origin = assembly.origins[c];
@@ -482,6 +490,7 @@ void set_contacts(Assembly& assembly, const Texture& texture, const ContactMater
         } else {
             const GrainContact joined = texture.contact(a, b, origin.from, origin.to);
             made.own_law = assembly.own_laws.add(law_constants(joined.material));
+            if (joined.joint >= 0) made.dilation = dilation_of[joined.joint];
             if (joined.broken) open(assembly, made, joined.opening_m);
         }
     }
@@ -604,14 +613,6 @@ void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_ove
     add_contact(assembly, contact, {});
 }
 
-double Assembly::memory_bytes() const {
-    const auto bytes = [](const auto& v) { return static_cast<double>(v.capacity() * sizeof(v[0])); };
-    double sum = bytes(nodes.reference) * 6.0 + bytes(nodes.mass) + bytes(triangles) + bytes(bodies) + bytes(edges) + bytes(node_of_mesh) + bytes(contacts) +
-                 bytes(origins) + bytes(points) + bytes(bonds.un_m) * 9.0 + bytes(initial_shapes) + bytes(slots) + bytes(slots_of_bodies) +
-                 bytes(pressure_edges) + bytes(body_work) + bytes(weight) + own_laws.memory_bytes();
-    sum += bytes(packs.grains) + bytes(packs.scale) + bytes(packs.line_of_edge) + bytes(packs.lines) + bytes(packs.inverse_cross) +
-           bytes(packs.rigid_forces) + bytes(packs.contacts) + bytes(packs.offset) * 3.0 + bytes(packs.line_a) * 2.0 + bytes(packs.along) * 2.0 + bytes(packs.normal_x) * 2.0 + bytes(packs.rigid);
-    return sum;
-}
+double Assembly::memory_bytes() const { return heap_bytes(*this); }
 
 }  // namespace feldspar

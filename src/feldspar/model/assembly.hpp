@@ -17,6 +17,7 @@
 #include "feldspar/base/array.hpp"
 #include "feldspar/base/vec2.hpp"
 #include "feldspar/laws/bond.hpp"
+#include "feldspar/laws/dilation.hpp"
 #include "feldspar/laws/plane_elasticity.hpp"
 #include "feldspar/model/own_laws.hpp"
 #include "feldspar/model/packs.hpp"
@@ -139,6 +140,7 @@ struct Contact {
     bool initial_shape = false;      ///< uses the shape functions of the undeformed state (fall-back)
     bool dropped = false;            ///< carries nothing any more
     bool new_contact = false;        ///< made after detachment
+    std::int16_t dilation = -1;      ///< into Assembly::dilations; -1: it does not dilate
 };
 
 /// Where a contact lay on the tessellation, for cracks and fields; the step never reads it.
@@ -177,6 +179,7 @@ inline void note_break(ContactPoint& point, const BondLawOf<double>& law, BondEv
 /// The bonds of all contact points, quantity by quantity (BondState).
 struct Bonds {
     Array<double> un_m, us_m, Fn_N, Fs_N, max_un_m, max_us_m, damage, fracture_J, friction_J;
+    Array<double> slip_m;   ///< how far it has slipped since it broke (laws/dilation.hpp); empty where no joint dilates
 
     void reserve(std::size_t count);
     void resize(std::size_t count);
@@ -233,6 +236,7 @@ struct Assembly {
     std::vector<PlaneElasticity> elasticity;   ///< of flexible grains: one for all, or one each
     std::array<BondLaw, contact_roles> laws;   ///< by role
     OwnLaws own_laws;                          ///< of contacts between the grains of a rock whose contacts are not alike
+    std::vector<Dilation> dilations;           ///< of joints that dilate
     Nodes nodes;
     std::vector<Triangle> triangles;
     std::vector<Body> bodies;                  ///< the grains, or their inner particles; then the plates
@@ -274,6 +278,12 @@ struct Assembly {
     void set_bond(int point, const BondState& bond) { bonds.set(static_cast<std::size_t>(points[point].state), bond); }
     /// Adds a contact point. @return its number
     int add_point(double along_m, double area_m2, const BondState& bond = {});
+    /// By how much the faces at a point have climbed over each other, m.
+    double dilated_m(const Contact& contact, int point) const {
+        if (contact.dilation < 0) return 0.0;
+        const Dilation& dilation = dilations[contact.dilation];
+        return dilation.tan_psi * std::min(bonds.slip_m[points[point].state], dilation.slip_m);
+    }
     double memory_bytes() const;
 };
 

@@ -11,6 +11,7 @@
 
 #include "feldspar/base/vec2.hpp"
 #include "feldspar/model/spec.hpp"
+#include "feldspar/specimen/specimen.hpp"
 
 namespace feldspar {
 
@@ -87,6 +88,7 @@ struct Mineral {
     GrainMaterial grain;
     std::uint32_t colour = 0;              ///< 0xRRGGBB, in pictures and in a map
     int value = -1;                        ///< of its pixels in a grey map, 0 ... 255; -1: they have its colour
+    std::optional<GrainSizeSpec> sizes{};  ///< of its grains, as given; absent: those of [specimen.grains]. What counts is SpecimenSpec::phase_sizes
 };
 
 /// What of a contact material a pair of phases has of its own.
@@ -168,6 +170,8 @@ struct JointSpec {
     std::optional<JointSet> set;
     ContactMaterial contact;                  ///< of the joint; no strength: it is open to sliding from the start
     double opening_m = 0.0;                   ///< its faces meet when the gap has closed by it
+    double dilation = 0.0;                    ///< tan psi: it opens by so much of its slip ...
+    double dilation_slip_m = 0.0;             ///< ... until it has slipped so far
 
     bool without_strength() const { return contact.sigma_nt_Pa == 0.0 && contact.tau_Pa == 0.0; }
 };

@@ -9,15 +9,14 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/model/log_normal.hpp"
 
 namespace feldspar {
 namespace {
 
 // A factor of mean 1 with this coefficient of variation, log-normal.
 double scattered(RandomStream& random, double variation) {
-    if (variation == 0.0) return 1.0;
-    const double s = std::sqrt(std::log1p(variation * variation));
-    return std::exp(s * random.normal() - 0.5 * s * s);
+    return variation == 0.0 ? 1.0 : log_normal_factor(variation, random.normal());
 }
 
 std::vector<std::vector<Vec2>> draw(const JointSet& set, const std::string& name, const Specimen& specimen) {

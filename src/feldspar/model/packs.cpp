@@ -62,7 +62,7 @@ bool alike(const Assembly& assembly, int c) {
 
 bool is_central(const Assembly& assembly, const Contact& contact) { return contact.points == 1 && assembly.points[contact.first_point].along_m == 0.0; }
 
-bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape || contact.smooth; }
+bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape || contact.smooth || contact.dilation >= 0; }
 
 }  // namespace
 

@@ -15,6 +15,8 @@
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/model/joints.hpp"
+#include "feldspar/model/log_normal.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 
 namespace feldspar {
 namespace {
@@ -61,7 +63,7 @@ double share_below(const Distribution& d, double f) {
     switch (d.kind) {
         case DistributionKind::weibull: return -std::expm1(-std::pow(f * std::tgamma(1.0 + 1.0 / d.weibull_modulus), d.weibull_modulus));
         case DistributionKind::log_normal: {
-            const double s = std::sqrt(std::log1p(d.variation * d.variation));
+            const double s = log_deviation(d.variation);
             return normal_share_below((std::log(f) + 0.5 * s * s) / s);
         }
         case DistributionKind::normal: return normal_share_below((f - 1.0) / d.variation);
@@ -191,6 +193,12 @@ void Texture::give_phases() {
     const MineralSpec& minerals = rock_->minerals;
     const Specimen& specimen = *specimen_;
     const int cells = static_cast<int>(specimen.cells.cells.size());
+    if (!specimen.spec.phase_sizes.empty()) {   // the packing knows, since it is made of grains of their sizes
+        if (specimen.spec.phase_sizes.size() != minerals.phases.size())
+            throw InputError({.key = "material.phase"}, fmt::format("{} minerals in a specimen that is packed of {}", minerals.phases.size(), specimen.spec.phase_sizes.size()), "the same minerals");
+        phases_ = specimen.packing.phases;
+        return;
+    }
     if (!minerals.list.empty()) {
         const int discs = static_cast<int>((specimen.packed.centres.empty() ? specimen.packing : specimen.packed).centres.size()), units = specimen.quality.crystals > 0 ? specimen.quality.crystals : discs;
         if (std::ssize(minerals.list) != units)
@@ -336,10 +344,14 @@ TextureSummary Texture::summary() const {
         summary.area_shares.assign(minerals.phases.size(), 0.0);
         const std::vector<double> area = areas_of_cells(*specimen_);
         const double total = std::accumulate(area.begin(), area.end(), 0.0);
+        std::vector<std::vector<double>> diameters(minerals.phases.size());
         for (std::size_t c = 0; c < cells.size(); ++c) {
             ++summary.grains[phases_[c]];
             summary.area_shares[phases_[c]] += area[c] / total;
+            diameters[phases_[c]].push_back(2.0 * std::sqrt(area[c] / std::numbers::pi));
         }
+        for (std::vector<double>& one : diameters) summary.sizes.push_back(summary_of(std::move(one)));
+        for (const PhaseFill& fill : fill_of_phases(*specimen_)) summary.disc_sizes.push_back(fill.discs);
     }
     std::map<std::pair<int, int>, int> pairs;
     std::array<std::vector<double>, scattered_quantities.size()> factors;
@@ -412,11 +424,7 @@ double factor_at(const Distribution& d, double u) {
     double factor = 1.0;
     switch (d.kind) {
         case DistributionKind::weibull: factor = std::pow(-std::log1p(-v), 1.0 / d.weibull_modulus) / std::tgamma(1.0 + 1.0 / d.weibull_modulus); break;
-        case DistributionKind::log_normal: {
-            const double s = std::sqrt(std::log1p(d.variation * d.variation));
-            factor = std::exp(s * standard_normal_at(v) - 0.5 * s * s);
-            break;
-        }
+        case DistributionKind::log_normal: factor = log_normal_factor(d.variation, standard_normal_at(v)); break;
         case DistributionKind::normal: factor = 1.0 + d.variation * standard_normal_at(v); break;
         case DistributionKind::none: break;
     }

@@ -39,6 +39,8 @@ struct TextureSummary {
     std::vector<std::array<Vec2, 2>> joint_edges;   ///< m, the grain edges of all joints
     std::vector<int> grains;                    ///< of each phase
     std::vector<double> area_shares;            ///< of each phase
+    std::vector<SizeSummary> sizes;             ///< of the cells of each phase: diameters of circles of their areas
+    std::vector<SizeSummary> disc_sizes;        ///< of the packed discs of each phase; empty unless each phase has sizes of its own
     std::vector<std::pair<std::pair<int, int>, int>> contacts;   ///< number of contacts of each pair of phases that occurs
     std::vector<DrawSummary> draws;
     int contacts_in_all = 0, inside = 0, broken = 0, weakened = 0;   ///< inside: crystals

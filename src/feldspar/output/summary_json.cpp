@@ -234,6 +234,7 @@ Json specimen_json(const Specimen& specimen) {
                  {"warnings", q.warnings}};
     if (specimen.spec.given_cells.given())
         json["given_cells"] = {{"file", specimen.spec.given_cells.file.filename().string()}, {"welded", q.welded}, {"inserted", q.inserted}, {"moved", q.moved}, {"concave", q.concave}, {"joined_pieces", q.joined_pieces}};
+    if (q.crossings > 0) json["crossing_cuts"] = {{"crossings", q.crossings}, {"joined_pieces", q.joined_pieces}};
     return json;
 }
 

@@ -7,10 +7,19 @@
 #include <limits>
 
 #include "feldspar/output/report_data.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 
 namespace feldspar {
 
 bool has_texture(const TestResult& result) { return result.rock.any() || (result.specimen && result.specimen->quality.crystals > 0); }
+
+namespace {
+
+nlohmann::ordered_json sizes_json(const SizeSummary& sizes) {
+    return {{"mean", rounded(1e3 * sizes.mean_m)}, {"minimum", rounded(1e3 * sizes.minimum_m)}, {"maximum", rounded(1e3 * sizes.maximum_m)}, {"D50", rounded(1e3 * sizes.D50_m)}};
+}
+
+}  // namespace
 
 nlohmann::ordered_json texture_json(const TestResult& result) {
     using Json = nlohmann::ordered_json;
@@ -20,6 +29,12 @@ nlohmann::ordered_json texture_json(const TestResult& result) {
     for (std::size_t p = 0; p < minerals.size() && p < texture.grains.size(); ++p)
         json["minerals"].push_back({{"name", minerals[p].name}, {"colour", fmt::format("#{:06x}", minerals[p].colour)}, {"grains", texture.grains[p]},
                                     {"area_share", rounded(texture.area_shares[p])}, {"wanted_share", rounded(minerals[p].share)}});
+    if (result.specimen)
+        for (std::size_t p = 0; p < result.specimen->spec.phase_sizes.size() && p < texture.disc_sizes.size(); ++p) {
+            const PhaseSizes& wanted = result.specimen->spec.phase_sizes[p];
+            json["minerals"][p]["sizes_mm"] = {{"wanted", {{"mean", rounded(1e3 * diameter_moments(wanted.sizes).mean_m)}, {"minimum", rounded(1e3 * smallest_of(wanted.sizes))}, {"maximum", rounded(1e3 * largest_of(wanted.sizes))}}},
+                                               {"discs", sizes_json(texture.disc_sizes[p])}, {"cells", sizes_json(texture.sizes[p])}};
+        }
     if (result.specimen && result.specimen->quality.crystals > 0) {
         const std::vector<int>& crystal = result.specimen->crystal_of_cell;
         const auto inside = std::ranges::count_if(result.cracks, [&](const Crack& crack) { return crystal[static_cast<std::size_t>(crack.grain_a)] == crystal[static_cast<std::size_t>(crack.grain_b)]; });

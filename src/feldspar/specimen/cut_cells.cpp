@@ -84,7 +84,15 @@ public:
 
     CutCells run() {
         const double mean_area = mean_cell_area();
-        for (const Cutout& cutout : outline_.cutouts) cut(cutout);
+        std::vector<char> done(outline_.cutouts.size(), 0);   // a cut that ends on another comes after it
+        for (std::size_t left = done.size(); left > 0;)
+            for (std::size_t n = 0; n < done.size(); ++n) {
+                const Cutout& cutout = outline_.cutouts[n];
+                if (done[n] || std::any_of(cutout.ends_on.begin(), cutout.ends_on.end(), [&](int other) { return other >= 0 && !done[static_cast<std::size_t>(other)]; })) continue;
+                cut(cutout);
+                done[n] = 1;
+                --left;
+            }
         divide_bent();
         return in_whole_pieces(mean_area);
     }
@@ -197,13 +205,16 @@ private:
         }
         inside_of_.clear();
         std::vector<int> ends;
-        for (const Vec2 p : cutout.vertices) ends.push_back(corner_vertex(p));
+        for (std::size_t e = 0; e < count; ++e) {
+            const bool on_another = cutout.is_cut() && cutout.ends_on[e] >= 0;
+            ends.push_back(on_another ? vertex_on_face(cutout.vertices[e], cutout.vertices[1 - e]) : corner_vertex(cutout.vertices[e]));
+        }
         std::vector<Part> parts;
         for (std::size_t k = 0; k < (cutout.is_cut() ? 1 : count); ++k) {
             const int edge = cutout.first_edge + static_cast<int>(k);
             const Sides sides = cutout.is_cut() ? Sides{cutout.first_edge, cutout.first_edge + 1} : Sides{-1, edge};
-            const std::vector<int> chain = chain_along(ends[k], ends[(k + 1) % count], edge);
-            for (std::size_t i = 0; i + 1 < chain.size(); ++i) parts.push_back({chain[i], chain[i + 1], sides});
+            const auto chain = chain_along(ends[k], ends[(k + 1) % count], edge);
+            for (std::size_t i = 0; i + 1 < chain.size(); ++i) parts.push_back(part_between(chain[i], chain[i + 1], sides));
         }
         split_faces(parts, cutout);
         if (cutout.is_cut()) {
@@ -246,8 +257,41 @@ private:
         return x;
     }
 
-    /// The vertices from `from` to `to`, in order: those of the graph on the way, and one where an edge of a cell is crossed.
-    std::vector<int> chain_along(int from, int to, int edge) {
+    /// The vertex for an end of a cut on the face of another, on the side from which it comes.
+    int vertex_on_face(Vec2 p, Vec2 from) {
+        const Vec2 beside = p + (1e-3 * mean_diameter_ / norm(from - p)) * (from - p);
+        for (const int f : near_) {
+            if (!alive(f) || !contains(corners(f), beside)) continue;
+            const Face& face = graph_.faces[f];
+            for (const int v : face.vertices)
+                if (norm(graph_.vertices[v] - p) <= eps_) {
+                    graph_.place[v] = place_corner;
+                    return v;
+                }
+            for (std::size_t k = 0; k < face.vertices.size(); ++k) {
+                const int a = face.vertices[k], b = face.vertices[(k + 1) % face.vertices.size()];
+                if (distance_to_segment(p, graph_.vertices[a], graph_.vertices[b]) > eps_) continue;
+                const int x = add_vertex(p, place_corner);
+                put_into_edge(a, b, x);
+                return x;
+            }
+        }
+        throw NumericalError(fmt::format("no cell lies at the end of a cut on another, at ({:.6g}, {:.6g}) mm", 1e3 * p.x, 1e3 * p.y));
+    }
+
+    /// Between vertices on the way; where the faces of another cut are crossed each has its own there, and one of either is of the cell between.
+    Part part_between(const std::vector<int>& from, const std::vector<int>& to, const Sides& sides) const {
+        if (from.size() > 1 || to.size() > 1)
+            for (const int u : from)
+                for (const int v : to) {
+                    const bool edge = std::any_of(faces_at_[u].begin(), faces_at_[u].end(), [&](int f) { return edge_in(graph_.faces[f], u, v) || edge_in(graph_.faces[f], v, u); });
+                    if (edge || crossed_face({u, v, sides})) return {u, v, sides};
+                }
+        return {from.front(), to.front(), sides};
+    }
+
+    /// The vertices from `from` to `to`, in order: those of the graph on the way, and one where an edge of a cell is crossed; together those at one place.
+    std::vector<std::vector<int>> chain_along(int from, int to, int edge) {
         const Vec2 a = graph_.vertices[from];
         const double length = norm(graph_.vertices[to] - a);
         const Vec2 along = (1.0 / length) * (graph_.vertices[to] - a);
@@ -282,8 +326,11 @@ private:
         std::vector<std::pair<double, int>> order;
         for (const auto& [v, s] : on_way) order.push_back({s, v});
         std::sort(order.begin(), order.end());
-        std::vector<int> chain;
-        for (const auto& [s, v] : order) chain.push_back(v);
+        std::vector<std::vector<int>> chain;
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            if (i == 0 || order[i].first - order[i - 1].first > 4.0 * eps_) chain.emplace_back();
+            chain.back().push_back(order[i].second);
+        }
         return chain;
     }
 

@@ -20,6 +20,8 @@ constexpr double pi = std::numbers::pi;
 /// Bridges of rock thinner than this share of a mean grain are refused, and an end of a notch nearer to a boundary than half of that lies on it.
 constexpr double least_bridge = 0.5;
 constexpr int edges_of_a_measured_circle = 3600;
+/// Joined cuts that meet at a smaller angle leave wedges too thin for grains.
+constexpr double least_crossing_angle_rad = 20.0 * pi / 180.0;
 
 constexpr const char* holes_key = "specimen.holes";
 constexpr const char* notches_key = "specimen.notches";
@@ -115,7 +117,32 @@ public:
         add(std::move(cutout), label);
     }
 
-    void add_notch(const NotchSpec& notch, const std::string& name, const std::string& label) {
+    /// All notches there will be: a joined one may end on another, whichever comes first.
+    void expect(const std::vector<NotchSpec>& notches) {
+        expected_ = notches;
+        first_notch_ = static_cast<int>(outline_.cutouts.size());
+    }
+
+    /// @throws InputError  joined cuts that end on each other in a ring
+    void require_order() const {
+        std::vector<char> done(outline_.cutouts.size(), 0);
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (std::size_t n = 0; n < done.size(); ++n) {
+                const auto& on = outline_.cutouts[n].ends_on;
+                if (done[n] || std::any_of(on.begin(), on.end(), [&](int other) { return other >= 0 && !done[static_cast<std::size_t>(other)]; })) continue;
+                done[n] = 1;
+                changed = true;
+            }
+        }
+        for (std::size_t n = 0; n < done.size(); ++n)
+            if (!done[n])
+                throw InputError({"", 0, 0, notches_key}, fmt::format("{} and others end on each other in a ring", outline_.cutouts[n].name), "a cut through which others end, and that ends on none of them", "lengthen one of them beyond where it ends");
+    }
+
+    void add_notch(const NotchSpec& given, const std::string& name, const std::string& label) {
+        NotchSpec notch = given;
+        const std::array<int, 2> ends_on = given.joined ? bring_ends_onto_others(notch) : std::array{-1, -1};
         if (!finite(notch.from_m) || !finite(notch.to_m) || !(notch.width_m >= 0.0) || !std::isfinite(notch.width_m))
             throw InputError({"", 0, 0, notches_key}, fmt::format("{} has no finite place and width", name), "two points and a width of zero or more");
         const double length = norm(notch.to_m - notch.from_m);
@@ -131,7 +158,8 @@ public:
         Cutout cutout;
         cutout.name = name;
         const std::array<Vec2, 2> ends = {notch.from_m, notch.to_m};
-        for (int e = 0; e < 2; ++e) cutout.tips[e] = in_rock(ends[e]) && distance_to_rocks_boundary(ends[e]) > 0.5 * bridge_;
+        cutout.ends_on = ends_on;
+        for (int e = 0; e < 2; ++e) cutout.tips[e] = ends_on[e] < 0 && in_rock(ends[e]) && distance_to_rocks_boundary(ends[e]) > 0.5 * bridge_;
         cutout.joined = notch.joined;
         if (notch.joined && notch.width_m > 0.0)
             throw InputError({"", 0, 0, notches_key}, fmt::format("{} is {} wide, but its faces are to stay in contact", name, in_mm(notch.width_m)), "width = \"0 mm\" beside joined = true");
@@ -145,6 +173,46 @@ public:
     }
 
 private:
+    /// Where the axes of two notches meet: their shares of the way on either.
+    struct Meeting {
+        double own = 0.0, other = 0.0;
+        double sine = 0.0;   ///< of the angle between them
+    };
+    static Meeting meeting(const NotchSpec& notch, const NotchSpec& other) {
+        const Vec2 a = notch.to_m - notch.from_m, b = other.to_m - other.from_m, apart = other.from_m - notch.from_m;
+        const double slope = cross(a, b), sine = std::abs(slope) / (norm(a) * norm(b));
+        if (sine < 1e-9) return {infinity, infinity, 0.0};
+        return {cross(apart, b) / slope, cross(apart, a) / slope, sine};
+    }
+
+    bool share_an_end(const NotchSpec& a, const NotchSpec& b) const {
+        for (const Vec2 p : {a.from_m, a.to_m})
+            for (const Vec2 q : {b.from_m, b.to_m})
+                if (norm(p - q) < 1e-9 * size_) return true;
+        return false;
+    }
+
+    /// An end of a joined cut that is nearer to another one than half a bridge lies on it. @return on which, by the numbers of cutouts
+    std::array<int, 2> bring_ends_onto_others(NotchSpec& notch) const {
+        std::array<int, 2> on = {-1, -1};
+        const NotchSpec given = notch;
+        for (int n = 0; n < std::ssize(expected_); ++n) {
+            const NotchSpec& other = expected_[static_cast<std::size_t>(n)];
+            if (!other.joined || other == given || share_an_end(given, other)) continue;
+            const Meeting meet = meeting(given, other);
+            if (!(meet.other > 0.0 && meet.other < 1.0) || !std::isfinite(meet.own)) continue;
+            const double length = norm(given.to_m - given.from_m);
+            for (int e = 0; e < 2; ++e) {
+                if (std::abs(meet.own - e) * length > 0.5 * bridge_) continue;
+                const Vec2 at = other.from_m + meet.other * (other.to_m - other.from_m);
+                if (!in_rock(at)) continue;
+                on[static_cast<std::size_t>(e)] = first_notch_ + n;
+                (e == 0 ? notch.from_m : notch.to_m) = at;
+            }
+        }
+        return on;
+    }
+
     std::vector<Vec2> round_hole(const HoleSpec& hole, const std::string& name) const {
         if (!(hole.diameter_m > 0.0) || !std::isfinite(hole.diameter_m) || !finite(hole.centre_m))
             throw InputError({"", 0, 0, holes_key}, fmt::format("{} has a diameter of {:g} m", name, hole.diameter_m), "a diameter greater than zero");
@@ -210,7 +278,8 @@ private:
     void shape_notch(Cutout& cutout, const NotchSpec& notch) const {
         const Vec2 along = (1.0 / norm(notch.to_m - notch.from_m)) * (notch.to_m - notch.from_m);
         const Vec2 across = 0.5 * notch.width_m * rot90(along);
-        const Vec2 from = cutout.tips[0] ? notch.from_m : moved_out(notch.from_m, -along, across, cutout.name), to = cutout.tips[1] ? notch.to_m : moved_out(notch.to_m, along, across, cutout.name);
+        const auto stays = [&](int e) { return cutout.tips[static_cast<std::size_t>(e)] || cutout.ends_on[static_cast<std::size_t>(e)] >= 0; };
+        const Vec2 from = stays(0) ? notch.from_m : moved_out(notch.from_m, -along, across, cutout.name), to = stays(1) ? notch.to_m : moved_out(notch.to_m, along, across, cutout.name);
         if (notch.width_m == 0.0) {
             cutout.vertices = {from, to};
             cutout.packed_around = false;
@@ -254,17 +323,33 @@ private:
             const NotchSpec& other = axes_[k];
             const std::array<Vec2, 2> a = {notch.from_m, notch.to_m}, b = {other.from_m, other.to_m};
             const double between = distance_between(a, false, b, false) - 0.5 * (notch.width_m + other.width_m);
-            const auto meet = [&] {   // a joint may go on where a notch or another joint ends
-                for (const Vec2 p : a)
-                    for (const Vec2 q : b)
-                        if (norm(p - q) < 1e-9 * size_) return true;
-                return false;
-            };
-            if ((notch.joined || other.joined) && meet()) continue;
+            if ((notch.joined || other.joined) && share_an_end(notch, other)) continue;   // a joint may go on where a notch or another joint ends
+            if (notch.joined && other.joined && check_crossing(k, notch, other, cutout.name)) continue;
             if (between < bridge_)
                 throw InputError({"", 0, 0, notches_key}, fmt::format("notch {} and {} touch, cross, or leave a bridge thinner than half a grain", k + 1, cutout.name),
                                  "notches with rock between them, half a mean grain or more", "move one, or draw both as one hole with vertices");
         }
+    }
+
+    /// Whether two joined cuts cross, or one ends on the other, so that there is room for grains around the place.
+    bool check_crossing(std::size_t number, const NotchSpec& notch, const NotchSpec& other, const std::string& name) const {
+        const Meeting meet = meeting(notch, other);
+        constexpr double kOn = 1e-9;   // of the lengths: an end that has been brought there
+        if (!(meet.own > -kOn && meet.own < 1.0 + kOn && meet.other > -kOn && meet.other < 1.0 + kOn)) return false;
+        const auto refuse = [&](const std::string& problem, const std::string& allowed) { throw InputError({"", 0, 0, notches_key}, fmt::format("notch {} and {} {}", number + 1, name, problem), allowed, "move or turn one"); };
+        if (meet.sine < std::sin(least_crossing_angle_rad)) refuse(fmt::format("cross at {:.3g} degrees", std::asin(meet.sine) * 180.0 / pi), "cuts that cross at 20 degrees or more: thinner wedges hold no grains");
+        for (const auto& [share, cut] : {std::pair{meet.own, notch}, std::pair{meet.other, other}}) {
+            const double length = norm(cut.to_m - cut.from_m);
+            for (const double way : {share * length, (1.0 - share) * length})
+                if (way > kOn * length && way < bridge_ && in_rock(way == share * length ? cut.from_m : cut.to_m))
+                    refuse(fmt::format("cross {} before one of them ends", in_mm(way)), "cuts that end on each other, or go on by half a mean grain or more");
+        }
+        const Vec2 at = notch.from_m + meet.own * (notch.to_m - notch.from_m);
+        if (!in_rock(at)) return true;
+        for (const Vec2 p : crossings_)
+            if (norm(p - at) < bridge_) refuse(fmt::format("cross at {}, {} from where others do", in_mm(at), in_mm(norm(p - at))), "crossings half a mean grain or more apart");
+        crossings_.push_back(at);
+        return true;
     }
 
     void add(Cutout cutout, const std::string& label) {
@@ -277,7 +362,9 @@ private:
     Outline& outline_;
     const GrainScale& grains_;
     std::vector<Vec2> outer_;
-    std::vector<NotchSpec> axes_;
+    std::vector<NotchSpec> axes_, expected_;
+    int first_notch_ = 0;
+    mutable std::vector<Vec2> crossings_;   ///< of joined cuts
     double size_ = 0.0, bridge_ = 0.0;
 };
 
@@ -306,10 +393,12 @@ void add_cutouts(Outline& outline, const OutlineSpec& spec, const GrainScale& gr
         const std::string& label = spec.holes[k].label;
         maker.add_hole(spec.holes[k], fmt::format("hole {}", k + 1), label.empty() ? fmt::format("hole-{}", k + 1) : label);
     }
+    maker.expect(spec.notches);
     for (std::size_t k = 0; k < spec.notches.size(); ++k) {
         const std::string& label = spec.notches[k].label;
         maker.add_notch(spec.notches[k], fmt::format("notch {}", k + 1), label.empty() ? fmt::format("notch-{}", k + 1) : label);
     }
+    maker.require_order();
 }
 
 std::vector<Vec2> arc_corners(Vec2 centre, double radius_m, double from_rad, double to_rad, int edges) {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include <boost/math/special_functions/erf.hpp>
 #include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/geometry/polygon.hpp"
 
 namespace feldspar {
 namespace {
@@ -167,6 +170,182 @@ std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, Rando
     if (std::abs(squares - wanted) <= most_area_missed * wanted) return diameters;
     for (int i = 0; i < count; ++i) diameters[static_cast<std::size_t>(i)] = diameter_at(spec, cumulative, (i + random.uniform()) / count);
     return diameters;
+}
+
+double smallest_of(const GrainSizeSpec& spec) {
+    if (spec.kind != GrainSizeKind::sieve) return spec.minimum_m;
+    std::size_t first = 0;   // below the last sieve that nothing passes there are no grains
+    while (first + 1 < spec.sieve.size() && spec.sieve[first + 1].passing <= 0.0) ++first;
+    return spec.sieve[first].diameter_m;
+}
+
+double largest_of(const GrainSizeSpec& spec) { return spec.kind == GrainSizeKind::sieve ? largest_of_sieve_m(spec.sieve) : spec.maximum_m; }
+
+SizeSummary summary_of(std::vector<double> diameters) {
+    if (diameters.empty()) return {};
+    std::sort(diameters.begin(), diameters.end());
+    double sum = 0.0, area = 0.0, below = 0.0;
+    for (const double d : diameters) {
+        sum += d;
+        area += d * d;
+    }
+    SizeSummary summary{sum / static_cast<double>(diameters.size()), diameters.front(), diameters.back(), diameters.back()};
+    for (const double d : diameters) {
+        below += d * d;
+        if (below < 0.5 * area) continue;
+        summary.D50_m = d;
+        break;
+    }
+    return summary;
+}
+
+namespace {
+
+/// Grains of each phase for a unit of area, 1/m^2, by (H7) and (H8): each cell is a disc with a film e = e0 D / (d + D) around it, where D is the mean diameter of
+/// the neighbours, by their perimeters; e0 is such that the discs have the share 1 - n of the area.
+std::vector<double> grains_per_area(const std::vector<PhaseSizes>& phases, double porosity) {
+    std::vector<DiameterMoments> moments;
+    double widest = 0.0;
+    for (const PhaseSizes& phase : phases) {
+        moments.push_back(diameter_moments(phase.sizes));
+        widest = std::max(widest, largest_of(phase.sizes));
+    }
+    std::vector<double> numbers(phases.size());
+    double neighbours = widest;
+    const auto share_of_discs = [&](double e0) {
+        double sum = 0.0;
+        for (std::size_t p = 0; p < phases.size(); ++p) {
+            const DiameterMoments& m = moments[p];
+            const double e = e0 * neighbours / (m.mean_m + neighbours);
+            numbers[p] = phases[p].share / (0.25 * std::numbers::pi * (m.mean_square_m2 + 4.0 * e * m.mean_m + 4.0 * e * e));
+            sum += 0.25 * std::numbers::pi * numbers[p] * m.mean_square_m2;
+        }
+        return sum;
+    };
+    for (int round = 0; round < 20; ++round) {   // each numbers for the next mean of the neighbours
+        double low = 0.0, high = widest;
+        while (share_of_discs(high) > 1.0 - porosity) high *= 2.0;
+        for (int i = 0; i < 100; ++i) {
+            const double middle = 0.5 * (low + high);
+            (share_of_discs(middle) > 1.0 - porosity ? low : high) = middle;
+        }
+        double squares = 0.0, perimeters = 0.0;
+        for (std::size_t p = 0; p < phases.size(); ++p) {
+            squares += numbers[p] * moments[p].mean_square_m2;
+            perimeters += numbers[p] * moments[p].mean_m;
+        }
+        neighbours = squares / perimeters;
+    }
+    return numbers;
+}
+
+/// E[d^2; d <= D] of a distribution by number, m^2, in closed form.
+double partial_square(const GrainSizeSpec& spec, double d) {
+    if (d <= smallest_of(spec)) return 0.0;
+    if (d >= largest_of(spec)) return diameter_moments(spec).mean_square_m2;
+    if (spec.kind == GrainSizeKind::uniform) {
+        if (spec.maximum_m == spec.minimum_m) return 0.0;
+        return (d * d * d - spec.minimum_m * spec.minimum_m * spec.minimum_m) / (3.0 * (spec.maximum_m - spec.minimum_m));
+    }
+    if (spec.kind == GrainSizeKind::log_normal) {
+        GrainSizeSpec below = spec;
+        below.maximum_m = d;
+        const LogNormal whole(spec), part(below);
+        return diameter_moments(below).mean_square_m2 * phi_between(part.a, part.b) / phi_between(whole.a, whole.b);
+    }
+    double passing = 0.0;
+    for (std::size_t i = 1; i < spec.sieve.size(); ++i) {
+        const SievePoint low = spec.sieve[i - 1], high = spec.sieve[i];
+        if (d >= high.diameter_m) passing = high.passing;
+        else if (d > low.diameter_m) passing = low.passing + (high.passing - low.passing) * std::log(d / low.diameter_m) / std::log(high.diameter_m / low.diameter_m);
+    }
+    return passing * diameter_moments(spec).mean_square_m2;
+}
+
+}  // namespace
+
+std::vector<int> grains_of_phases(const std::vector<PhaseSizes>& phases, double area_m2, double porosity) {
+    double sum = 0.0;
+    for (const PhaseSizes& phase : phases) {
+        check_grain_sizes(phase.sizes);
+        sum += phase.share;
+    }
+    if (!(std::abs(sum - 1.0) < 1e-6)) throw InputError({"", 0, 0, "material.phase.share"}, fmt::format("the shares of the minerals add up to {:.6g}", sum), "1 (100 %)");
+    const std::vector<double> numbers = grains_per_area(phases, porosity);
+    std::vector<int> counts;
+    for (std::size_t p = 0; p < phases.size(); ++p) {
+        const PhaseSizes& phase = phases[p];
+        const double count = area_m2 * numbers[p];
+        if (count < 0.5)
+            throw InputError({"", 0, 0, "material.phase.diameter"}, fmt::format("the share of \"{}\", {:.3g} %, is less than half a grain of its size", phase.name, 100.0 * phase.share), "a share of a grain or more",
+                             "smaller grains of it, a larger share, or a larger specimen");
+        if (count > 1e8) throw InputError({"", 0, 0, "material.phase.diameter"}, fmt::format("the grains of \"{}\" would be {:.3g}", phase.name, count), "larger grains");
+        counts.push_back(static_cast<int>(std::lround(count)));
+    }
+    return counts;
+}
+
+PhasedDiameters sample_by_phase(const std::vector<PhaseSizes>& phases, const std::vector<int>& counts, RandomStream& random) {
+    PhasedDiameters sample;
+    for (std::size_t p = 0; p < phases.size(); ++p) {
+        const GrainSizeSpec& spec = phases[p].sizes;
+        std::vector<double> cumulative = {0.0};
+        for (std::size_t i = 1; i < spec.sieve.size() && spec.kind == GrainSizeKind::sieve; ++i) cumulative.push_back(cumulative.back() + interval_number(spec.sieve[i - 1], spec.sieve[i]));
+        for (int i = 0; i < counts[p]; ++i) {
+            sample.diameters_m.push_back(diameter_at(spec, cumulative, (i + random.uniform()) / counts[p]));
+            sample.phases.push_back(static_cast<int>(p));
+        }
+    }
+    return sample;
+}
+
+std::vector<PhaseFill> fill_of_phases(const Specimen& specimen) {
+    const std::size_t phases = specimen.packing.phase_names.size();
+    std::vector<PhaseFill> fills(phases);
+    std::vector<std::vector<double>> discs(phases), cells(phases);
+    double total = 0.0;
+    for (std::size_t g = 0; g < specimen.packing.phases.size(); ++g) {
+        const auto p = static_cast<std::size_t>(specimen.packing.phases[g]);
+        const double area = signed_area(corners_of_cell(specimen.cells, static_cast<int>(g)));
+        ++fills[p].grains;
+        fills[p].area_share += area;
+        total += area;
+        cells[p].push_back(2.0 * std::sqrt(area / std::numbers::pi));
+    }
+    const Packing& packed = specimen.packed.centres.empty() ? specimen.packing : specimen.packed;
+    for (std::size_t i = 0; i < packed.phases.size(); ++i) discs[static_cast<std::size_t>(packed.phases[i])].push_back(2.0 * packed.radii_m[i]);
+    for (std::size_t p = 0; p < phases; ++p) {
+        fills[p].area_share /= total;
+        fills[p].discs = summary_of(std::move(discs[p]));
+        fills[p].cells = summary_of(std::move(cells[p]));
+    }
+    return fills;
+}
+
+GrainSizeSpec mixture_of(const std::vector<PhaseSizes>& phases, double porosity) {
+    constexpr int kPoints = 200;
+    const std::vector<double> numbers = grains_per_area(phases, porosity);
+    double low = std::numeric_limits<double>::infinity(), high = 0.0, all = 0.0;
+    for (std::size_t p = 0; p < phases.size(); ++p) {
+        low = std::min(low, smallest_of(phases[p].sizes));
+        high = std::max(high, largest_of(phases[p].sizes));
+        all += numbers[p] * diameter_moments(phases[p].sizes).mean_square_m2;
+    }
+    GrainSizeSpec mixture;
+    if (!(high > low * (1.0 + 1e-9))) {
+        mixture.minimum_m = low;
+        mixture.maximum_m = high;
+        return mixture;
+    }
+    mixture.kind = GrainSizeKind::sieve;
+    for (int i = 0; i <= kPoints; ++i) {
+        const double d = i == kPoints ? high : low * std::pow(high / low, static_cast<double>(i) / kPoints);
+        double passing = 0.0;
+        for (std::size_t p = 0; p < phases.size(); ++p) passing += numbers[p] * partial_square(phases[p].sizes, d) / all;
+        mixture.sieve.push_back({d, i == 0 ? 0.0 : i == kPoints ? 1.0 : std::min(passing, 1.0)});
+    }
+    for (std::size_t i = 1; i < mixture.sieve.size(); ++i) mixture.sieve[i].passing = std::max(mixture.sieve[i].passing, mixture.sieve[i - 1].passing);   // rounding
+    return mixture;
 }
 
 }  // namespace feldspar

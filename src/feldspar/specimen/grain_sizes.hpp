@@ -40,4 +40,38 @@ double largest_of_sieve_m(const std::vector<SievePoint>& sieve);
 /// tenth, another is taken: one grain of each of `count` equal parts of the distribution.
 std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, RandomStream& random);
 
+/// The smallest and the largest diameter (m) of a distribution.
+double smallest_of(const GrainSizeSpec& spec);
+double largest_of(const GrainSizeSpec& spec);
+
+/// Sizes of circles, from their diameters; of none all are 0.
+SizeSummary summary_of(std::vector<double> diameters);
+
+/// Grains of minerals that have sizes of their own.
+struct PhasedDiameters {
+    std::vector<double> diameters_m;
+    std::vector<int> phases;   ///< of each
+};
+
+/// How many grains each mineral has in a packing of this area (docs/theory/heterogeneity.md, H7 and H8). The cells fill the plane: each has, beside its
+/// disc, a film around it, which is wider around small grains. The counts are such that the cells, not the discs, have the shares.
+/// @throws InputError  shares that do not add up to 1; what check_grain_sizes refuses
+std::vector<int> grains_of_phases(const std::vector<PhaseSizes>& phases, double area_m2, double porosity);
+
+/// One grain of each of `count` equal parts of the distribution, for each mineral: so the area of a mineral does not depend on a few large grains.
+PhasedDiameters sample_by_phase(const std::vector<PhaseSizes>& phases, const std::vector<int>& counts, RandomStream& random);
+
+/// What the grains of a mineral with sizes of its own have come to.
+struct PhaseFill {
+    int grains = 0;
+    double area_share = 0.0;    ///< of the cells
+    SizeSummary discs, cells;   ///< as they were packed; diameters of circles of the cells' areas
+};
+
+/// Of each mineral; none where sizes belong to no mineral.
+std::vector<PhaseFill> fill_of_phases(const Specimen& specimen);
+
+/// The distribution of all grains together, as a sieve curve of discs by area: by which grains are judged that are not drawn from it. To a percent.
+GrainSizeSpec mixture_of(const std::vector<PhaseSizes>& phases, double porosity);
+
 }  // namespace feldspar

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "feldspar/base/error.hpp"
@@ -13,7 +14,8 @@ namespace {
 
 class FaceJoiner {
 public:
-    FaceJoiner(Tessellation& cells, const Cutout& cut, double snap_m) : cells_(cells), cut_(cut), snap_(snap_m), along_((1.0 / norm(cut.vertices[1] - cut.vertices[0])) * (cut.vertices[1] - cut.vertices[0])) {}
+    /// @param crossings  vertices where cuts meet, which stay where they are
+    FaceJoiner(Tessellation& cells, const Cutout& cut, double snap_m, const std::set<int>& crossings) : cells_(cells), cut_(cut), snap_(snap_m), crossings_(crossings), along_((1.0 / norm(cut.vertices[1] - cut.vertices[0])) * (cut.vertices[1] - cut.vertices[0])) {}
 
     void run() {
         share_vertices();
@@ -42,7 +44,7 @@ private:
         return found;
     }
 
-    // Of two vertices that lie at the same place the right one goes.
+    // Of two vertices that lie at the same place the right one goes, unless cuts meet there.
     void share_vertices() {
         const std::map<double, int> left = vertices_of(0), right = vertices_of(1);
         std::map<int, int> instead;
@@ -54,8 +56,12 @@ private:
                     distance = std::abs(it->first - s);
                     nearest = it->second;
                 }
-            if (nearest >= 0 && nearest != v) instead[v] = nearest;
+            if (nearest < 0 || nearest == v) continue;
+            if (crossings_.contains(v)) instead[nearest] = v;
+            else instead.emplace(v, nearest);
         }
+        for (auto& [v, other] : instead)
+            if (const auto further = instead.find(other); further != instead.end()) other = further->second;
         for (Cell& cell : cells_.cells)
             for (int& v : cell.vertices)
                 if (const auto found = instead.find(v); found != instead.end()) v = found->second;
@@ -121,21 +127,57 @@ private:
     Tessellation& cells_;
     const Cutout& cut_;
     double snap_;
+    const std::set<int>& crossings_;
     Vec2 along_;
     std::vector<std::pair<int, int>> seams_;   // cell and edge
 };
 
 }  // namespace
 
-void join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
+namespace {
+
+// Where cuts meet each has made vertices of its own: they become one. @return these, one a place
+std::set<int> share_crossings(Tessellation& cells, const Outline& outline, double snap_m) {
+    std::map<int, std::set<int>> cuts_at;   // of vertices on joined cuts: which
+    for (const Cell& cell : cells.cells)
+        for (std::size_t k = 0; k < cell.vertices.size(); ++k)
+            for (int n = 0; n < std::ssize(outline.cutouts); ++n) {
+                const Cutout& cut = outline.cutouts[n];
+                if (!cut.joined || cell.outline_edges[k] < cut.first_edge || cell.outline_edges[k] > cut.first_edge + 1) continue;
+                cuts_at[cell.vertices[k]].insert(n);
+                cuts_at[cell.vertices[(k + 1) % cell.vertices.size()]].insert(n);
+            }
+    std::vector<std::pair<int, std::set<int>>> several;   // a place by its first vertex
+    std::map<int, int> instead;
+    for (const auto& [v, cuts] : cuts_at)
+        if (cuts.size() > 1) {
+            const auto known = std::find_if(several.begin(), several.end(), [&](const auto& one) { return norm(cells.vertices[one.first] - cells.vertices[v]) < 1e-6 * snap_m; });
+            if (known == several.end()) several.push_back({v, cuts});
+        }
+    for (const auto& [v, cuts] : cuts_at)
+        for (const auto& [first, all] : several)
+            if (v != first && norm(cells.vertices[first] - cells.vertices[v]) < 1e-6 * snap_m) instead[v] = first;
+    for (Cell& cell : cells.cells)
+        for (int& v : cell.vertices)
+            if (const auto found = instead.find(v); found != instead.end()) v = found->second;
+    std::set<int> crossings;
+    for (const auto& [first, all] : several) crossings.insert(first);
+    return crossings;
+}
+
+}  // namespace
+
+int join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
+    std::set<int> crossings;
+    if (std::count_if(outline.cutouts.begin(), outline.cutouts.end(), [](const Cutout& cut) { return cut.joined; }) > 1) crossings = share_crossings(cells, outline, snap_m);
     std::map<std::pair<int, int>, int> seam_of_pair;   // of two cells; those of one joint may meet on several edges, of which all lie on it or none
     for (int n = 0; n < std::ssize(outline.cutouts); ++n) {
         if (!outline.cutouts[n].joined) continue;
-        FaceJoiner joiner(cells, outline.cutouts[n], snap_m);
+        FaceJoiner joiner(cells, outline.cutouts[n], snap_m, crossings);
         joiner.run();
         for (const auto& [c, k] : joiner.seams()) seam_of_pair[{std::min(c, cells.cells[c].neighbours[k]), std::max(c, cells.cells[c].neighbours[k])}] = n;
     }
-    if (seam_of_pair.empty()) return;
+    if (seam_of_pair.empty()) return 0;
     for (int c = 0; c < std::ssize(cells.cells); ++c) {
         Cell& cell = cells.cells[c];
         cell.seams.assign(cell.vertices.size(), -1);
@@ -159,6 +201,7 @@ void join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
     cells.vertices = std::move(kept);
     for (Cell& cell : cells.cells)
         for (int& v : cell.vertices) v = number[v];
+    return static_cast<int>(crossings.size());
 }
 
 }  // namespace feldspar

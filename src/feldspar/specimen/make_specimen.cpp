@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -110,9 +111,14 @@ Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint
     making.expect(static_cast<std::size_t>(count));
     RandomStream sizes(seed, "grain sizes");
     RandomStream places(seed, "packing positions");
-    const std::vector<double> diameters = sample_diameters(spec.grain_sizes, count, sizes);
+    PhasedDiameters sample;
+    if (spec.phase_sizes.empty()) sample.diameters_m = sample_diameters(spec.grain_sizes, count, sizes);
+    else sample = sample_by_phase(spec.phase_sizes, grains_of_phases(spec.phase_sizes, packed_area_m2(outline), spec.porosity), sizes);
+    const std::vector<double>& diameters = sample.diameters_m;
     try {
-        return pack_discs(outline, diameters, places, making.stage("packing", true));
+        Packing packing = pack_discs(outline, diameters, places, making.stage("packing", true), sample.phases);
+        for (const PhaseSizes& phase : spec.phase_sizes) packing.phase_names.push_back(phase.name);
+        return packing;
     } catch (const NumericalError& problem) {   // there is no other way out than another specimen
         throw InputError({"", 0, 0, "specimen.grains.diameter"}, fmt::format("these grains do not pack: {}", problem.what()),
                          fmt::format("sizes closer together (now {:.3g} to {:.3g} mm), or fewer grains by a porosity above {:g}",
@@ -120,6 +126,32 @@ Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint
                                      spec.porosity),
                          "raise the smallest diameter first: the finest grains hold little of the area; or try another seed");
     }
+}
+
+/// A loaded packing says which of its grains are of which mineral, if these have sizes of their own; its names become the numbers that the spec gives them.
+void number_phases(Packing& packing, const SpecimenSpec& spec, std::vector<std::string>& warnings) {
+    if (spec.phase_sizes.empty()) {
+        if (!packing.phases.empty())
+            warnings.push_back(fmt::format("{} says of which mineral its grains are, which does not count: the minerals of this rock have no sizes of their own, and are drawn anew", spec.packing_file.filename().string()));
+        packing.phases.clear();
+        packing.phase_names.clear();
+        return;
+    }
+    std::string names;
+    for (const PhaseSizes& phase : spec.phase_sizes) names += (names.empty() ? "\"" : ", \"") + phase.name + "\"";
+    const auto refuse = [&](const std::string& problem) {
+        throw InputError({"", 0, 0, "specimen.packing"}, fmt::format("\"{}\" {}", spec.packing_file.string(), problem), "a packing made for minerals of these sizes: " + names, "leave `packing` out to make one");
+    };
+    if (packing.phases.empty()) refuse("does not say of which mineral its grains are, but each mineral has sizes of its own");
+    std::vector<int> number;
+    for (const std::string& name : packing.phase_names) {
+        const auto found = std::find_if(spec.phase_sizes.begin(), spec.phase_sizes.end(), [&](const PhaseSizes& phase) { return phase.name == name; });
+        number.push_back(static_cast<int>(found - spec.phase_sizes.begin()));
+        if (found == spec.phase_sizes.end()) refuse(fmt::format("has grains of \"{}\", which the rock does not have", name));
+    }
+    for (int& phase : packing.phases) phase = number[static_cast<std::size_t>(phase)];
+    packing.phase_names.clear();
+    for (const PhaseSizes& phase : spec.phase_sizes) packing.phase_names.push_back(phase.name);
 }
 
 /// Where cells were cut, `packing` gets one disc a grain. Discs of reshaped cells are at the centroid and have the share of the cell that the discs have of the
@@ -140,6 +172,9 @@ void give_discs_to_pieces(Specimen& specimen) {
         specimen.packing.centres.push_back(cells.reshaped[g] ? centroid(corners) : packed.centres[disc]);
         specimen.packing.radii_m.push_back(cells.reshaped[g] ? std::sqrt(share * signed_area(corners) / std::numbers::pi) : packed.radii_m[disc]);
     }
+    if (packed.phases.empty()) return;
+    specimen.packing.phases.clear();
+    for (const int disc : cells.disc_of_cell) specimen.packing.phases.push_back(packed.phases[static_cast<std::size_t>(disc)]);
 }
 
 /// Circles of the areas of polygons, at their centroids.
@@ -224,24 +259,6 @@ void measure_cells(const Specimen& specimen, SpecimenQuality& quality) {
     quality.vertices_per_grain = static_cast<double>(vertices) / static_cast<double>(quality.grains);
     const double reference = specimen.outline.is_disc ? boundary_area(specimen.cells) : specimen.outline.area_m2;
     quality.area_error = std::abs(area - reference) / reference;
-}
-
-/// Sizes of circles, from their diameters.
-SizeSummary summary_of(std::vector<double> diameters) {
-    std::sort(diameters.begin(), diameters.end());
-    double sum = 0.0, area = 0.0, below = 0.0;
-    for (const double d : diameters) {
-        sum += d;
-        area += d * d;
-    }
-    SizeSummary summary{sum / static_cast<double>(diameters.size()), diameters.front(), diameters.back(), diameters.back()};
-    for (const double d : diameters) {
-        below += d * d;
-        if (below < 0.5 * area) continue;
-        summary.D50_m = d;
-        break;
-    }
-    return summary;
 }
 
 void measure_sizes(const Specimen& specimen, SpecimenQuality& quality) {
@@ -345,6 +362,10 @@ std::vector<std::string> warnings_about(const SpecimenQuality& quality, bool giv
 int grain_count(const SpecimenSpec& spec) {
     check_numbers(spec);
     if (spec.given_cells.given()) return static_cast<int>(spec.given_cells.cells->cells.size());
+    if (!spec.phase_sizes.empty()) {
+        const std::vector<int> counts = grains_of_phases(spec.phase_sizes, packed_area_m2(make_outline(spec)), spec.porosity);
+        return std::accumulate(counts.begin(), counts.end(), 0);
+    }
     const double d = counting_diameter(spec.grain_sizes);
     const double count = std::round((1.0 - spec.porosity) * packed_area_m2(make_outline(spec)) / (0.25 * std::numbers::pi * d * d));
     if (count > most_grains) {
@@ -370,6 +391,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
         quality.mean_diameter_m = mean_diameter(specimen.packing);
     } else {
         specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
+        if (!spec.packing_file.empty()) number_phases(specimen.packing, spec, quality.warnings);
         making.expect(specimen.packing.centres.size());
         quality.mean_diameter_m = mean_diameter(specimen.packing);
         const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
@@ -380,6 +402,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     if (spec.crystal_sizes) {
         SpecimenSpec crystals = spec;
         crystals.grain_sizes = *spec.crystal_sizes;
+        crystals.phase_sizes.clear();
         crystals.given_cells = {};   // their discs are packed, whatever the grains are
         constexpr std::uint64_t kOthers = 0x9E3779B97F4A7C15;   // the streams of another seed: crystals and grains have nothing to do with each other
         specimen.crystal_of_cell = group_into_crystals(specimen.cells, make_packing(crystals, specimen.outline, seed ^ kOthers, making));
@@ -394,6 +417,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     quality.grains = static_cast<int>(specimen.packing.centres.size());
     quality.pieces = quality.grains - static_cast<int>(discs_of(specimen).centres.size());
     quality.joined_pieces = specimen.cells.joined_pieces;
+    quality.crossings = specimen.cells.crossings;
     quality.merged_edges = specimen.cells.merged_edges;
     quality.overlap_mean = specimen.packing.overlap_mean;
     quality.overlap_max = specimen.packing.overlap_max;

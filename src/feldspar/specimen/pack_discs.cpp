@@ -56,15 +56,22 @@ void sort_in_rows(Packing& packing, const Box& box) {
     for (std::size_t k = 0; k < n; ++k) {
         sorted.centres[k] = packing.centres[order[k]];
         sorted.radii_m[k] = packing.radii_m[order[k]];
+        if (!packing.phases.empty()) sorted.phases[k] = packing.phases[order[k]];
     }
     packing = std::move(sorted);
 }
 
 }  // namespace
 
-Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control) {
+Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control, std::span<const int> phases) {
     Packing packing;
     for (const double d : diameters_m) packing.radii_m.push_back(0.5 * d);
+    if (!phases.empty()) {
+        std::vector<std::size_t> order(diameters_m.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return diameters_m[l] > diameters_m[r]; });
+        for (const std::size_t i : order) packing.phases.push_back(phases[i]);
+    }
     std::stable_sort(packing.radii_m.begin(), packing.radii_m.end(), std::greater<>());
     packing.centres.resize(packing.radii_m.size());
     std::vector<double> scaled_radii;

@@ -1,4 +1,5 @@
 // A packing as text, so that it can be kept, exchanged and loaded again with the same bits.
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <exception>
@@ -181,9 +182,15 @@ void save_packing(const Specimen& specimen, const std::filesystem::path& file) {
     std::string text = fmt::format("{}\nseed {}\n{}", first_line, specimen.seed, outline_text(specimen.outline));
     text += fmt::format("relaxation {:.17g} {:.17g} {:.17g} {}\n", packing.overlap_mean, packing.overlap_max, packing.residual,
                         packing.relaxation_steps);
+    const bool phased = !packing.phases.empty();
+    if (phased) {
+        text += fmt::format("minerals {}\n", packing.phase_names.size());
+        for (const std::string& name : packing.phase_names) text += name + "\n";
+    }
     text += fmt::format("discs {}\n", packing.centres.size());
     for (std::size_t i = 0; i < packing.centres.size(); ++i) {
-        text += fmt::format("{:.17g} {:.17g} {:.17g}\n", packing.centres[i].x, packing.centres[i].y, packing.radii_m[i]);
+        text += fmt::format("{:.17g} {:.17g} {:.17g}", packing.centres[i].x, packing.centres[i].y, packing.radii_m[i]);
+        text += phased ? fmt::format(" {}\n", packing.phases[i]) : "\n";
     }
     text += "end\n";
     errno = 0;
@@ -213,14 +220,27 @@ Packing load_packing(const std::filesystem::path& file, const Outline& outline) 
     packing.overlap_max = relaxation[1];
     packing.residual = relaxation[2];
     packing.relaxation_steps = static_cast<int>(relaxation[3]);
+    if (reader.next_word() == "minerals") {
+        const std::size_t minerals = reader.count("minerals", 1);
+        for (std::size_t p = 0; p < minerals; ++p) {
+            const std::vector<std::string> words = reader.next("the name of a mineral");
+            if (words.size() != 1 || std::find(packing.phase_names.begin(), packing.phase_names.end(), words.front()) != packing.phase_names.end()) reader.fail("this is not the name of a mineral", "a word, each mineral once");
+            packing.phase_names.push_back(words.front());
+        }
+    }
+    const bool phased = !packing.phase_names.empty();
     const std::size_t discs = reader.count("discs", 1);
     for (std::size_t i = 0; i < discs; ++i) {
-        const auto disc = reader.numbers("", 3);
+        const auto disc = reader.numbers("", phased ? 4 : 3);
         const Vec2 centre = {disc[0], disc[1]};
         if (!contains(outline, centre)) reader.fail(fmt::format("the centre of disc {} lies outside the outline", i), "a centre inside");
         if (!(disc[2] > 0.0)) reader.fail(fmt::format("the radius of disc {} is {:g} m", i, disc[2]), "a radius greater than zero");
         packing.centres.push_back(centre);
         packing.radii_m.push_back(disc[2]);
+        if (!phased) continue;
+        if (disc[3] != std::floor(disc[3]) || disc[3] < 0.0 || disc[3] >= static_cast<double>(packing.phase_names.size()))
+            reader.fail(fmt::format("the mineral of disc {} is {:g}", i, disc[3]), fmt::format("from 0 to {}", packing.phase_names.size() - 1));
+        packing.phases.push_back(static_cast<int>(disc[3]));
     }
     if (reader.next("'end'") != std::vector<std::string>{"end"}) reader.fail("more lines than discs", "'end'");
     return packing;

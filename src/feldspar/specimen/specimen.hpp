@@ -97,6 +97,13 @@ struct GrainSizeSpec {
     std::vector<SievePoint> sieve;        ///< sieve: at least two points, from passing 0 to passing 1
 };
 
+/// The sizes that the grains of one mineral have.
+struct PhaseSizes {
+    std::string name;       ///< of the mineral
+    double share = 0.0;     ///< of the area; all add up to 1
+    GrainSizeSpec sizes;
+};
+
 /// Cells that another program made, checked and on one shared vertex graph (weld_cells.hpp), where its file has them.
 struct GivenCells {
     std::vector<Vec2> vertices;                  ///< m
@@ -137,6 +144,7 @@ struct SpecimenSpec {
     double particles_per_grain = 0.0;             ///< inner particles in a grain of mean area; 0 = grains are not filled
     std::optional<GrainSizeSpec> crystal_sizes;   ///< crystals of several grains each, which can break between these; absent = each grain is one
     GivenCellsSpec given_cells;                   ///< if given: these cells, whatever the seed; of the sizes only what they say of themselves counts
+    std::vector<PhaseSizes> phase_sizes;          ///< if given: each mineral has sizes of its own, and the packing says which grain is of which; `grain_sizes` is then their mixture
 };
 
 /// What is cut out of the cells: a hole, a slit, or a cut without width.
@@ -146,6 +154,7 @@ struct Cutout {
     bool slit = false;             ///< edges 0 and 2 run along it, edge 1 is its end at `to`, edge 3 that at `from`
     std::array<bool, 2> tips{};    ///< slit or cut: whether its end at `from`, at `to` lies in the rock
     bool joined = false;           ///< of a cut: its faces stay in contact
+    std::array<int, 2> ends_on{-1, -1};   ///< of a joined cut: the number, among all cutouts, of the joined cut on which its end lies; -1: none
     bool packed_around = true;     ///< the discs keep clear of it; otherwise they are packed as if it were not there
     double area_m2 = 0.0;          ///< of the rock that it takes away
     std::string name;              ///< for messages: "notch 1"
@@ -172,6 +181,8 @@ struct Outline {
 struct Packing {
     std::vector<Vec2> centres;        ///< m
     std::vector<double> radii_m;
+    std::vector<int> phases;          ///< a disc: the mineral whose size it has, into phase_names; empty: sizes belong to no mineral
+    std::vector<std::string> phase_names;
     double overlap_mean = 0.0;        ///< mean overlap of touching pairs / mean diameter, after relaxation
     double overlap_max = 0.0;
     double residual = 0.0;            ///< unbalanced force of the relaxation / mean contact force at the stop
@@ -196,6 +207,7 @@ struct Tessellation {
     std::vector<int> disc_of_cell;      ///< a cell: the packed disc that it is of; empty if nothing was cut out: cell i is of disc i
     std::vector<char> reshaped;         ///< a cell: a piece of its disc's cell, or one that has taken a piece in: the disc does not stand for it; empty likewise
     int joined_pieces = 0;              ///< pieces that were too small for a grain and went to a neighbour
+    int crossings = 0;                  ///< points where joined cuts cross, or one ends on another
 };
 
 /// The places (m) of the vertices of cell `cell`, counter-clockwise, in the cell's order.
@@ -265,6 +277,7 @@ struct SpecimenQuality {
     int merged_edges = 0;
     int pieces = 0;               ///< grains more than discs, because holes or notches have cut cells in two; negative if whole grains went
     int joined_pieces = 0;        ///< pieces that were too small for a grain and went to a neighbour
+    int crossings = 0;            ///< points where cuts cross, or one ends on another, whose faces stay in contact
     double vertices_per_grain = 0.0;
     double overlap_mean = 0.0;    ///< / mean diameter
     double overlap_max = 0.0;

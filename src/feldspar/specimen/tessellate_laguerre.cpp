@@ -66,7 +66,7 @@ Tessellation tessellation_of(CellGraph graph, const Outline& outline, double mea
     drop_unused_vertices(graph);
     result.vertices = std::move(graph.vertices);
     for (const Face& face : graph.faces) result.cells.push_back(make_cell(face, result.vertices));
-    if (!outline.cutouts.empty()) join_faces(result, outline, 0.5 * least_length);
+    if (!outline.cutouts.empty()) result.crossings = join_faces(result, outline, 0.5 * least_length);
     check_conforming(result);
     return result;
 }

@@ -40,8 +40,11 @@ void forces_of_contact(Assembly& assembly, const Contact& contact, SlotForces& s
         const Vec2 relative = b.velocity(Nb) - a.velocity(Na);
 
         BondState bond = assembly.bond(p);
-        const BondEvent event = apply_law(law, point.area_m2, settings.dt * dot(relative, frame.n), settings.dt * dot(relative, s),
-                                          settings.strength, bond);
+        const double dun = settings.dt * dot(relative, frame.n), dus = settings.dt * dot(relative, s);
+        BondEvent event = BondEvent::none;
+        if (contact.dilation >= 0 && bond.damage >= 1.0)
+            slide_with_dilation(law, assembly.dilations[contact.dilation], point.area_m2, dun, dus, bond, assembly.bonds.slip_m[point.state]);
+        else event = apply_law(law, point.area_m2, dun, dus, settings.strength, bond);
         if (event != BondEvent::none) note_break(point, law, event, step, bond);
         assembly.set_bond(p, bond);
         const Vec2 on_b = bond.Fn_N * frame.n + bond.Fs_N * s;   // compression pushes B along n

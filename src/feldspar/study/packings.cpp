@@ -30,7 +30,7 @@ private:
 
 // Takes each struct apart by name: one that gets another member is not compiled until the member stands here.
 std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
-    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain, crystal_sizes, given_cells] = spec;
+    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain, crystal_sizes, given_cells, phase_sizes] = spec;
     const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, arcs, flat_angle_rad, holes, notches, labels] = outline;
     Text text;
     text.add(std::to_string(seed));
@@ -85,7 +85,16 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
             text.add(passing);
         });
     };
-    add_sizes(grain_sizes, porosity);
+    if (phase_sizes.empty()) add_sizes(grain_sizes, porosity);   // else they are the mixture of these
+    else {
+        text.add(porosity);
+        text.add(phase_sizes, [&](const PhaseSizes& phase) {
+            const auto& [name, share, sizes] = phase;
+            text.add(name);
+            text.add(share);
+            add_sizes(sizes, 0.0);
+        });
+    }
     if (crystal_sizes) add_sizes(*crystal_sizes, 0.0);   // identities of specimens without crystals stay as they were
     if (merge_length_m) text.add(*merge_length_m);
     else text.add(std::string("usual"));

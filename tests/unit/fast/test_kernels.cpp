@@ -48,7 +48,7 @@ void expect_same(const Assembly& a, const Assembly& b, double tolerance, const s
     EXPECT_LE(difference(a.nodes.force, b.nodes.force), tolerance) << what;
     const std::vector<std::pair<const char*, Array<double> Bonds::*>> quantities = {
         {"un", &Bonds::un_m}, {"us", &Bonds::us_m}, {"Fn", &Bonds::Fn_N}, {"Fs", &Bonds::Fs_N}, {"largest un", &Bonds::max_un_m}, {"largest us", &Bonds::max_us_m},
-        {"damage", &Bonds::damage}};
+        {"damage", &Bonds::damage}, {"slip", &Bonds::slip_m}};
     for (const auto& [name, quantity] : quantities) EXPECT_LE(difference(a.bonds.*quantity, b.bonds.*quantity), tolerance) << name << ", " << what;
     // What a point dissipates is a small difference of its works: relative to what it holds.
     double held = 0.0;
@@ -142,6 +142,7 @@ struct Case {
     ShearMeasure measure = ShearMeasure::total;
     TensionUnloading unloading = TensionUnloading::elastic;
     bool uneven = false;   // a rock of two minerals whose contacts scatter
+    bool dilates = false;  // and whose joint dilates, until it has slipped a little
 };
 
 std::vector<Case> cases() {
@@ -157,6 +158,7 @@ std::vector<Case> cases() {
             for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant})
                 all.push_back({methods::uniaxial_compression, fixtures::model(GrainKind::flexible), law, measure, unloading});
     for (const ModelSpec& model : models) all.push_back({methods::uniaxial_compression, model, ContactLaw::bilinear, ShearMeasure::total, TensionUnloading::elastic, true});
+    for (const ModelSpec& model : models) all.push_back({methods::uniaxial_compression, model, ContactLaw::bilinear, ShearMeasure::total, TensionUnloading::elastic, true, true});
     for (const ContactLaw law : {ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle})
         for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant})
             all.push_back({methods::direct_tension, fixtures::model(GrainKind::flexible), law, ShearMeasure::beyond_friction, unloading, true});
@@ -168,6 +170,7 @@ std::string label(const testing::TestParamInfo<Case>& info) {
     if (info.param.measure == ShearMeasure::beyond_friction) text += "_beyond_friction";
     if (info.param.unloading == TensionUnloading::secant) text += "_secant";
     if (info.param.uneven) text += "_uneven";
+    if (info.param.dilates) text += "_dilates";
     std::erase(text, '-');
     return text + "_" + std::to_string(info.index);
 }
@@ -183,6 +186,10 @@ protected:
         s.contact.shear_measure = c.measure;
         s.contact.tension_unloading = c.unloading;
         if (c.uneven) s.rock = fixtures::uneven_rock();
+        if (c.dilates) {
+            s.rock.joints.front().dilation = 0.2;
+            s.rock.joints.front().dilation_slip_m = 1e-9;
+        }
         if (c.test == methods::biaxial) s.test.sigma3_Pa = 2e6;
         s.test.membrane_plates = 4;
         return s;

@@ -12,6 +12,7 @@
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/job/rock_files.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 #include "../../switched_on.hpp"
 #include "../../table7.hpp"
 #include "../../temporary_folder.hpp"
@@ -432,6 +433,43 @@ TEST(ResolvedJob, OfAnUnevenRockReadsBackToTheSameBits) {
     EXPECT_NEAR(rock.joints[1].set->dip_rad, 0.5235987755982988, 1e-15);
     const double voigt = 0.6 * 94.5 + 0.4 * 25.8, reuss = 1.0 / (0.6 / 94.5 + 0.4 / 25.8);
     EXPECT_NEAR(job.variants.front().grain.E_Pa / 1e9, 0.5 * (voigt + reuss), 1e-9);   // what estimates reckon with
+}
+
+// Minerals with sizes of their own: those without take the specimen's, and the specimen knows all of them.
+TEST(ResolvedJob, OfMineralsWithSizesReadsBackToTheSameBits) {
+    const std::string quartz = "diameter = { distribution = \"uniform\", minimum = \"1 mm\", maximum = \"2 mm\" }\n";
+    const std::string biotite = "diameter = { distribution = \"sieve\", curve = [[\"0.5 mm\", 0], [\"0.9 mm\", \"41.7 %\"], [\"1.3 mm\", 1.0]] }\n";
+    std::string text = edited("cluster_length = \"7 mm\"\n", "", edited("[numerics]", uneven_material));
+    text = edited("colour = \"#d9d4c7\"\n", "colour = \"#d9d4c7\"\n" + quartz, text);
+    expect_round_trip(text);
+    const Job some = parse_job(text, "job.toml");
+    ASSERT_EQ(some.specimen.phase_sizes.size(), 2U);
+    EXPECT_EQ(some.specimen.phase_sizes[0].sizes.minimum_m, 0.001);
+    EXPECT_EQ(some.specimen.phase_sizes[0].share, 0.6);
+    EXPECT_EQ(some.specimen.phase_sizes[1].sizes.maximum_m, 0.004) << "that of [specimen.grains]";
+    text = edited("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\n", "", edited("value = 7\n", "value = 7\n" + biotite, text));
+    expect_round_trip(text);
+    const Job all = parse_job(text, "job.toml");
+    EXPECT_EQ(all.specimen.phase_sizes[1].sizes.sieve.size(), 3U);
+    EXPECT_EQ(largest_of(all.specimen.grain_sizes), 0.002);
+    expect_round_trip(edited("mu = 0.5\n", "phi = \"30 deg\"\ndilation = \"30 deg\"\ndilation_slip = \"0.7 mm\"\n", text));
+}
+
+TEST(ReadJob, VariantsThatShareAPackingHaveTheSameMineralsInIt) {
+    const std::string quartz = "diameter = { distribution = \"uniform\", minimum = \"1 mm\", maximum = \"2 mm\" }\n";
+    std::string text = edited("cluster_length = \"7 mm\"\n", "", edited("[numerics]", uneven_material));
+    text = edited("colour = \"#d9d4c7\"\n", "colour = \"#d9d4c7\"\n" + quartz, text);
+    const auto with = [&](const std::string& share, const std::string& rest) {
+        return text + "\n[[variant]]\nname = \"as it is\"\n[[variant]]\nname = \"other\"\n[[variant.material.phase]]\nname = \"quartz\"\nshare = " + share + "\n" + quartz +
+               "[[variant.material.phase]]\nname = \"biotite\"\nshare = " + rest + "\n";
+    };
+    EXPECT_EQ(parse_job(with("0.6", "0.4"), "job.toml").specimen.phase_sizes.size(), 2U);
+    try {
+        parse_job(with("0.3", "0.7"), "job.toml");
+        ADD_FAILURE() << "is taken";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("differ in the minerals of which their packing is made"), std::string::npos) << error.what();
+    }
 }
 
 TEST(ResolvedJob, OfARockFromFilesReadsBackToTheSameBits) {

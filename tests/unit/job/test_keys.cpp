@@ -79,6 +79,8 @@ const std::vector<std::string>& bases() {
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"cyclic-compression\""),
             replaced(sample_job, "[numerics]", uneven_material),
             replaced(replaced(sample_job, "[numerics]", uneven_material), "[[material.joint]]\nname = \"fault\"\ntrace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", \"70 mm\"]]\nmu = 0.5\nopening = \"1 um\"\n", ""),
+            replaced(replaced(replaced(sample_job, "[numerics]", uneven_material), "cluster_length = \"7 mm\"\n", ""), "value = 7\n", "value = 7\ndiameter = { distribution = \"uniform\", minimum = \"1 mm\", maximum = \"2 mm\" }\n"),
+            replaced(replaced(sample_job, "[numerics]", uneven_material), "mu = 0.5\n", "mu = 0.5\ndilation = \"9 deg\"\ndilation_slip = \"1 mm\"\n"),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
         };
     }();

@@ -487,5 +487,93 @@ TEST(JoinedCuts, DivideCellsOnAStraightLineAndLeaveThemNeighbours) {
     }
 }
 
+// Cuts that cross, and cuts that end on another: the body is filled, cells name each other, and each edge on a line belongs to the cut of that line.
+struct Lines {
+    const char* name;
+    std::vector<NotchSpec> cuts;
+    int crossings;
+    std::vector<double> lengths_m;   // of each cut in the rock
+};
+
+class JoinedCutsThatMeet : public testing::TestWithParam<Lines> {};
+
+NotchSpec joined(Vec2 from, Vec2 to, const char* label) { return {from, to, 0.0, label, true}; }
+
+INSTANTIATE_TEST_SUITE_P(
+    Lines, JoinedCutsThatMeet,
+    testing::Values(Lines{"TwoThatCross", {joined({-0.005, 0.015}, {0.045, 0.045}, "a"), joined({-0.005, 0.05}, {0.045, 0.02}, "b")}, 1, {0.04 * std::hypot(1.0, 0.6), 0.04 * std::hypot(1.0, 0.6)}},
+                    Lines{"OneEndsOnAnother", {joined({0.012, 0.03}, {0.045, 0.045}, "stem"), joined({0.010, -0.001}, {0.015, 0.061}, "bar")}, 1, {}},
+                    Lines{"TheSameTheOtherWayRound", {joined({0.010, -0.001}, {0.015, 0.061}, "bar"), joined({0.045, 0.045}, {0.0125, 0.031}, "stem")}, 1, {}},
+                    Lines{"OneAcrossTheTip", {joined({0.02, -0.001}, {0.02, 0.04}, "a"), joined({-0.001, 0.02}, {0.03, 0.03}, "b")}, 1, {0.04, std::hypot(0.03, 0.03 * 10.0 / 31.0)}},
+                    Lines{"TwoSets",
+                          {joined({-0.002, 0.005}, {0.042, 0.025}, "a"), joined({-0.002, 0.018}, {0.042, 0.038}, "a"), joined({-0.002, 0.031}, {0.042, 0.051}, "a"), joined({0.002, -0.002}, {0.012, 0.062}, "b"),
+                           joined({0.015, -0.002}, {0.025, 0.062}, "b"), joined({0.028, -0.002}, {0.038, 0.062}, "b")},
+                          9,
+                          {}}),
+    [](const auto& tested) { return std::string(tested.param.name); });
+
+TEST_P(JoinedCutsThatMeet, FillTheBodyAndKeepTheirLaws) {
+    SpecimenSpec spec = two_to_four_millimetres();
+    spec.outline.width_m = 0.04;
+    spec.outline.height_m = 0.06;
+    spec.outline.notches = GetParam().cuts;
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+        const Specimen s = make_specimen(spec, seed);
+        EXPECT_NO_THROW(check_conforming(s.cells));
+        EXPECT_LT(s.quality.area_error, 1e-9) << seed;
+        EXPECT_EQ(s.quality.crossings, GetParam().crossings) << seed;
+        EXPECT_GT(s.quality.joined_pieces, 0) << "slivers go to a neighbour";
+        std::vector<double> length(spec.outline.notches.size(), 0.0);
+        for (int c = 0; c < std::ssize(s.cells.cells); ++c) {
+            const Cell& cell = s.cells.cells[c];
+            const std::vector<Vec2> corners = corners_of_cell(s.cells, c);
+            EXPECT_GT(signed_area(corners), 0.2e-6) << seed;   // no sliver is left: grains have 3 to 12 mm2
+            for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
+                EXPECT_FALSE(cell.outline_edges[k] >= 4) << "an edge of a cut is left open";
+                if (cell.neighbours[k] < 0) continue;
+                const Vec2 a = corners[k], b = corners[(k + 1) % corners.size()];
+                const auto on = [&](const Cutout& cut) {
+                    const Vec2 from = cut.vertices[0], along = (1.0 / norm(cut.vertices[1] - from)) * (cut.vertices[1] - from);
+                    const double s0 = dot(a - from, along), s1 = dot(b - from, along), reach = norm(cut.vertices[1] - from);
+                    return std::abs(cross(along, a - from)) < 1e-9 && std::abs(cross(along, b - from)) < 1e-9 && std::min(s0, s1) > -1e-9 && std::max(s0, s1) < reach + 1e-9;
+                };
+                for (int n = 0; n < std::ssize(s.outline.cutouts); ++n)
+                    if (on(s.outline.cutouts[n])) {
+                        EXPECT_EQ(cell.seams[k], n) << seed;
+                        length[n] += 0.5 * norm(b - a);
+                    }
+                if (cell.seams[k] < 0) continue;
+                const Cutout& cut = s.outline.cutouts[cell.seams[k]];
+                if (!on(cut)) {   // two cells that meet on the line and beyond its tip have one contact law: that of the line
+                    EXPECT_TRUE(cut.tips[0] || cut.tips[1]);
+                    bool elsewhere = false;
+                    for (std::size_t m = 0; m < cell.vertices.size(); ++m) elsewhere = elsewhere || (m != k && cell.neighbours[m] == cell.neighbours[k]);
+                    EXPECT_TRUE(elsewhere) << seed << ": an edge that is not on the line has its law";
+                    continue;
+                }
+                const Vec2 along = cut.vertices[1] - cut.vertices[0];
+                const double here = cross(along, centroid(corners) - cut.vertices[0]), there = cross(along, centroid(corners_of_cell(s.cells, cell.neighbours[k])) - cut.vertices[0]);
+                EXPECT_LT(here * there, 0.0) << seed;
+            }
+        }
+        for (std::size_t n = 0; n < GetParam().lengths_m.size(); ++n) EXPECT_NEAR(length[n], GetParam().lengths_m[n], 1e-9) << seed;
+    }
+}
+
+TEST(JoinedCuts, ThatLeaveNoRoomForGrainsWhereTheyMeetAreRefused) {
+    SpecimenSpec spec = two_to_four_millimetres();
+    spec.outline.width_m = 0.04;
+    spec.outline.height_m = 0.06;
+    const auto with = [&](std::vector<NotchSpec> cuts) {
+        spec.outline.notches = std::move(cuts);
+        return complaint(spec);
+    };
+    EXPECT_NE(with({joined({-0.005, 0.025}, {0.045, 0.03}, "a"), joined({-0.005, 0.03}, {0.045, 0.025}, "b")}).find("cross at 11.4 degrees"), std::string::npos);
+    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), joined({0.02, -0.001}, {0.02, 0.021}, "b")}).find("before one of them ends"), std::string::npos);
+    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), joined({0.02, -0.001}, {0.02, 0.061}, "b"), joined({0.005, 0.005}, {0.0355, 0.035}, "c")}).find("from where others do"), std::string::npos);
+    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), {{0.02, -0.001}, {0.02, 0.03}, 0.0, "b", false}}).find("touch, cross"), std::string::npos) << "only faces that stay in contact cross";
+    EXPECT_NE(with({joined({0.008, 0.02}, {0.03, 0.02}, "a"), joined({0.03, 0.012}, {0.03, 0.04}, "b"), joined({0.036, 0.04}, {0.012, 0.04}, "c"), joined({0.012, 0.048}, {0.012, 0.02}, "d")}).find("in a ring"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace feldspar

@@ -1,10 +1,12 @@
 // Whole specimens: the counts of the published ones, determinism, the report, and what is refused.
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 #include "sample_specimens.hpp"
 
 namespace feldspar {
@@ -190,6 +192,88 @@ TEST(MakeSpecimen, GrainsThatDoNotPackAreAMistakeWithARemedy) {
         for (const char* part : {"specimen.grains.diameter", "do not pack", "sizes closer together", "porosity above 0.02", "raise the smallest diameter"})
             EXPECT_NE(std::string(problem.what()).find(part), std::string::npos) << part << " in " << problem.what();
     }
+}
+
+// Minerals with sizes of their own: a granite, and two minerals of which one is ten times as coarse.
+SpecimenSpec granite_by_size() {
+    SpecimenSpec spec;
+    spec.outline.width_m = 0.08;
+    spec.outline.height_m = 0.16;
+    GrainSizeSpec quartz, feldspar, biotite;
+    quartz.minimum_m = 0.001;
+    quartz.maximum_m = 0.003;
+    feldspar.minimum_m = 0.003;
+    feldspar.maximum_m = 0.006;
+    biotite = {GrainSizeKind::log_normal, 0.0006, 0.0018, 0.001, 0.3, {}};
+    spec.phase_sizes = {{"quartz", 0.31, quartz}, {"feldspar", 0.63, feldspar}, {"biotite", 0.06, biotite}};
+    spec.grain_sizes = mixture_of(spec.phase_sizes, spec.porosity);
+    return spec;
+}
+
+TEST(SizesByMineral, FillTheirShares) {
+    SpecimenSpec extreme = granite_by_size();
+    GrainSizeSpec coarse, fine;
+    coarse.minimum_m = 0.008;
+    coarse.maximum_m = 0.012;
+    fine = {GrainSizeKind::sieve, 0.0, 0.0, 0.0, 0.0, {{0.0007, 0.0}, {0.001, 0.4}, {0.0013, 1.0}}};
+    extreme.phase_sizes = {{"coarse", 0.6, coarse}, {"fine", 0.4, fine}};
+    for (const SpecimenSpec& spec : {granite_by_size(), extreme})
+        for (const std::uint64_t seed : {1, 2, 3}) {
+            const Specimen s = make_specimen(spec, seed);
+            EXPECT_EQ(s.quality.grains, grain_count(spec));
+            const std::vector<PhaseFill> fills = fill_of_phases(s);
+            ASSERT_EQ(fills.size(), spec.phase_sizes.size());
+            int grains = 0;
+            for (std::size_t p = 0; p < fills.size(); ++p) {
+                const PhaseSizes& wanted = spec.phase_sizes[p];
+                EXPECT_NEAR(fills[p].area_share, wanted.share, 0.01) << wanted.name;   // of the specimen's area: see the theory
+                EXPECT_GE(fills[p].discs.minimum_m, smallest_of(wanted.sizes) * (1.0 - 1e-12));
+                EXPECT_LE(fills[p].discs.maximum_m, largest_of(wanted.sizes) * (1.0 + 1e-12));
+                EXPECT_NEAR(fills[p].discs.mean_m / diameter_moments(wanted.sizes).mean_m, 1.0, 0.02) << wanted.name;
+                grains += fills[p].grains;
+            }
+            EXPECT_EQ(grains, s.quality.grains);
+        }
+}
+
+TEST(SizesByMineral, StayWithTheirDiscsWhereGrainsAreCut) {
+    SpecimenSpec spec = granite_by_size();
+    spec.outline.width_m = 0.04;
+    spec.outline.height_m = 0.06;
+    spec.outline.notches = {{{-0.005, 0.015}, {0.045, 0.045}, 0.0, "fault", true}};
+    const Specimen s = make_specimen(spec, 1);
+    ASSERT_EQ(s.packing.phases.size(), s.cells.cells.size());
+    ASSERT_EQ(s.packed.phases.size(), s.packed.centres.size());
+    for (std::size_t c = 0; c < s.cells.cells.size(); ++c) EXPECT_EQ(s.packing.phases[c], s.packed.phases[static_cast<std::size_t>(s.cells.disc_of_cell[c])]);
+}
+
+TEST(SizesByMineral, AreOfTheSameDiscsAsTheirMixture) {
+    const SpecimenSpec spec = granite_by_size();
+    const std::vector<int> counts = grains_of_phases(spec.phase_sizes, 1.0, spec.porosity);   // a square metre: whole numbers do not matter
+    double number = 0.0, squares = 0.0, all = 0.0;
+    for (std::size_t p = 0; p < counts.size(); ++p) {
+        number += counts[p] * diameter_moments(spec.phase_sizes[p].sizes).mean_m;
+        squares += counts[p] * diameter_moments(spec.phase_sizes[p].sizes).mean_square_m2;
+        all += counts[p];
+    }
+    EXPECT_NEAR(0.25 * std::numbers::pi * squares, 1.0 - spec.porosity, 1e-3) << "the discs have what the porosity leaves";
+    EXPECT_NEAR(diameter_moments(spec.grain_sizes).mean_m / (number / all), 1.0, 0.01);
+    EXPECT_NEAR(diameter_moments(spec.grain_sizes).mean_square_m2 / (squares / all), 1.0, 0.01);
+    EXPECT_EQ(largest_of(spec.grain_sizes), 0.006);
+    EXPECT_EQ(smallest_of(spec.grain_sizes), 0.0006);
+}
+
+TEST(SizesByMineral, ThatCannotBeAreRefused) {
+    SpecimenSpec spec = granite_by_size();
+    spec.phase_sizes[0].share = 0.2;
+    EXPECT_THROW(make_specimen(spec, 1), InputError) << "shares";
+    spec = granite_by_size();
+    spec.phase_sizes[0].share += 0.0599;
+    spec.phase_sizes[2].share = 0.0001;
+    spec.phase_sizes[2].sizes.minimum_m = 0.004;
+    spec.phase_sizes[2].sizes.median_m = 0.005;
+    spec.phase_sizes[2].sizes.maximum_m = 0.006;
+    EXPECT_THROW(make_specimen(spec, 1), InputError) << "less than half a grain";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/specimen/outline.hpp"
 #include "sample_specimens.hpp"
 
@@ -113,6 +114,44 @@ TEST_F(PackingFile, AnotherOutlineIsRefused) {
 TEST_F(PackingFile, PlaceThatCannotBeWrittenIsAnOutputError) {
     const Specimen made = make_specimen(rectangle(0.02, 0.02), 1);
     EXPECT_THROW(save_packing(made, file_ / "no" / "such" / "folder"), OutputError);
+}
+
+// A packing of minerals with sizes of their own says which disc is of which, by name.
+TEST_F(PackingFile, KeepsTheMineralsOfItsGrains) {
+    SpecimenSpec spec = rectangle(0.03, 0.03);
+    GrainSizeSpec fine, coarse;
+    fine.minimum_m = 0.0015;
+    fine.maximum_m = 0.002;
+    coarse.minimum_m = 0.003;
+    coarse.maximum_m = 0.005;
+    spec.phase_sizes = {{"quartz", 0.4, fine}, {"feldspar", 0.6, coarse}};
+    spec.grain_sizes = mixture_of(spec.phase_sizes, spec.porosity);
+    const Specimen made = make_specimen(spec, 1);
+    save_packing(made, file_);
+    SpecimenSpec from_file = spec;
+    from_file.packing_file = file_;
+    const Specimen loaded = make_specimen(from_file, 99);
+    EXPECT_EQ(loaded.packing.phases, made.packing.phases);
+    EXPECT_EQ(loaded.packing.radii_m, made.packing.radii_m);
+    std::swap(from_file.phase_sizes[0], from_file.phase_sizes[1]);   // the names count, not the numbers
+    const Specimen swapped = make_specimen(from_file, 1);
+    for (std::size_t i = 0; i < made.packing.phases.size(); ++i) ASSERT_EQ(swapped.packing.phases[i], 1 - made.packing.phases[i]);
+    from_file.phase_sizes[0].name = "biotite";
+    EXPECT_THROW(make_specimen(from_file, 1), InputError) << "another rock";
+    from_file.phase_sizes.clear();   // minerals without sizes are drawn anew, which is told
+    const Specimen without = make_specimen(from_file, 1);
+    EXPECT_TRUE(without.packing.phases.empty());
+    ASSERT_FALSE(without.quality.warnings.empty());
+    EXPECT_NE(without.quality.warnings.front().find("which does not count"), std::string::npos);
+
+    std::string damaged = text();
+    const std::size_t last = damaged.rfind(" 0\n");
+    write(damaged.substr(0, last) + " 2\n" + damaged.substr(last + 3));
+    EXPECT_GT(line_of_error(make_outline(spec)), 8);
+    save_packing(make_specimen(rectangle(0.03, 0.03), 1), file_);
+    from_file = spec;
+    from_file.packing_file = file_;
+    EXPECT_THROW(make_specimen(from_file, 1), InputError) << "it does not say of which mineral";
 }
 
 }  // namespace

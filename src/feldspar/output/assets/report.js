@@ -330,8 +330,9 @@ function magnitudeRanges(t) {
 
 /** What the rock came to on this specimen: minerals, draws, joints. */
 function addRock(t, add) {
-  const r = t.rock;
-  for (const m of r.minerals || []) add(m.name, show(100 * m.area_share) + " % of the area (" + show(100 * m.wanted_share) + " % wanted), " + plural(m.grains, "grain"));
+  const r = t.rock, range = (s) => show(s.minimum) + " to " + show(s.maximum) + ", mean " + show(s.mean);
+  for (const m of r.minerals || []) add(m.name, show(100 * m.area_share) + " % of the area (" + show(100 * m.wanted_share) + " % wanted), " + plural(m.grains, "grain") +
+    (m.sizes_mm ? ", " + range(m.sizes_mm.cells) + " mm, as discs " + range(m.sizes_mm.discs) + " (" + range(m.sizes_mm.wanted) + " wanted)" : ""));
   if (r.crystals) add("Crystals", plural(r.crystals.crystals, "crystal") + " of " + show(r.crystals.grains_per_crystal) + " grains; " + r.crystals.inside_cracks + " of " + plural(r.crystals.cracks, "crack") + " inside them");
   for (const d of r.draws || []) add("Scatter of " + d.quantity, "mean " + show(d.mean) + ", variation " + show(100 * d.variation) + " %, " + show(d.lowest) + " to " + show(d.highest) + " times, " + plural(d.count, d.quantity === "E" ? "grain" : "contact"));
   if (r.initial_cracks) add("Before the test", r.initial_cracks.broken + " broken and " + r.initial_cracks.weakened + " weakened of " + plural(r.initial_cracks.contacts, "contact"));
