@@ -24,7 +24,8 @@ struct DeviceProvenance {
 /// Whether the program was built with support for cards.
 bool built_for_cards();
 
-/// What there is here. @throws InputError that says why a card cannot be used: none, or no support in this program
+/// What there is here; with the environment variable FELDSPAR_EMULATED_CARD the emulation instead. @throws InputError that says why a card cannot be used: none, or no support in
+/// this program
 DeviceProvenance card_here();
 
 /// A device for one test on the card. @throws InputError as card_here()

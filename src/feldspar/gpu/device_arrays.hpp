@@ -123,5 +123,6 @@ struct DeviceArrays : KernelArrays {
     std::int32_t rigid_count = 0;
     bool has_flexible_contacts = false, has_rigid_contacts = false;
 };
+static_assert(sizeof(DeviceArrays) <= 4096 - 64, "all parameters of a kernel have room in 4 KiB");
 
 }  // namespace feldspar
