@@ -72,7 +72,7 @@ struct KernelArrays {
 
     // Of a device instead:
     BrokenPoint* broken = nullptr;             ///< what broke, in any order
-    std::uint32_t* broken_count = nullptr;
+    std::uint32_t* broken_count = nullptr;     ///< behind it: not 0 if any point was damaged already or became so
     const double* free_gap = nullptr;          ///< of each bond (ContactPoint); null: there are none
 
     explicit KernelArrays(Assembly& assembly);

@@ -154,6 +154,7 @@ FELDSPAR_APART PointForces update_points(const KernelArrays& a, const KernelStep
     store_where(a.fracture + state, s.fracture_J, damaged, count);
     store_where(a.friction + state, s.friction_J, damaged, count);
 #if FELDSPAR_LANES == 1
+    if (any(damaged)) a.broken_count[1] = 1;   // whoever does it
     if (any(broke)) note_broken(a, step, law, state, update.Fn_trial_N, un, Fn, Fs);
 #else
     if (any(broke)) tell_broken(a, step, pack.first_contact + chunk.begin, j, state, broke, update.Fn_trial_N, un, count, Fn, Fs);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -73,11 +74,13 @@ public:
         }
         fetch(assembly, arrays);
         take(of_block, &block, 1);
-        backend_->finish();
-        for (const auto& [to, from, bytes] : arriving_) std::memcpy(to, from, bytes);
-        arriving_.clear();
+        arrive();
+        if (broken_count_[1] != 0 || !arrays.loose_contacts.empty()) {
+            fetch_damage(assembly);
+            arrive();
+        }
         work.loading = block.loading_J;
-        if (broken_count_ > 0) note_broken(assembly, arrays, first_step);
+        if (broken_count_[0] > 0) note_broken(assembly, arrays, first_step);
     }
 
 private:
@@ -96,6 +99,7 @@ private:
                 std::memcpy(m.beside + end, now + end, piece);
                 end += piece;
             }
+            if (end > at) changed_ = true;
             if (end > at) backend_->upload(static_cast<char*>(m.device) + at, m.beside + at, end - at);
             at = end + kPiece;
         }
@@ -109,9 +113,28 @@ private:
     template <class A>
     double* put_pairs(const A& array) { return reinterpret_cast<double*>(put(array)); }
     template <class A>
+    double* put_fixed_pairs(const A& array) { return reinterpret_cast<double*>(put_fixed(array)); }
+    template <class A>
     auto list(const A& array) {
         using T = std::remove_cvref_t<decltype(array[0])>;
         return DeviceList<const T>{put(array), static_cast<std::int32_t>(array.size())};
+    }
+
+    // The same of what follows from the contacts and the packs: it is not looked at while these stay (see bring()).
+    template <class T>
+    T* put_fixed(const T* from, std::size_t count) {
+        if (!fixed_ || next_ >= mirrored_.size() || mirrored_[next_].bytes != sizeof(T) * count) return put(from, count);
+        return static_cast<T*>(mirrored_[next_++].device);
+    }
+    template <class A>
+    auto* put_fixed(const A& array) {
+        using T = std::remove_cvref_t<decltype(array[0])>;
+        return put_fixed<T>(array.data(), array.size());
+    }
+    template <class A>
+    auto list_fixed(const A& array) {
+        using T = std::remove_cvref_t<decltype(array[0])>;
+        return DeviceList<const T>{put_fixed(array), static_cast<std::int32_t>(array.size())};
     }
 
     // Room on the device that the processor does not know. What it holds stays from one block to the next.
@@ -141,6 +164,14 @@ private:
         arriving_.push_back({reinterpret_cast<char*>(to), m->beside, sizeof(T) * count});
     }
 
+    // Waits for what was taken.
+    void arrive() {
+        backend_->finish();
+        for (const auto& [to, from, bytes] : arriving_) std::memcpy(to, from, bytes);
+        arriving_.clear();
+    }
+
+    void fetch_damage(Assembly& s);
     DeviceArrays bring(Assembly& s);
     void fetch(Assembly& s, const DeviceArrays& arrays);
     void note_broken(Assembly& s, const DeviceArrays& arrays, long long first_step);
@@ -156,6 +187,8 @@ private:
     std::vector<Mirrored> mirrored_;   // in the order in which bring() asks for them
     std::size_t next_ = 0;
     std::vector<Arriving> arriving_;
+    bool changed_ = false;   // something went up since this was false
+    bool fixed_ = false;     // contacts and packs are those of the block before
     LaunchSizes sizes_;
     std::vector<EdgeThread> seats_;
     std::vector<LooseContact> loose_;
@@ -166,7 +199,11 @@ private:
     std::vector<SharedEdge> shared_;
     std::vector<std::int32_t> plates_;
     std::vector<double> free_gaps_;
-    std::uint32_t broken_count_ = 0;
+    std::array<std::uint32_t, 2> broken_count_{};   // and whether any point is damaged
+    struct SizesBefore {
+        std::size_t contacts = 0, points = 0, bodies = 0, shared = 0;
+        friend bool operator==(const SizesBefore&, const SizesBefore&) = default;
+    } sizes_before_;
     RigidForces no_force_;
     struct Places {   // in mirrored_, of what comes back
         std::size_t displacement = 0, velocity = 0, force = 0, bonds = 0, work = 0, slots = 0, broken = 0, broken_count = 0;
@@ -201,64 +238,74 @@ DeviceArrays Device::bring(Assembly& s) {
     if (seats_.empty()) seat_grains(packs);   // grains stay what they are
     sizes_.uneven = !s.own_laws.empty();
 
+    // Contacts come and go along the course of a test, and go back with it to a state that it came through; in between what joins which edges tells whether they are the same.
+    const bool same_sizes = sizes_before_ == SizesBefore{s.contacts.size(), s.points.size(), s.bodies.size(), packs.shared_edges.size()};
+    sizes_before_ = {s.contacts.size(), s.points.size(), s.bodies.size(), packs.shared_edges.size()};
+    changed_ = fixed_ = false;
+    a.line_a = put(packs.line_a);
+    a.line_b = put(packs.line_b);
+    a.shared = put(packs.shared);
+    a.bare = put(packs.bare);
+    a.along = put(packs.along);
+    fixed_ = same_sizes && !changed_;
+
+    changed_ = false;
+    at_.bonds = next_;
+    a.un = put(s.bonds.un_m);
+    a.us = put(s.bonds.us_m);
+    a.damage = put(s.bonds.damage);
+    a.fracture = put(s.bonds.fracture_J);
+    a.friction = put(s.bonds.friction_J);
+    const bool fixed = fixed_;
+    fixed_ = fixed && !changed_;   // a state in which no point has moved or been damaged is the same state
+    a.Fn = put_fixed(s.bonds.Fn_N);
+    a.Fs = put_fixed(s.bonds.Fs_N);
+    a.max_un = put_fixed(s.bonds.max_un_m);
+    a.max_us = put_fixed(s.bonds.max_us_m);
+    fixed_ = fixed;
+
     a.displacement = put_pairs(s.nodes.displacement);
     at_.displacement = next_ - 1;
     a.velocity = put_pairs(s.nodes.velocity);
     at_.velocity = next_ - 1;
-    a.force = put_pairs(s.nodes.force);
+    a.force = reinterpret_cast<double*>(room<Vec2>(s.nodes.force.size()));   // of the last step alone, or made anew in each
     at_.force = next_ - 1;
-    a.reference = put_pairs(s.nodes.reference);
+    a.reference = put_fixed_pairs(s.nodes.reference);
     a.inverse_mass = put_pairs(s.nodes.inverse_mass);
     a.loading_mode = put_pairs(s.nodes.loading_mode);
     a.mass = put(s.nodes.mass);
     const double* weight = put_pairs(s.weight);
     a.weight = s.weight.empty() ? nullptr : weight;
-
-    at_.bonds = next_;
-    a.un = put(s.bonds.un_m);
-    a.us = put(s.bonds.us_m);
-    a.Fn = put(s.bonds.Fn_N);
-    a.Fs = put(s.bonds.Fs_N);
-    a.max_un = put(s.bonds.max_un_m);
-    a.max_us = put(s.bonds.max_us_m);
-    a.damage = put(s.bonds.damage);
-    a.fracture = put(s.bonds.fracture_J);
-    a.friction = put(s.bonds.friction_J);
     a.body_work = put(s.body_work);
     at_.work = next_ - 1;
     const bool slots_used = !packs.loose_contacts.empty() || !packs.shared_edges.empty();   // and all that are read are written in the same step
     a.slots = room<SlotForces>(slots_used ? s.slots.size() : 0);
     at_.slots = next_ - 1;
 
-    a.grain_packs = put(packs.grains);
+    a.grain_packs = put_fixed(packs.grains);
     a.pack_forces = put(packs.forces);
     a.contact_packs = put(packs.contacts);
     a.laws = put(s.laws);
     const auto& own = s.own_laws.constants;
-    a.own = {put(own.Kn_Pa_m), put(own.Ks_Pa_m), put(own.x0_normal), put(own.x0_shear), put(own.x_fl_normal), put(own.x_fl_shear), put(own.mu)};
-    const double *volumetric = put(packs.volumetric), *deviatoric = put(packs.deviatoric);
+    a.own = {put_fixed(own.Kn_Pa_m), put_fixed(own.Ks_Pa_m), put_fixed(own.x0_normal), put_fixed(own.x0_shear), put_fixed(own.x_fl_normal), put_fixed(own.x_fl_shear), put_fixed(own.mu)};
+    const double *volumetric = put_fixed(packs.volumetric), *deviatoric = put_fixed(packs.deviatoric);
     a.volumetric = packs.volumetric.empty() ? nullptr : volumetric;
     a.deviatoric = packs.deviatoric.empty() ? nullptr : deviatoric;
-    a.offset = put(packs.offset);
-    a.tangent_x = put(packs.tangent_x);
-    a.tangent_y = put(packs.tangent_y);
-    a.normal_x = put(packs.normal_x);
-    a.normal_y = put(packs.normal_y);
-    a.along = put(packs.along);
-    a.area = put(packs.area);
-    a.line_a = put(packs.line_a);
-    a.line_b = put(packs.line_b);
-    a.shared = put(packs.shared);
-    a.bare = put(packs.bare);
-    a.scale = put(packs.scale);
+    a.offset = put_fixed(packs.offset);
+    a.tangent_x = put_fixed(packs.tangent_x);
+    a.tangent_y = put_fixed(packs.tangent_y);
+    a.normal_x = put_fixed(packs.normal_x);
+    a.normal_y = put_fixed(packs.normal_y);
+    a.area = put_fixed(packs.area);
+    a.scale = put_fixed(packs.scale);
     a.lines = room<SideLine>(packs.lines.size());
     a.inverse_cross = room<double>(packs.inverse_cross.size());
-    a.rigid_bodies = put(packs.rigid);
-    a.more_of_rigid = put(packs.more_of_rigid);
+    a.rigid_bodies = put_fixed(packs.rigid);
+    a.more_of_rigid = put_fixed(packs.more_of_rigid);
     a.rigid_forces = room<RigidForces>(packs.rigid_forces.size());
     if (!packs.rigid_forces.empty()) backend_->upload(a.rigid_forces + packs.rigid_forces.size() - 1, &no_force_, sizeof no_force_);   // of no contact
     a.rigid_count = packs.rigid_end;
-    a.edge_threads = list(seats_);
+    a.edge_threads = list_fixed(seats_);
     shared_ = packs.shared_edges;
     std::sort(shared_.begin(), shared_.end(), [](const SharedEdge& l, const SharedEdge& r) { return l.line < r.line; });
     a.shared_edges = list(shared_);
@@ -266,19 +313,18 @@ DeviceArrays Device::bring(Assembly& s) {
     a.has_flexible_contacts = std::any_of(packs.contacts.begin(), packs.contacts.end(), [](const ContactPack& pack) { return !pack.rigid; });
     a.has_rigid_contacts = std::any_of(packs.contacts.begin(), packs.contacts.end(), [](const ContactPack& pack) { return pack.rigid; });
 
-    free_gaps_.clear();
-    if (packs.rigid_end > 0) {
+    if (packs.rigid_end > 0 && !fixed_) {
         free_gaps_.assign(s.bonds.un_m.size(), 0.0);
         for (const ContactPoint& point : s.points) free_gaps_[static_cast<std::size_t>(point.state)] = point.free_gap_m;
     }
-    const double* free_gap = put(free_gaps_);
+    const double* free_gap = put_fixed(free_gaps_);
     a.free_gap = free_gaps_.empty() ? nullptr : free_gap;
-    broken_count_ = 0;
+    broken_count_ = {};
     a.broken = room<BrokenPoint>(s.points.size());
     at_.broken = next_ - 1;
     Mirrored& count = room_for(sizeof broken_count_);
     at_.broken_count = next_ - 1;
-    std::memcpy(count.beside, &broken_count_, sizeof broken_count_);
+    std::memcpy(count.beside, broken_count_.data(), sizeof broken_count_);
     backend_->upload(count.device, count.beside, sizeof broken_count_);
     a.broken_count = static_cast<std::uint32_t*>(count.device);
 
@@ -327,10 +373,10 @@ DeviceArrays Device::bring(Assembly& s) {
     m.weight = {points_to_read(a.weight), static_cast<std::int32_t>(s.weight.size())};
     const bool readable = !loose_.empty() || !plates_.empty() || m.pressed;
     const std::size_t none = 0;
-    m.bodies = {put(s.bodies.data(), readable ? s.bodies.size() : none), static_cast<std::int32_t>(s.bodies.size())};
-    m.edges = {put(s.edges.data(), readable ? s.edges.size() : none), static_cast<std::int32_t>(s.edges.size())};
-    m.slots_of_bodies = {put(s.slots_of_bodies.data(), plates_.empty() ? none : s.slots_of_bodies.size()), static_cast<std::int32_t>(s.slots_of_bodies.size())};
-    m.pressure_edges = list(s.pressure_edges);
+    m.bodies = {put_fixed(s.bodies.data(), readable ? s.bodies.size() : none), static_cast<std::int32_t>(s.bodies.size())};
+    m.edges = {put_fixed(s.edges.data(), readable ? s.edges.size() : none), static_cast<std::int32_t>(s.edges.size())};
+    m.slots_of_bodies = {put_fixed(s.slots_of_bodies.data(), plates_.empty() ? none : s.slots_of_bodies.size()), static_cast<std::int32_t>(s.slots_of_bodies.size())};
+    m.pressure_edges = list_fixed(s.pressure_edges);
     m.un = a.un;
     m.us = a.us;
     m.Fn = a.Fn;
@@ -348,19 +394,24 @@ void Device::fetch(Assembly& s, const DeviceArrays& arrays) {
     take(&mirrored_[at_.velocity], s.nodes.velocity.data(), s.nodes.velocity.size());
     take(&mirrored_[at_.force], s.nodes.force.data(), s.nodes.force.size());
     Bonds& b = s.bonds;
-    std::size_t place = at_.bonds;
-    for (auto* array : {&b.un_m, &b.us_m, &b.Fn_N, &b.Fs_N, &b.max_un_m, &b.max_us_m, &b.damage, &b.fracture_J, &b.friction_J}) take(&mirrored_[place++], array->data(), array->size());
+    for (const auto& [place, array] : {std::pair{0, &b.un_m}, std::pair{1, &b.us_m}, std::pair{5, &b.Fn_N}, std::pair{6, &b.Fs_N}})
+        take(&mirrored_[at_.bonds + static_cast<std::size_t>(place)], array->data(), array->size());
     take(&mirrored_[at_.work], s.body_work.data(), s.body_work.size());
     if (!arrays.loose_contacts.empty() || !arrays.shared_edges.empty()) take(&mirrored_[at_.slots], s.slots.data(), s.slots.size());
-    take(&mirrored_[at_.broken_count], &broken_count_, 1);
+    take(&mirrored_[at_.broken_count], broken_count_.data(), broken_count_.size());
+}
+
+// What only damaged points change.
+void Device::fetch_damage(Assembly& s) {
+    Bonds& b = s.bonds;
+    for (const auto& [place, array] : {std::pair{2, &b.damage}, std::pair{3, &b.fracture_J}, std::pair{4, &b.friction_J}, std::pair{7, &b.max_un_m}, std::pair{8, &b.max_us_m}})
+        take(&mirrored_[at_.bonds + static_cast<std::size_t>(place)], array->data(), array->size());
 }
 
 void Device::note_broken(Assembly& s, const DeviceArrays&, long long first_step) {
-    std::vector<BrokenPoint> broken(broken_count_);
+    std::vector<BrokenPoint> broken(broken_count_[0]);
     take(&mirrored_[at_.broken], broken.data(), broken.size());
-    backend_->finish();
-    for (const auto& [to, from, bytes] : arriving_) std::memcpy(to, from, bytes);
-    arriving_.clear();
+    arrive();
     std::vector<std::int32_t> point_at(s.bonds.un_m.size(), -1);
     for (std::size_t p = 0; p < s.points.size(); ++p) point_at[static_cast<std::size_t>(s.points[p].state)] = static_cast<std::int32_t>(p);
     for (const BrokenPoint& b : broken) {   // each point once, so their order is of no concern
