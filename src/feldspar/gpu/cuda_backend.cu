@@ -19,7 +19,7 @@ void require(cudaError_t error, const char* doing) {
     if (error != cudaSuccess) fail(error, doing);
 }
 
-int blocks_for(int threads) { return (threads + kContactThreads - 1) / kContactThreads; }
+int blocks_of(int size, int threads) { return (threads + size - 1) / size; }
 
 class CudaBackend final : public Backend {
 public:
@@ -63,7 +63,7 @@ public:
             if (sizes.grain_threads == 128) grain_lines_kernel<128><<<sizes.grain_blocks, 128, 0, stream_>>>(a);
             else grain_lines_kernel<256><<<sizes.grain_blocks, 256, 0, stream_>>>(a);
         }
-        if (a.rigid_count > 0) rigid_lines_kernel<<<blocks_for(a.rigid_count), kContactThreads, 0, stream_>>>(a);
+        if (a.rigid_count > 0) rigid_lines_kernel<<<blocks_of(kMostThreads, a.rigid_count), kMostThreads, 0, stream_>>>(a);
         require(cudaGetLastError(), "a kernel began");
     }
 
@@ -72,7 +72,7 @@ public:
             cudaGraph_t graph = nullptr;
             require(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "steps were noted");
             for (int k = 0; k < count; ++k) local_damping ? step<true>(a, sizes, k) : step<false>(a, sizes, k);
-            reaction_kernel<<<1, kContactThreads, 0, stream_>>>(a);
+            reaction_kernel<<<1, kMostThreads, 0, stream_>>>(a);
             require(cudaStreamEndCapture(stream_, &graph), "steps were noted");
             if (graph_ != nullptr) {
                 cudaGraphExecUpdateResultInfo info{};
@@ -95,26 +95,27 @@ public:
 private:
     template <bool local>
     void step(const DeviceArrays& a, const LaunchSizes& sizes, int k) {
-        const int blocks = blocks_for(kMostLanes * a.contact_pack_count) + 1;
+        const int size = sizes.other_threads;
+        const int blocks = blocks_of(size, kMostLanes * a.contact_pack_count) + 1;
         bool reaction = k > 0;
-        if (!a.loose_contacts.empty()) loose_contacts_kernel<<<blocks_for(a.loose_contacts.count), kContactThreads, 0, stream_>>>(a, k);
+        if (!a.loose_contacts.empty()) loose_contacts_kernel<<<blocks_of(size, a.loose_contacts.count), size, 0, stream_>>>(a, k);
         if (a.has_flexible_contacts) {
-            if (sizes.uneven) contacts_kernel<false, true><<<blocks, kContactThreads, 0, stream_>>>(a, k, reaction);
-            else contacts_kernel<false, false><<<blocks, kContactThreads, 0, stream_>>>(a, k, reaction);
+            if (sizes.uneven) contacts_kernel<false, true><<<blocks, size, 0, stream_>>>(a, k, reaction);
+            else contacts_kernel<false, false><<<blocks, size, 0, stream_>>>(a, k, reaction);
             reaction = false;
         }
         if (a.has_rigid_contacts) {
-            if (sizes.uneven) contacts_kernel<true, true><<<blocks, kContactThreads, 0, stream_>>>(a, k, reaction);
-            else contacts_kernel<true, false><<<blocks, kContactThreads, 0, stream_>>>(a, k, reaction);
+            if (sizes.uneven) contacts_kernel<true, true><<<blocks, size, 0, stream_>>>(a, k, reaction);
+            else contacts_kernel<true, false><<<blocks, size, 0, stream_>>>(a, k, reaction);
             reaction = false;
         }
-        if (reaction) reaction_kernel<<<1, kContactThreads, 0, stream_>>>(a);
+        if (reaction) reaction_kernel<<<1, kMostThreads, 0, stream_>>>(a);
         if (sizes.grain_blocks > 0) {
             if (sizes.grain_threads == 128) grains_kernel<local, 128><<<sizes.grain_blocks, 128, 0, stream_>>>(a, k);
             else grains_kernel<local, 256><<<sizes.grain_blocks, 256, 0, stream_>>>(a, k);
         }
-        const int rigid_blocks = blocks_for(a.rigid_count), plate_blocks = blocks_for(a.plates.count);
-        if (rigid_blocks + plate_blocks > 0) rigid_kernel<local><<<rigid_blocks + plate_blocks, kContactThreads, 0, stream_>>>(a, k, rigid_blocks);
+        const int rigid_blocks = blocks_of(size, a.rigid_count), plate_blocks = blocks_of(size, a.plates.count);
+        if (rigid_blocks + plate_blocks > 0) rigid_kernel<local><<<rigid_blocks + plate_blocks, size, 0, stream_>>>(a, k, rigid_blocks);
     }
 
     cudaStream_t stream_ = nullptr;

@@ -6,7 +6,7 @@
 namespace feldspar {
 namespace {
 
-constexpr int kContactThreads = 128;
+constexpr int kMostThreads = 128;   // of a block of contacts, rigid bodies, plates
 
 __device__ __forceinline__ int thread_here() { return static_cast<int>(threadIdx.x); }
 __device__ __forceinline__ int thread_of_all() { return static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); }
@@ -23,7 +23,7 @@ __device__ void reaction_of_block(const DeviceArrays& a) {
 
 // The contacts of packs; the last block adds up what the loading did in the step before, if there was one.
 template <bool rigid, bool uneven>
-__global__ void __launch_bounds__(kContactThreads) contacts_kernel(const __grid_constant__ DeviceArrays a, int k, bool reaction) {
+__global__ void __launch_bounds__(kMostThreads) contacts_kernel(const __grid_constant__ DeviceArrays a, int k, bool reaction) {
     if (blockIdx.x + 1 == gridDim.x) {
         if (reaction) reaction_of_block(a);
     } else {
@@ -31,9 +31,9 @@ __global__ void __launch_bounds__(kContactThreads) contacts_kernel(const __grid_
     }
 }
 
-__global__ void __launch_bounds__(kContactThreads) loose_contacts_kernel(const __grid_constant__ DeviceArrays a, int k) { loose_contact_thread(a, step_number(a, k), thread_of_all()); }
+__global__ void __launch_bounds__(kMostThreads) loose_contacts_kernel(const __grid_constant__ DeviceArrays a, int k) { loose_contact_thread(a, step_number(a, k), thread_of_all()); }
 
-__global__ void __launch_bounds__(kContactThreads) reaction_kernel(const __grid_constant__ DeviceArrays a) { reaction_of_block(a); }
+__global__ void __launch_bounds__(kMostThreads) reaction_kernel(const __grid_constant__ DeviceArrays a) { reaction_of_block(a); }
 
 template <bool local, int threads>
 __global__ void __launch_bounds__(threads) grains_kernel(const __grid_constant__ DeviceArrays a, int k) {
@@ -74,13 +74,13 @@ __global__ void __launch_bounds__(threads) grain_lines_kernel(const __grid_const
 
 // Rigid bodies, then plates.
 template <bool local>
-__global__ void __launch_bounds__(kContactThreads) rigid_kernel(const __grid_constant__ DeviceArrays a, int k, int rigid_blocks) {
+__global__ void __launch_bounds__(kMostThreads) rigid_kernel(const __grid_constant__ DeviceArrays a, int k, int rigid_blocks) {
     const KernelStep step = step_number(a, k);
     if (static_cast<int>(blockIdx.x) < rigid_blocks) rigid_thread<local>(a, step, thread_of_all());
-    else plate_thread(a, step, thread_of_all() - rigid_blocks * kContactThreads);
+    else plate_thread(a, step, thread_of_all() - rigid_blocks * static_cast<int>(blockDim.x));
 }
 
-__global__ void __launch_bounds__(kContactThreads) rigid_lines_kernel(const __grid_constant__ DeviceArrays a) { rigid_line_thread(a, thread_of_all()); }
+__global__ void __launch_bounds__(kMostThreads) rigid_lines_kernel(const __grid_constant__ DeviceArrays a) { rigid_line_thread(a, thread_of_all()); }
 
 }  // namespace
 }  // namespace feldspar

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <cstddef>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include <fmt/format.h>
@@ -56,7 +58,7 @@ public:
         if (const std::string unknown = not_ported(assembly); !unknown.empty())
             throw InputError({.key = "device"}, unknown, "\"cpu\"", "run this test on the processor");
         next_ = 0;
-        DeviceArrays arrays = bring(assembly);
+        DeviceArrays& arrays = bring(assembly);
         BlockOfSteps block;
         block.step = kernel_step(settings);
         block.loading_J = work.loading;
@@ -172,7 +174,7 @@ private:
     }
 
     void fetch_damage(Assembly& s);
-    DeviceArrays bring(Assembly& s);
+    DeviceArrays& bring(Assembly& s);
     void fetch(Assembly& s, const DeviceArrays& arrays);
     void note_broken(Assembly& s, const DeviceArrays& arrays, long long first_step);
     void seat_grains(const Packs& packs);
@@ -189,6 +191,7 @@ private:
     std::vector<Arriving> arriving_;
     bool changed_ = false;   // something went up since this was false
     bool fixed_ = false;     // contacts and packs are those of the block before
+    alignas(DeviceArrays) std::byte arrays_[sizeof(DeviceArrays)]{};
     LaunchSizes sizes_;
     std::vector<EdgeThread> seats_;
     std::vector<LooseContact> loose_;
@@ -230,13 +233,15 @@ void Device::seat_grains(const Packs& packs) {
     sizes_.grain_blocks = static_cast<int>(seats_.size() / threads);
 }
 
-DeviceArrays Device::bring(Assembly& s) {
+// Where the arrays stand on the device. They are made in the same place for every block, so that what lies between them stays as it is: whether they are the same is asked of all bytes.
+DeviceArrays& Device::bring(Assembly& s) {
     Packs& packs = s.packs;
-    DeviceArrays a(s);
+    DeviceArrays& a = *new (arrays_) DeviceArrays(s);
     a.assembly = nullptr;
     a.broke = nullptr;
     if (seats_.empty()) seat_grains(packs);   // grains stay what they are
     sizes_.uneven = !s.own_laws.empty();
+    sizes_.other_threads = s.contacts.size() < 16'000 ? 32 : 128;
 
     // Contacts come and go along the course of a test, and go back with it to a state that it came through; in between what joins which edges tells whether they are the same.
     const bool same_sizes = sizes_before_ == SizesBefore{s.contacts.size(), s.points.size(), s.bodies.size(), packs.shared_edges.size()};

@@ -21,6 +21,7 @@ template <class T>
 struct DeviceList {
     T* data = nullptr;
     std::int32_t count = 0;
+    std::int32_t unused = 0;   // no bytes that nobody has written: lists of arrays are compared as they stand
 
     FELDSPAR_HD T& operator[](int i) const { return data[i]; }
     FELDSPAR_HD bool empty() const { return count == 0; }
