@@ -12,8 +12,9 @@ namespace feldspar {
 
 DeviceUse device_use(const std::string& wanted, Provenance& provenance) {
     if (wanted == "cpu") return {};
+    DeviceProvenance card;
     try {
-        const DeviceProvenance card = card_here();
+        card = card_here();
         provenance.device = fmt::format("{} (CUDA driver {}, compute capability {}, {} precision)", card.card, card.driver, card.capability, card.precision);
     } catch (const InputError& error) {
         if (wanted != "auto") throw;
@@ -21,7 +22,7 @@ DeviceUse device_use(const std::string& wanted, Provenance& provenance) {
         return {};
     }
     say(stderr, "the steps are made on {}\n", provenance.device);
-    return {open_card, wanted == "auto"};
+    return {open_card, card.memory_bytes, wanted == "auto"};
 }
 
 }  // namespace feldspar

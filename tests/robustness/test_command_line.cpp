@@ -291,7 +291,8 @@ void without_card() {
     setenv("CUDA_VISIBLE_DEVICES", "", 1);
     unsetenv("FELDSPAR_EMULATED_CARD");
 }
-void with_emulated_card() { setenv("FELDSPAR_EMULATED_CARD", "1", 1); }
+void with_emulated_card() { setenv("FELDSPAR_EMULATED_CARD", "1000", 1); }
+void with_small_card() { setenv("FELDSPAR_EMULATED_CARD", "0.01", 1); }
 
 TEST(CommandLine, RefusesACardThatIsNotThere) {
     const TemporaryFolder place;
@@ -321,6 +322,15 @@ TEST(CommandLine, RefusesWhatACardDoesNotKnow) {
     const Outcome automatic = run_program(place.path(), {"run", "job.toml", "--device", "auto"}, with_emulated_card);
     EXPECT_EQ(automatic.code, 0) << automatic.err;
     EXPECT_NE(automatic.err.find("runs on the processor: "), std::string::npos) << automatic.err;
+}
+
+TEST(CommandLine, RefusesACardWithTooLittleMemory) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    const Outcome refused = run_program(place.path(), {"run", "job.toml", "--device", "gpu"}, with_small_card);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_NE(refused.err.find("card's memory"), std::string::npos) << refused.err;
+    EXPECT_FALSE(fs::exists(place / "results"));
 }
 
 TEST(CommandLine, ResultsSayWhichCardMadeThem) {

@@ -490,7 +490,7 @@ FELDSPAR_INLINE void write_line(double* lines, double* inverse_cross, const std:
                                 Real2 vj, Real2 vk) {
     const Real2 e1 = xj - xi, e2 = xk - xi, d1 = vj - vi, d2 = vk - vi, r = centre - xi;
     const Real inverse = inverse_of(cross(e1, e2));
-    store(inverse_cross, inverse, count);
+    if constexpr (kWidth > 1) store(inverse_cross, inverse, count);   // a single lane computes it anew where it is needed: memory costs a card more
     const Real xx = inverse * (d1.x * e2.y - d2.x * e1.y), xy = inverse * (d2.x * e1.x - d1.x * e2.x);
     const Real yx = inverse * (d1.y * e2.y - d2.y * e1.y), yy = inverse * (d2.y * e1.x - d1.y * e2.x);
     const Real2 v = {vi.x + (xx * r.x + xy * r.y), vi.y + (yx * r.x + yy * r.y)};

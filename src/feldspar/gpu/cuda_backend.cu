@@ -145,7 +145,7 @@ std::unique_ptr<Backend> cuda_backend(DeviceProvenance& provenance) {
     cudaDeviceProp card{};
     require(cudaGetDevice(&number), "it was looked for");
     require(cudaGetDeviceProperties(&card, number), "it was asked what it is");
-    provenance = {"gpu", card.name, version_text(driver), std::to_string(card.major) + "." + std::to_string(card.minor), "double"};
+    provenance = {"gpu", card.name, version_text(driver), std::to_string(card.major) + "." + std::to_string(card.minor), "double", static_cast<double>(card.totalGlobalMem)};
     return std::make_unique<CudaBackend>();
 }
 

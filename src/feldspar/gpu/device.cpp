@@ -304,7 +304,7 @@ DeviceArrays& Device::bring(Assembly& s) {
     a.area = put_fixed(packs.area);
     a.scale = put_fixed(packs.scale);
     a.lines = room<SideLine>(packs.lines.size());
-    a.inverse_cross = room<double>(packs.inverse_cross.size());
+    a.inverse_cross = nullptr;   // not kept
     a.rigid_bodies = put_fixed(packs.rigid);
     a.more_of_rigid = put_fixed(packs.more_of_rigid);
     a.rigid_forces = room<RigidForces>(packs.rigid_forces.size());
@@ -439,8 +439,9 @@ namespace {
 
 // For tests of what surrounds a card, on machines without one: results say what has made them.
 std::unique_ptr<Backend> backend_here(DeviceProvenance& provenance) {
-    if (std::getenv("FELDSPAR_EMULATED_CARD") == nullptr) return cuda_backend(provenance);
-    provenance = {"emulation", "an emulated card", "none", "none", "double"};
+    const char* memory_MiB = std::getenv("FELDSPAR_EMULATED_CARD");
+    if (memory_MiB == nullptr) return cuda_backend(provenance);
+    provenance = {"emulation", "an emulated card", "none", "none", "double", std::atof(memory_MiB) * 1048576.0};
     return emulated_backend();
 }
 

@@ -19,12 +19,13 @@ struct DeviceProvenance {
     std::string driver;       ///< CUDA version that the driver knows: "13.0"
     std::string capability;   ///< compute capability: "9.0"
     std::string precision = "double";
+    double memory_bytes = 0.0;
 };
 
 /// Whether the program was built with support for cards.
 bool built_for_cards();
 
-/// What there is here; with the environment variable FELDSPAR_EMULATED_CARD the emulation instead. @throws InputError that says why a card cannot be used: none, or no support in
+/// What there is here; with the environment variable FELDSPAR_EMULATED_CARD, MiB of its memory, the emulation instead. @throws InputError that says why a card cannot be used: none, or no support in
 /// this program
 DeviceProvenance card_here();
 

@@ -193,7 +193,8 @@ FELDSPAR_INLINE void force_edge(const DeviceArrays& a, const GrainBlock& block, 
         r.f = Real2{};
     }
     Real2 fi = w.corner.f, fj{}, fr = r.f, fs{}, fc{};
-    add_contact_forces(doubles(a.lines + line), 1, w.centre.position(), w.corner.position(), j.position(), r.position(), load(a.inverse_cross + line), fi, fj, fr);
+    const Real2 xi = w.corner.position(), xj = j.position(), xr = r.position();
+    add_contact_forces(doubles(a.lines + line), 1, w.centre.position(), xi, xj, xr, inverse_of(cross(xj - xi, xr - xi)), fi, fj, fr);
     const double* scale = a.scale + pack.first_triangle + 3 * fellows.edge * pack.lanes + fellows.lane;
     add_triangle(w.corner.X, j.X, r.X, w.corner.u, j.u, r.u, load(scale), D, fi, fj, fr);
     if (fellows.has_ring()) {
@@ -272,7 +273,7 @@ FELDSPAR_INLINE void end_edge(const DeviceArrays& a, const KernelStep& step, con
     const int next = fellows.thread(fellows.next()), ring = fellows.thread(fellows.ring_of(fellows.edge)), first = fellows.thread(0);
     const int line = pack.first_edge + fellows.edge * pack.lanes + fellows.lane;
     if (!after_step && a.bare[line] != 0) a.lines[line].forces = SlotForces{};   // it may have had a contact
-    write_line(doubles(a.lines + line), a.inverse_cross + line, a.bare + line, 1, block.get(8, first), block.get(0, thread), block.get(0, next), block.get(4, ring), block.get(2, thread),
+    write_line(doubles(a.lines + line), nullptr, a.bare + line, 1, block.get(8, first), block.get(0, thread), block.get(0, next), block.get(4, ring), block.get(2, thread),
                block.get(2, next), block.get(6, ring));
     if (!after_step || fellows.edge != 0) return;
     double work = 0.0;
