@@ -4,6 +4,7 @@
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/calibration/calibration_files.hpp"
 #include "feldspar/calibration/calibration_report.hpp"
+#include "device_option.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "running_study.hpp"
@@ -56,6 +57,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     control.stop = &stop_requested();
     control.checkpoints = checkpoint_settings();
     control.provenance = collect_provenance(options.command_line, control.threads);
+    control.device = device_use(options.device, control.provenance);
     const RunLaboratory* running = nullptr;
     control.progress = [&](const Run& run, const TestProgress& state) { progress.report(running->number_of(run), run, state); };
     control.ended = [&](const Run& run, const RunRecord& record) { progress.ended(running->number_of(run), run, record); };

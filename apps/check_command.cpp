@@ -12,12 +12,14 @@
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/thread_shares.hpp"
+#include "feldspar/lab/on_device.hpp"
 #include "feldspar/methods/flattened_disc.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/planned_runs.hpp"
 #include "feldspar/study/sharing.hpp"
+#include "device_option.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"
@@ -109,7 +111,7 @@ std::string variant_text(const Variant& variant) {
 // tests the steps and the time.
 class Check {
 public:
-    Check(const Job& job, int threads) : job_(job), packings_(planned_runs(job).size(), &stop_requested()), threads_(threads), sharing_(job.at_once, threads) {
+    Check(const Job& job, int threads, DeviceUse device) : job_(job), device_(std::move(device)), packings_(planned_runs(job).size(), &stop_requested()), threads_(threads), sharing_(job.at_once, threads) {
         control_.stop = &stop_requested();
     }
 
@@ -132,7 +134,12 @@ private:
         const int bodies = body_count(run, *specimen);
         const int at_once = std::min(sharing_.most_at_once(bodies), static_cast<int>(planned_runs(job_).size()));
         control_.threads = share_for_next(threads_, at_once, sharing_.useful_threads(bodies));
-        const TestPreview preview = preview_test(setup_of(run, specimen), control_);
+        const TestSetup setup = setup_of(run, specimen);
+        if (device_.open) {
+            (void)opener_for(setup, device_, [&](const std::string& line) { text_ += fmt::format("  {} {}\n", label_of(run), line); });
+            text_ += fmt::format("  memory of the card    {}\n", memory_text(card_needs(setup, control_).bytes));
+        }
+        const TestPreview preview = preview_test(setup, control_);
         progress_.clear();
         show_specimen(*run.test, *specimen);
         const bool first = std::exchange(variant_, run.variant) != run.variant;
@@ -159,6 +166,7 @@ private:
     }
 
     const Job& job_;
+    DeviceUse device_;
     Packings packings_;
     int threads_;
     Sharing sharing_;
@@ -179,7 +187,8 @@ ExitCode check_command(const JobOptions& options) {
     say("Job {} is sound: {} runs of {} tests{}, {}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
         job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", counted(threads, "thread"));
     for (const std::string& warning : warnings(job)) say("warning: {}\n\n", warning);
-    Check(job, threads).run();
+    Provenance provenance;
+    Check(job, threads, device_use(options.device, provenance)).run();
     return ExitCode::success;
 }
 

@@ -22,6 +22,7 @@ struct JobOptions {
     std::vector<std::string> tests;      ///< kinds of the tests to run; empty = all
     std::optional<int> threads;
     std::optional<int> at_once;          ///< tests side by side
+    std::string device = "cpu";          ///< "cpu", "gpu", "auto": where the steps are made
 };
 
 struct RunOptions : JobOptions {
@@ -39,6 +40,7 @@ struct StudyOptions {
     std::optional<std::string> results;   ///< directory of ledger and runs, instead of the study's own
     std::optional<int> threads;
     std::optional<int> at_once;           ///< runs side by side
+    std::string device = "cpu";           ///< "cpu", "gpu", "auto": where the steps are made
     bool runs = false;                    ///< table: a row a run instead of a row a point
     std::string command_line;             ///< for provenance
     std::string on;                       ///< "slurm": on that cluster; empty: on this machine
@@ -85,6 +87,7 @@ struct CalibrateOptions {
     std::optional<int> budget;            ///< runs, instead of the file's own
     std::optional<int> threads;
     std::optional<int> at_once;           ///< runs side by side
+    std::string device = "cpu";           ///< "cpu", "gpu", "auto": where the steps are made
     bool insist = false;                  ///< run even if the targets contradict each other
     bool retry_failed = false;            ///< also runs that failed for good
     std::string command_line;             ///< for provenance

@@ -31,7 +31,7 @@ ExitCode converge_command(const ConvergeCommandOptions& options) {
     const ConvergePlan plan = plan_convergence(job, {options.packings, options.tests, limit(options.within), options.results});
     for (const std::string& remark : plan.remarks) say(stderr, "{}\n", remark);
     Ledger ledger(plan.study.results, Ledger::Access::write);
-    const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.retry_failed};
+    const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.device, options.retry_failed};
     const Execution execution = run_study(plan.study, ledger, running);
 
     const std::vector<PointResults> points = point_results(plan.study, ledger);

@@ -80,6 +80,7 @@ void add_thread_options(CLI::App& command, Options& options, const std::string& 
         command.add_option(flag, value, what)->type_name(type)->check(CLI::Range(1, 256));
     };
     add("--threads", options.threads, "number of threads of the whole program (default: " + threads + ")", "N");
+    command.add_option("--device", options.device, "where the steps are made: cpu (default), gpu, or auto, a graphics card if one can be used")->type_name("D")->check(CLI::IsMember({"cpu", "gpu", "auto"}));
     add("--at-once", options.at_once, "at most so many side by side (default: " + at_once + ")", "K");
 }
 

@@ -7,6 +7,7 @@
 #include "feldspar/study/planned_runs.hpp"
 
 #include "feldspar/study/run_job.hpp"
+#include "device_option.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"
@@ -52,6 +53,7 @@ ExitCode run_command(const RunOptions& options) {
     control.out = options.out;
     control.fresh = options.fresh;
     control.provenance = collect_provenance(options.command_line, control.threads);
+    control.device = device_use(options.device, control.provenance);
     control.stop = &stop_requested();
     control.checkpoints = checkpoint_settings();
     control.listener = &progress;

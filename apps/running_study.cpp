@@ -8,6 +8,7 @@
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/stopwatch.hpp"
 #include "feldspar/study/planned_runs.hpp"
+#include "device_option.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"
@@ -84,6 +85,7 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
     ledger.enrol(study);
     ExecuteControl control;
     control.provenance = collect_provenance(running.command_line, running.threads);
+    control.device = device_use(running.device, control.provenance);
     control.retry_failed = running.retry_failed;
     StudyProgress progress(study, ledger, running.retry_failed ? nullptr : &control.provenance);
     const std::string failed = progress.failed() > 0 ? fmt::format(", {} failed before and not repeated", progress.failed()) : "";

@@ -22,9 +22,11 @@ Study study_with_options(const StudyOptions& options) {
 ExitCode study_command(const StudyOptions& options) {
     install_signal_handlers();
     const Study study = study_with_options(options);
+    if (options.on == "slurm" && options.device != "cpu")
+        throw InputError({.key = "--device"}, "elements of a job array run on processors", "cpu", "run the study on a machine with a card, without --on slurm");
     if (options.on == "slurm") return study_on_slurm(study, options);
     Ledger ledger(study.results, Ledger::Access::write);
-    const Execution execution = run_study(study, ledger, {thread_count(options.threads.value_or(0)), options.at_once.value_or(0), options.command_line, options.retry_failed});
+    const Execution execution = run_study(study, ledger, {thread_count(options.threads.value_or(0)), options.at_once.value_or(0), options.command_line, options.device, options.retry_failed});
 
     const std::vector<PointResults> points = point_results(study, ledger);
     write_study_report(study, points, study_page(study));

@@ -188,6 +188,9 @@ void Granite::run(Stage stage, Team& team, int steps) {
     }
 }
 
+Assembly& Granite::assembly() { return parts_->assembly; }
+const StepSettings& Granite::settings() const { return parts_->settings; }
+
 Counts Granite::counts() const {
     const Assembly& assembly = parts_->assembly;
     Counts counts;

@@ -9,6 +9,11 @@
 #include "benchmarks/reading.hpp"
 #include "feldspar/base/parallel.hpp"
 
+namespace feldspar {
+struct Assembly;
+struct StepSettings;
+}  // namespace feldspar
+
 namespace feldspar::benchmarks {
 
 /// A specimen of the Augig granite (elastic constants of Table 1, strengths of Table 7 of the paper) between platens or plates, with
@@ -28,6 +33,10 @@ public:
     void run(Stage stage, Team& team, int steps);
 
     Counts counts() const;
+
+    /// For whoever makes the steps otherwise (card_benchmark).
+    Assembly& assembly();
+    const StepSettings& settings() const;
 
     /// Contact points with damage between 0 and 1, and with damage 1.
     struct Damage {

@@ -1,13 +1,14 @@
 # How our own targets are compiled: warnings are errors, and the same source gives the same bits on every code path.
 add_library(feldspar_options INTERFACE)
 target_include_directories(feldspar_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
-target_compile_options(feldspar_options INTERFACE
+set(feldspar_flags
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
     -Wno-restrict         # GCC 12 sees overlaps in std::string concatenation that are not there (its bug 105651)
     -ffp-contract=off     # no fused multiply-add that one path has and another has not
     -fno-math-errno)
+target_compile_options(feldspar_options INTERFACE "$<$<NOT:$<COMPILE_LANGUAGE:CUDA>>:${feldspar_flags}>")
 if(FELDSPAR_SANITIZE)
-    target_compile_options(feldspar_options INTERFACE -fsanitize=${FELDSPAR_SANITIZE} -fno-omit-frame-pointer)
+    target_compile_options(feldspar_options INTERFACE "$<$<NOT:$<COMPILE_LANGUAGE:CUDA>>:-fsanitize=${FELDSPAR_SANITIZE};-fno-omit-frame-pointer>")
     target_link_options(feldspar_options INTERFACE -fsanitize=${FELDSPAR_SANITIZE})
 endif()
 

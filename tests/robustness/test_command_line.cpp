@@ -286,6 +286,65 @@ TEST(CommandLine, ARunLeavesItsResults) {
               numbers(read_text(place / "loaded/history-uniaxial-compression-s2.csv")));
 }
 
+// Whether this program can use a card or not, there is none to be seen.
+void without_card() {
+    setenv("CUDA_VISIBLE_DEVICES", "", 1);
+    unsetenv("FELDSPAR_EMULATED_CARD");
+}
+void with_emulated_card() { setenv("FELDSPAR_EMULATED_CARD", "1000", 1); }
+void with_small_card() { setenv("FELDSPAR_EMULATED_CARD", "0.01", 1); }
+
+TEST(CommandLine, RefusesACardThatIsNotThere) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    for (const char* command : {"run", "check"}) {
+        const Outcome refused = run_program(place.path(), {command, "job.toml", "--device", "gpu"}, without_card);
+        EXPECT_EQ(refused.code, 2) << refused.err;
+        EXPECT_NE(refused.err.find("graphics card"), std::string::npos) << refused.err;
+        EXPECT_FALSE(fs::exists(place / "results"));
+    }
+    EXPECT_EQ(run_program(place.path(), {"run", "job.toml", "--device", "tpu"}).code, 2);
+    const Outcome automatic = run_program(place.path(), {"run", "job.toml", "--device", "auto"}, without_card);
+    EXPECT_EQ(automatic.code, 0) << automatic.err;
+    EXPECT_NE(automatic.err.find("the tests run on the processor"), std::string::npos) << automatic.err;
+    EXPECT_FALSE(nlohmann::json::parse(read_text(place / "results/job-1/summary.json")).at("provenance").contains("device"));
+}
+
+TEST(CommandLine, RefusesWhatACardDoesNotKnow) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", replaced(small_job(), "porosity", "triangles_per_grain = 60\nporosity"));
+    for (const char* command : {"run", "check"}) {
+        const Outcome refused = run_program(place.path(), {command, "job.toml", "--device", "gpu"}, with_emulated_card);
+        EXPECT_EQ(refused.code, 2) << refused.err;
+        EXPECT_NE(refused.err.find("meshed more finely"), std::string::npos) << refused.err;
+        EXPECT_FALSE(fs::exists(place / "results"));
+    }
+    const Outcome automatic = run_program(place.path(), {"run", "job.toml", "--device", "auto"}, with_emulated_card);
+    EXPECT_EQ(automatic.code, 0) << automatic.err;
+    EXPECT_NE(automatic.err.find("runs on the processor: "), std::string::npos) << automatic.err;
+}
+
+TEST(CommandLine, RefusesACardWithTooLittleMemory) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    const Outcome refused = run_program(place.path(), {"run", "job.toml", "--device", "gpu"}, with_small_card);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_NE(refused.err.find("card's memory"), std::string::npos) << refused.err;
+    EXPECT_FALSE(fs::exists(place / "results"));
+}
+
+TEST(CommandLine, ResultsSayWhichCardMadeThem) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    ASSERT_EQ(run_program(place.path(), {"run", "job.toml", "--out", "here"}).code, 0);
+    const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "there", "--device", "gpu"}, with_emulated_card);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto summary_of = [&](const char* run) { return nlohmann::json::parse(read_text(place / run / "summary.json")); };
+    const auto here = summary_of("here"), there = summary_of("there");
+    EXPECT_NE(there.at("provenance").at("device").get<std::string>().find("an emulated card"), std::string::npos);
+    EXPECT_FALSE(here.at("provenance").contains("device"));
+}
+
 TEST(CommandLine, AnExistingDirectoryIsRefused) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job());

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "feldspar/base/device_code.hpp"
+
 namespace feldspar {
 
 /// A plane vector; the unit is that of the quantity it holds.
@@ -29,10 +31,10 @@ constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 /// a turned by +90 degrees.
 constexpr Vec2 rot90(Vec2 a) { return {-a.y, a.x}; }
 
-inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
+FELDSPAR_HD inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
 
 /// a turned counter-clockwise by an angle, rad.
-inline Vec2 turned(Vec2 a, double angle) {
+FELDSPAR_HD inline Vec2 turned(Vec2 a, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return {c * a.x - s * a.y, s * a.x + c * a.y};
 }

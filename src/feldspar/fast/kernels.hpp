@@ -32,6 +32,13 @@ struct KernelStep {
     long long step = 0;
 };
 
+/// A point that broke in a block of steps on a device (gpu/), which cannot call anybody.
+struct BrokenPoint {
+    std::int32_t state = 0;      ///< where its bond stands
+    std::int32_t step = 0;       ///< of the block, from 0; times 4, plus the BondEvent
+    double fracture_J = 0.0;     ///< what it had dissipated by then
+};
+
 /// The arrays of an assembly. Points (x, y) as pairs of doubles, lines of 64 bytes as 8 doubles.
 struct KernelArrays {
     Assembly* assembly = nullptr;
@@ -62,6 +69,11 @@ struct KernelArrays {
     double thickness = 0.0, D11 = 0.0, D12 = 0.0;
     /// Called when point `point` of contact `contact` breaks; may change its bond.
     void (*broke)(Assembly& assembly, int contact, int point, BondEvent event, long long step) = nullptr;
+
+    // Of a device instead:
+    BrokenPoint* broken = nullptr;             ///< what broke, in any order
+    std::uint32_t* broken_count = nullptr;     ///< behind it: not 0 if any point was damaged already or became so
+    const double* free_gap = nullptr;          ///< of each bond (ContactPoint); null: there are none
 
     explicit KernelArrays(Assembly& assembly);
     /// For kernels that write nothing.

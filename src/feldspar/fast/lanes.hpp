@@ -16,6 +16,7 @@ namespace {
 
 #define FELDSPAR_INLINE [[gnu::always_inline]] inline
 #define FELDSPAR_LAMBDA __attribute__((always_inline))
+#define FELDSPAR_APART [[gnu::noinline]]
 
 constexpr int kWidth = FELDSPAR_LANES;
 

@@ -1,11 +1,16 @@
-// The stages over packs, in vectors of FELDSPAR_LANES doubles. Included once by each kernels_<instruction set>.cpp.
+// The stages over packs, in vectors of FELDSPAR_LANES doubles. Included once by each kernels_<instruction set>.cpp; with a single lane by gpu/, whose threads are lanes:
+// it takes what is done in a lane, and has loops of its own.
 //
 // The laws are those of laws/, over vectors. What is geometry of contacts and triangles, (C1)-(C19) of docs/theory/contacts.md, and motion,
 // step/body_forces.cpp, stands here in the form that costs least; tests/unit/fast compares it with the readable stages.
 #pragma once
 
 #include "feldspar/fast/kernels.hpp"
+#if FELDSPAR_LANES == 1
+#include "feldspar/fast/one_lane.hpp"
+#else
 #include "feldspar/fast/lanes.hpp"
+#endif
 #include "feldspar/laws/damping.hpp"
 
 namespace feldspar {
@@ -79,8 +84,34 @@ FELDSPAR_INLINE void store_forces(double* const (&line)[kWidth], Real2 F, Real x
 
 using BondLanes = BondStateOf<Real>;
 
+#if FELDSPAR_LANES == 1
+FELDSPAR_INLINE void note_broken_point(const KernelArrays& a, const KernelStep& step, int state, BondEvent event, double fracture_J) {
+#if defined(__CUDA_ARCH__)
+    const std::uint32_t at = atomicAdd(a.broken_count, 1U);
+#else
+    const std::uint32_t at = (*a.broken_count)++;
+#endif
+    a.broken[at] = {state, static_cast<std::int32_t>(4 * step.step + static_cast<int>(event)), fracture_J};
+}
+
+// Notes a point that broke in this step; what its free gap changes is changed here (note_break() of model/assembly.hpp).
+template <class Law>
+FELDSPAR_APART void note_broken(const KernelArrays& a, const KernelStep& step, const Law& law, int state, Real Fn_trial, Real un, Real& Fn, Real& Fs) {
+    if (a.free_gap != nullptr && a.free_gap[state] > 0.0) {
+        BondState bond{a.un[state], a.us[state], Fn.v, Fs.v, a.max_un[state], a.max_us[state], a.damage[state], a.fracture[state], a.friction[state]};
+        free_gap(law, a.area[state], a.free_gap[state], bond);
+        a.un[state] = bond.un_m;
+        a.fracture[state] = bond.fracture_J;
+        a.Fn[state] = bond.Fn_N;
+        a.Fs[state] = bond.Fs_N;
+        Fn = bond.Fn_N;
+        Fs = bond.Fs_N;
+    }
+    note_broken_point(a, step, state, how_it_broke(Fn_trial.v, un.v), a.fracture[state]);
+}
+#else
 // Reports the points that broke in this step and reloads their forces, because the report may change them (free gap).
-[[gnu::noinline]] void tell_broken(const KernelArrays& a, const KernelStep& step, int first_contact, int point, int state, Mask broke, Real Fn_trial,
+FELDSPAR_APART void tell_broken(const KernelArrays& a, const KernelStep& step, int first_contact, int point, int state, Mask broke, Real Fn_trial,
                                    Real un, int count, Real& Fn, Real& Fs) {
     for (int lane = 0; lane < count; ++lane) {
         if (broke[lane] == 0) continue;
@@ -89,13 +120,14 @@ using BondLanes = BondStateOf<Real>;
         Fs[lane] = a.Fs[state + lane];
     }
 }
+#endif
 
 // The points of a pack that is not intact, or not for long; or of which not all lanes take part.
 struct PointForces {
     Real Fn, Fs;
 };
 template <class Law>
-[[gnu::noinline]] PointForces update_points(const KernelArrays& a, const KernelStep& step, const ContactPack& pack, const Law& law, Chunk chunk, int j, const Real& dun, const Real& dus) {
+FELDSPAR_APART PointForces update_points(const KernelArrays& a, const KernelStep& step, const ContactPack& pack, const Law& law, Chunk chunk, int j, const Real& dun, const Real& dus) {
     const int state = pack.first_state + j * pack.lanes + chunk.begin, count = chunk.count;
     const Mask takes_part = lanes_of(pack.active >> chunk.begin) & lanes_of((1U << count) - 1U);
     const Real area = load(a.area + state, count), kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
@@ -121,7 +153,12 @@ template <class Law>
     store_where(a.damage + state, s.damage, damaged, count);
     store_where(a.fracture + state, s.fracture_J, damaged, count);
     store_where(a.friction + state, s.friction_J, damaged, count);
+#if FELDSPAR_LANES == 1
+    if (any(damaged)) a.broken_count[1] = 1;   // whoever does it
+    if (any(broke)) note_broken(a, step, law, state, update.Fn_trial_N, un, Fn, Fs);
+#else
     if (any(broke)) tell_broken(a, step, pack.first_contact + chunk.begin, j, state, broke, update.Fn_trial_N, un, count, Fn, Fs);
+#endif
     return {Fn, Fs};
 }
 
@@ -129,10 +166,16 @@ template <class Law>
 template <bool own>
 FELDSPAR_INLINE decltype(auto) law_of(const KernelArrays& a, const ContactPack& pack, Chunk chunk) {
     if constexpr (own) {
-        const int at = pack.first_law + chunk.begin, count = chunk.count;
+        [[maybe_unused]] const int at = pack.first_law + chunk.begin, count = chunk.count;
         const auto lanes = [&](const double* constant) FELDSPAR_LAMBDA { return load(constant + at, count); };
+#if FELDSPAR_LANES == 1
+        const auto of_lane = [&](const double* constant) { return constant[at]; };
+        return bond_law<double>(a.own_form, {of_lane(a.own.Kn_Pa_m), of_lane(a.own.Ks_Pa_m), of_lane(a.own.x0_normal), of_lane(a.own.x0_shear), of_lane(a.own.x_fl_normal),
+                                             of_lane(a.own.x_fl_shear), of_lane(a.own.mu)});
+#else
         return bond_law<Real>(a.own_form, {lanes(a.own.Kn_Pa_m), lanes(a.own.Ks_Pa_m), lanes(a.own.x0_normal), lanes(a.own.x0_shear), lanes(a.own.x_fl_normal),
                                            lanes(a.own.x_fl_shear), lanes(a.own.mu)});
+#endif
     } else {
         return static_cast<const BondLaw&>(a.laws[pack.material]);
     }
@@ -143,8 +186,8 @@ FELDSPAR_INLINE Real2 turned(Real2 v, Real angle) {
     Real c{}, s{};
     if (any(absolute(angle) > 0.25)) [[unlikely]] {
         for (int lane = 0; lane < kWidth; ++lane) {
-            c[lane] = __builtin_cos(angle[lane]);
-            s[lane] = __builtin_sin(angle[lane]);
+            c[lane] = std::cos(angle[lane]);
+            s[lane] = std::sin(angle[lane]);
         }
     } else {
         const Real x = angle * angle;
@@ -221,7 +264,7 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     };
     const auto place = [&](int state, int count) FELDSPAR_LAMBDA { return central ? Real{} : load(a.along + state, count); };
     const int points = pack.points, stride = pack.lanes, first = pack.first_state + chunk.begin;
-    if (plain && pack.intact) {
+    if (kWidth == 1 || (plain && pack.intact)) {   // a single lane looks for itself, point by point
         const auto constant = [&](const double* of_lanes, double of_all) FELDSPAR_LAMBDA {
             if constexpr (own) return load(of_lanes + pack.first_law + chunk.begin);
             else return of_all;
@@ -235,7 +278,11 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
             const Real w = place(state, kWidth), area = load(a.area + state), dun = further(n0, n1, w), dus = further(s0, s1, w);
             const Real un = load(a.un + state) + dun, us = load(a.us + state) + dus;
             Real Fn = -Kn * area * un, Fs = -Ks * area * us;
-            if (any((un > x0n) | (absolute(us) > x0s))) [[unlikely]] {
+            auto leaves = (un > x0n) | (absolute(us) > x0s);
+            if constexpr (kWidth == 1) {
+                if (!pack.intact) leaves = leaves | (load(a.damage + state) != 0.0);
+            }
+            if (any(leaves)) [[unlikely]] {
                 const PointForces damaged = update_points(arrays, step, pack, law_of<own>(arrays, pack, chunk), chunk, j, dun, dus);
                 Fn = damaged.Fn;
                 Fs = damaged.Fs;
@@ -291,6 +338,7 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     }
 }
 
+#if FELDSPAR_LANES > 1
 template <Frame frame, bool central, bool own>
 FELDSPAR_INLINE void chunks_of_pack(const KernelArrays& a, const KernelStep& step, ContactPack& pack, int index) {
     if (pack.plain) {
@@ -342,6 +390,7 @@ void contacts(const KernelArrays& a, const KernelStep& step, int begin, int end)
         contacts_of_packs<false>(a, step, begin, end);
     }
 }
+#endif
 
 // ---------------------------------------------------------------------------------------------------------------- grains
 
@@ -426,7 +475,7 @@ FELDSPAR_INLINE bool any_set(const std::uint8_t* flags, int count) {
 }
 
 // Stores the lines of the lanes that are not bare.
-[[gnu::noinline]] void store_lines_but(const std::uint8_t* bare, double* lines, int count, const Real4& lower, const Real4& upper) {
+FELDSPAR_APART void store_lines_but(const std::uint8_t* bare, double* lines, int count, const Real4& lower, const Real4& upper) {
     for (int lane = 0; lane < count; ++lane) {
         if (bare[lane]) continue;
         for (int i = 0; i < 4; ++i) {
@@ -441,7 +490,7 @@ FELDSPAR_INLINE void write_line(double* lines, double* inverse_cross, const std:
                                 Real2 vj, Real2 vk) {
     const Real2 e1 = xj - xi, e2 = xk - xi, d1 = vj - vi, d2 = vk - vi, r = centre - xi;
     const Real inverse = inverse_of(cross(e1, e2));
-    store(inverse_cross, inverse, count);
+    if constexpr (kWidth > 1) store(inverse_cross, inverse, count);   // a single lane computes it anew where it is needed: memory costs a card more
     const Real xx = inverse * (d1.x * e2.y - d2.x * e1.y), xy = inverse * (d2.x * e1.x - d1.x * e2.x);
     const Real yx = inverse * (d1.y * e2.y - d2.y * e1.y), yy = inverse * (d2.y * e1.x - d1.y * e2.x);
     const Real2 v = {vi.x + (xx * r.x + xy * r.y), vi.y + (yx * r.x + yy * r.y)};
@@ -511,6 +560,7 @@ struct GrainNodes {
     FELDSPAR_INLINE int next(int k) const { return k + 1 < vertices ? k + 1 : 0; }
 };
 
+#if FELDSPAR_LANES > 1
 FELDSPAR_INLINE void write_lines(const KernelArrays& a, const GrainPack& pack, const GrainLanes& g, Chunk chunk) {
     const GrainNodes nodes(pack);
     const Real2 centre = g.node[nodes.centre()].position();
@@ -798,6 +848,8 @@ PackEnergies energies(const KernelArrays& a, double since) {
     sums.friction = sum_of(friction);
     return sums;
 }
+
+#endif
 
 }  // namespace
 }  // namespace feldspar

@@ -12,10 +12,10 @@
 
 namespace feldspar {
 
-/// The kernels are those that this program has chosen: whoever keeps a state says which they were.
+/// The kernels, and the device, are those that this program has chosen: whoever keeps a state says which they were.
 template <class Archive>
 void keep(Archive& archive, StepSettings& settings) {
-    auto& [dt, damping, alpha, viscous, strength, speed, kernels, sweep_steps] = settings;
+    auto& [dt, damping, alpha, viscous, strength, speed, kernels, sweep_steps, device] = settings;
     archive(dt, damping, alpha, viscous, strength, speed, sweep_steps);
 }
 

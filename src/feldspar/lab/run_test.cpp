@@ -66,6 +66,8 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     result.length_m = e.length_m;
     result.section_m2 = e.section_m2;
     choose_step(e);
+    const std::unique_ptr<StepDevice> device = control.device ? control.device() : nullptr;
+    e.settings.device = device.get();
     result.stable_omega2 = e.omega2;
     result.stable_limit = e.omega2_bound;
     Recorder recorder(e, result);

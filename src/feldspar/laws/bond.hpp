@@ -160,7 +160,7 @@ FELDSPAR_LAW Real normal_energy(const BondLawOf<Number>& law, Real inverse_area,
 }
 
 /// Recoverable energy of a point, J.
-inline double elastic_energy(const BondLawOf<double>& law, double area_m2, const BondState& s) {
+FELDSPAR_HD inline double elastic_energy(const BondLawOf<double>& law, double area_m2, const BondState& s) {
     const double inverse_area = 1.0 / area_m2;
     return normal_energy(law, inverse_area, s.Fn_N, s.un_m, s.damage) + 0.5 * law.inverse_Ks * inverse_area * s.Fs_N * s.Fs_N;
 }
@@ -224,7 +224,7 @@ FELDSPAR_LAW BondUpdate<Real> update_damaged(const BondLawOf<Number>& law, Real 
 
 /// Elastic update with unlimited strength for intact points (the elastic start); broken points obey the real law.
 /// @return true if the state is final, false if the real law has to be applied.
-inline bool update_elastic(const BondLawOf<double>& law, double area_m2, double dun_m, double dus_m, BondState& s) {
+FELDSPAR_HD inline bool update_elastic(const BondLawOf<double>& law, double area_m2, double dun_m, double dus_m, BondState& s) {
     if (s.damage >= 1.0) return false;
     s.un_m += dun_m;
     s.us_m += dus_m;
@@ -235,7 +235,7 @@ inline bool update_elastic(const BondLawOf<double>& law, double area_m2, double 
 
 /// A bond that has just broken between bodies that did not touch each other, but were joined over a free gap: from now on they
 /// push each other only when they meet. The energy of the compression that vanishes is booked as fracture.
-inline void free_gap(const BondLawOf<double>& law, double area_m2, double gap_m, BondState& s) {
+FELDSPAR_HD inline void free_gap(const BondLawOf<double>& law, double area_m2, double gap_m, BondState& s) {
     const double before = elastic_energy(law, area_m2, s);
     s.un_m += gap_m;
     s.Fn_N = s.un_m < 0.0 ? -law.Kn_Pa_m * area_m2 * s.un_m : 0.0;
@@ -247,7 +247,7 @@ inline void free_gap(const BondLawOf<double>& law, double area_m2, double gap_m,
 /// Advances a point by the increments of its gap and its shear displacement.
 /// @param area_m2  A_J, the point's share of the contact area
 /// @param dun_m    gap increment, opening positive
-inline BondEvent update_bond(const BondLawOf<double>& law, double area_m2, double dun_m, double dus_m, BondState& s) {
+FELDSPAR_HD inline BondEvent update_bond(const BondLawOf<double>& law, double area_m2, double dun_m, double dus_m, BondState& s) {
     const double un = s.un_m + dun_m, us = s.us_m + dus_m;
     if (is_linear(law, un, us, s.damage)) {   // what most points are most of the time
         s.un_m = un;

@@ -10,11 +10,13 @@
 // Written for any number type that has comparisons and the conditional operator lane by lane: double, or a vector of doubles.
 #pragma once
 
+#include "feldspar/laws/number.hpp"
+
 namespace feldspar {
 
 /// The force that opposes the deviation, N. @param alpha  share of the unbalanced force, 0 <= alpha < 1
 template <class Real>
-[[gnu::always_inline]] inline Real local_drag(Real V, Real loading, Real F, double alpha) {
+FELDSPAR_LAW Real local_drag(Real V, Real loading, Real F, double alpha) {
     const Real none{}, size = alpha * F, magnitude = F < none ? -size : size, w = V - loading;
     const Real drag = w > none ? magnitude : -magnitude;
     return w * V > none ? drag : none;
@@ -23,7 +25,7 @@ template <class Real>
 /// The velocity before a step that ended with the velocity V: the inverse of V = before + push (F - drag(before)), push = dt / m. Where the
 /// component has just turned, two velocities before lead to the same one after; then the one with more drag is taken.
 template <class Real>
-[[gnu::always_inline]] inline Real before_local_drag(Real V, Real loading, Real F, Real push, double alpha) {
+FELDSPAR_LAW Real before_local_drag(Real V, Real loading, Real F, Real push, double alpha) {
     const Real none{}, size = alpha * F, magnitude = F < none ? -size : size;
     const Real forward = V - push * (F - magnitude), backward = V - push * (F + magnitude), free = V - push * F;
     const Real other = (backward < loading) & (backward < none) ? backward : free;

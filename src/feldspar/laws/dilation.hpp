@@ -24,7 +24,7 @@ struct Dilation {
 };
 
 /// Advances a broken point (damage = 1). @param slip_m  l: before, then after
-inline void slide_with_dilation(const BondLawOf<double>& law, const Dilation& dilation, double area_m2, double dun_m, double dus_m, BondState& s, double& slip_m) {
+FELDSPAR_HD inline void slide_with_dilation(const BondLawOf<double>& law, const Dilation& dilation, double area_m2, double dun_m, double dus_m, BondState& s, double& slip_m) {
     const double kn = law.Kn_Pa_m * area_m2, ks = law.Ks_Pa_m * area_m2, inverse_area = 1.0 / area_m2, inverse_ks = law.inverse_Ks * inverse_area;
     const double Fn_before = s.Fn_N, Fs_before = s.Fs_N, energy_before = normal_energy(law, inverse_area, s.Fn_N, s.un_m, s.damage);
     s.un_m += dun_m;

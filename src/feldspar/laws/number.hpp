@@ -8,7 +8,13 @@
 #include <cmath>
 #include <type_traits>
 
+#include "feldspar/base/device_code.hpp"
+
+#if defined(__CUDACC__)
+#define FELDSPAR_LAW __host__ __device__ __forceinline__
+#else
 #define FELDSPAR_LAW [[gnu::always_inline]] inline
+#endif
 
 namespace feldspar {
 
@@ -18,9 +24,9 @@ struct NumberOf;
 
 template <>
 struct NumberOf<double> {
-    static double absolute(double v) { return std::abs(v); }
-    static double square_root(double v) { return std::sqrt(v); }
-    static bool any(bool mask) { return mask; }
+    FELDSPAR_HD static double absolute(double v) { return std::abs(v); }
+    FELDSPAR_HD static double square_root(double v) { return std::sqrt(v); }
+    FELDSPAR_HD static bool any(bool mask) { return mask; }
 };
 
 /// Type of a comparison: bool, or a vector whose lanes have all bits set or none.

@@ -62,20 +62,20 @@ class NodeNumbers {
 public:
     class Iterator {
     public:
-        Iterator(std::int32_t node, std::int32_t stride) : node_(node), stride_(stride) {}
-        std::int32_t operator*() const { return node_; }
-        Iterator& operator++() {
+        FELDSPAR_HD Iterator(std::int32_t node, std::int32_t stride) : node_(node), stride_(stride) {}
+        FELDSPAR_HD std::int32_t operator*() const { return node_; }
+        FELDSPAR_HD Iterator& operator++() {
             node_ += stride_;
             return *this;
         }
-        friend bool operator==(const Iterator& l, const Iterator& r) { return l.node_ == r.node_; }
+        FELDSPAR_HD friend bool operator==(const Iterator& l, const Iterator& r) { return l.node_ == r.node_; }
 
     private:
         std::int32_t node_, stride_;
     };
-    NodeNumbers(std::int32_t first, std::int32_t count, std::int32_t stride) : first_(first), count_(count), stride_(stride) {}
-    Iterator begin() const { return {first_, stride_}; }
-    Iterator end() const { return {first_ + count_ * stride_, stride_}; }
+    FELDSPAR_HD NodeNumbers(std::int32_t first, std::int32_t count, std::int32_t stride) : first_(first), count_(count), stride_(stride) {}
+    FELDSPAR_HD Iterator begin() const { return {first_, stride_}; }
+    FELDSPAR_HD Iterator end() const { return {first_ + count_ * stride_, stride_}; }
 
 private:
     std::int32_t first_, count_, stride_;
@@ -98,8 +98,8 @@ struct Body {
     double gyration_m2 = 0.0;                        ///< of a rigid body: moment of inertia over mass
     double density_kg_m3 = 0.0;
 
-    std::int32_t node(int local) const { return first_node + local * node_stride; }
-    NodeNumbers nodes() const { return {first_node, node_count, node_stride}; }
+    FELDSPAR_HD std::int32_t node(int local) const { return first_node + local * node_stride; }
+    FELDSPAR_HD NodeNumbers nodes() const { return {first_node, node_count, node_stride}; }
 };
 
 /// Where a contact hangs on a body: a flexible one by the triangle behind the edge (its first two nodes are the edge), a
@@ -230,6 +230,14 @@ struct BodyWork {
 /// Materials of contacts, by Contact::material. Plates that touch alike share one; others have those from `at_more_plates` on.
 enum ContactRole : std::int32_t { between_grains = 0, at_plates = 1, inside_grains = 2, at_membranes = 3, at_more_plates = 4, contact_roles = 10 };
 
+/// Pressure of a load whose plate, if it has one with a spring, is displaced by `u`. A spring does not pull.
+template <class Load>
+FELDSPAR_HD double pressure_of(const Load& load, Vec2 u) {
+    if (!load.springs) return load.pressure_Pa;
+    const double pressure_Pa = load.pressure_Pa + load.stiffness_Pa_m * (dot(u, load.outward) - load.rest_m);
+    return 0.0 < pressure_Pa ? pressure_Pa : 0.0;
+}
+
 /// Everything that a test moves.
 struct Assembly {
     double thickness_m = 0.0;
@@ -269,15 +277,14 @@ struct Assembly {
     bool is_pressed() const {
         return std::any_of(dead_loads.begin(), dead_loads.end(), [](const DeadLoad& load) { return load.pressure_Pa != 0.0 || load.springs; });
     }
-    /// Pressure of a load at present, or where its plate was at a displacement of `back` before. A spring does not pull.
-    double pressure_Pa(const DeadLoad& load, Vec2 back = {}) const {
-        if (!load.springs) return load.pressure_Pa;
-        return std::max(0.0, load.pressure_Pa + load.stiffness_Pa_m * (dot(nodes.displacement[load.plate_node] - back, load.outward) - load.rest_m));
-    }
+    /// Pressure of a load at present, or where its plate was at a displacement of `back` before.
+    double pressure_Pa(const DeadLoad& load, Vec2 back = {}) const { return pressure_of(load, load.springs ? nodes.displacement[load.plate_node] - back : Vec2{}); }
     BondState bond(int point) const { return bonds.at(static_cast<std::size_t>(points[point].state)); }
     void set_bond(int point, const BondState& bond) { bonds.set(static_cast<std::size_t>(points[point].state), bond); }
     /// Adds a contact point. @return its number
     int add_point(double along_m, double area_m2, const BondState& bond = {});
+    /// Slip of a point of a joint that dilates, m.
+    double& slip_m(int point) { return bonds.slip_m[static_cast<std::size_t>(points[point].state)]; }
     /// By how much the faces at a point have climbed over each other, m.
     double dilated_m(const Contact& contact, int point) const {
         if (contact.dilation < 0) return 0.0;
@@ -295,8 +302,9 @@ inline Mat2 displacement_gradient(std::span<const Vec2> u, const Triangle& trian
     return {uj.x * gj.x + uk.x * gk.x, uj.x * gj.y + uk.x * gk.y, uj.y * gj.x + uk.y * gk.x, uj.y * gj.y + uk.y * gk.y};
 }
 
-/// Outward normal of side A of a contact on a cut joint: of both edges' mean direction now.
-inline Vec2 normal_of_edges(const Assembly& assembly, const Contact& contact) {
+/// Outward normal of side A of a contact on a cut joint: of both edges' mean direction now. @tparam Model  an Assembly, or what has its members
+template <class Model>
+FELDSPAR_HD Vec2 normal_of_edges(const Model& assembly, const Contact& contact) {
     Vec2 along;
     if (contact.flexible) {
         const auto edge = [&](const ContactSide& side) { return assembly.nodes.position(side.node[1]) - assembly.nodes.position(side.node[0]); };
@@ -316,7 +324,8 @@ struct ContactFrame {
     double distance_m = 0.0;   ///< of the centres; 0 for a plate
 };
 
-inline ContactFrame contact_frame(const Assembly& assembly, const Contact& contact) {
+template <class Model>
+FELDSPAR_HD ContactFrame contact_frame(const Model& assembly, const Contact& contact) {
     ContactFrame f;
     const Vec2 xa = assembly.nodes.position(contact.a.centre_node);
     double s = contact.offset_m;

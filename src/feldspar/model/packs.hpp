@@ -56,8 +56,8 @@ struct GrainPack {
     std::int32_t first_edge = 0;
     std::int32_t first_triangle = 0;
 
-    int nodes() const { return 2 * vertices + 1 - collapsed; }
-    int triangles() const { return 3 * vertices - 2 * collapsed; }
+    FELDSPAR_HD int nodes() const { return 2 * vertices + 1 - collapsed; }
+    FELDSPAR_HD int triangles() const { return 3 * vertices - 2 * collapsed; }
 };
 
 /// The grains of the mesh that have a common topology, in packs; numbers of nodes, edges and triangles from 0 on.
@@ -93,14 +93,14 @@ struct SlotForces {
     Vec2 force;     ///< N
     Mat2 moment;    ///< N m
 
-    void add(Vec2 F, Vec2 arm) {
+    FELDSPAR_HD void add(Vec2 F, Vec2 arm) {
         force += F;
         moment.xx += F.x * arm.x;
         moment.xy += F.x * arm.y;
         moment.yx += F.y * arm.x;
         moment.yy += F.y * arm.y;
     }
-    void add(const SlotForces& other) {
+    FELDSPAR_HD void add(const SlotForces& other) {
         force += other.force;
         moment.xx += other.moment.xx;
         moment.xy += other.moment.xy;
@@ -110,7 +110,7 @@ struct SlotForces {
 };
 
 /// About the body's centre, N m.
-inline double turning_moment(const SlotForces& slot) { return slot.moment.yx - slot.moment.xy; }
+FELDSPAR_HD inline double turning_moment(const SlotForces& slot) { return slot.moment.yx - slot.moment.xy; }
 
 /// A line between a body and a contact: first how the side moves, then what it feels.
 union alignas(64) SideLine {

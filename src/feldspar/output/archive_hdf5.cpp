@@ -181,6 +181,7 @@ void put_provenance(hid_t root, const TestResult& result, const Job& job, const 
     set_text(root, "compiler", provenance.compiler);
     set_text(root, "started", provenance.started);
     set_text(root, "command_line", provenance.command_line);
+    if (!provenance.device.empty()) set_text(root, "device", provenance.device);
     set_number(root, "threads", provenance.threads);
     set_text(root, "job_name", job.name);
     set_text(root, "signs", sign_convention);

@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 // A file is lines of text that say whose state it is, an empty line, the state, and a trailer by which a whole file is known.
 constexpr std::string_view kFirstLine = "feldspar checkpoint 1";
+constexpr const char* kCard = "card";
 constexpr std::array<char, 8> kMark{'f', 'e', 'l', 'd', 's', 'p', 'a', 'r'};
 
 struct Trailer {
@@ -65,13 +66,14 @@ Checkpoint read_file(const fs::path& file, const CheckpointOwner& owner) {
     }
     if (found.test != owner.test) return no("it is another test's");
     if (found.version != owner.version) return no(fmt::format("version {} of the program has written it, this is {}", found.version, owner.version));
+    if ((found.kernels == kCard) != (owner.kernels == kCard)) return no(fmt::format("its steps were made on a {}: --device {} goes on with it", found.kernels == kCard ? "graphics card" : "processor", found.kernels == kCard ? "gpu" : "cpu"));
     return no(fmt::format("it was computed with the instructions {}, here these are {}: FELDSPAR_KERNELS={} goes on with it", found.kernels, owner.kernels, found.kernels));
 }
 
 }  // namespace
 
 CheckpointOwner CheckpointOwner::of(const std::string& test, const Provenance& provenance) {
-    return {test, provenance.version + " " + provenance.commit, best_kernels().name};
+    return {test, provenance.version + " " + provenance.commit, provenance.device.empty() ? best_kernels().name : kCard};
 }
 
 void write_checkpoint(const RunDirectory& directory, const std::string& name, const CheckpointOwner& owner, const std::function<void(const StatePut&)>& write) {

@@ -23,7 +23,7 @@ struct CheckpointSettings {
 struct CheckpointOwner {
     std::string test;      ///< an identity: everything that can change the test's result
     std::string version;   ///< of the program, and its commit
-    std::string kernels;   ///< by which the packs step: "avx512"
+    std::string kernels;   ///< by which the packs step: "avx512"; "card": a graphics card makes the steps
 
     static CheckpointOwner of(const std::string& test, const Provenance& provenance);
     bool operator==(const CheckpointOwner&) const = default;

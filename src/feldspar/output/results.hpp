@@ -24,6 +24,7 @@ struct Provenance {
     std::string started;  ///< ISO 8601, UTC
     std::string command_line;
     int threads = 1;
+    std::string device;   ///< the card that made the steps; empty: the processor did
 };
 
 Provenance collect_provenance(std::string command_line, int threads);

@@ -29,6 +29,8 @@ enum class Damping {
 
 enum class Strength { real, unlimited };   ///< unlimited: intact points stay elastic (the computed elastic start)
 
+class StepDevice;
+
 struct StepSettings {
     double dt = 1.0;                       ///< 1 with scaled masses, else s
     Damping damping = Damping::viscous;
@@ -38,11 +40,24 @@ struct StepSettings {
     double speed = 0.0;                    ///< v: loading motion per unit of time
     const Kernels* kernels = &best_kernels();   ///< of the packs; none: the readable stages only
     int sweep_steps = 0;                   ///< steps that a sweep over the bands takes (model/bands.hpp); 0: as many as pay
+    StepDevice* device = nullptr;          ///< makes all steps, instead of the kernels and the readable stages; none: the processor
 };
 
 /// Work of the fixtures on the body, J, accumulated every step.
 struct PlatenWork {
     double loading = 0.0;
+};
+
+/// Makes whole blocks of steps somewhere else than on the processor (gpu/): with its own copy of the assembly, that it brings up to date before and reads back behind a block.
+class StepDevice {
+public:
+    StepDevice() = default;
+    StepDevice(const StepDevice&) = delete;
+    StepDevice& operator=(const StepDevice&) = delete;
+    virtual ~StepDevice() = default;
+
+    /// What advance() does. @throws InputError where it cannot: a part of the model that it does not know, too little memory
+    virtual void advance(Assembly& assembly, const StepSettings& settings, long long first_step, int count, PlatenWork& work) = 0;
 };
 
 /// What the body opposes to the loading, N: positive where it resists.

@@ -134,7 +134,7 @@ private:
     // On the run's own thread.
     TestResult run_one(const Run& run, const RunControl& run_control) {
         const Clock::time_point start = Clock::now();
-        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.checkpoints,
+        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.device, control_.checkpoints,
                                          [this](const std::string& line) { notes_.add(line); });
         result.wall_s = seconds_since(start);
         return result;

@@ -8,6 +8,7 @@
 
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/output/checkpoints.hpp"
+#include "feldspar/study/device_use.hpp"
 #include "feldspar/study/ledger.hpp"
 
 namespace feldspar {
@@ -20,6 +21,7 @@ struct ExecuteControl {
     bool retry_failed = false;                ///< also runs that failed for good: of their input or numerically, with this version of the program
     std::atomic<bool>* stop = nullptr;        ///< becomes true when the user interrupts
     CheckpointSettings checkpoints;
+    DeviceUse device;                         ///< where the steps are made
     Provenance provenance;
     std::function<void(const Run&, const TestProgress&)> progress;          ///< a run tells how far it is; may be empty
     std::function<void(const Run&, const RunRecord&)> ended;                ///< done or failed; may be empty

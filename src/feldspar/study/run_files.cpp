@@ -30,7 +30,7 @@ RunDirectory cleared(const fs::path& path) {
 }  // namespace
 
 TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path, Keep keep, const Provenance& provenance,
-                        const RunControl& control, const CheckpointSettings& settings, const std::function<void(const std::string&)>& note) {
+                        const RunControl& control, const DeviceUse& device, const CheckpointSettings& settings, const std::function<void(const std::string&)>& note) {
     const bool finished = finished_record(path, run).has_value();
     const RunDirectory directory = finished ? RunDirectory::open(path) : cleared(path);
     TestResult result;
@@ -42,7 +42,9 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
         TestCheckpoints checkpoints(directory, state_file, CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings, note);
         RunControl own_control = control;
         own_control.keeper = &checkpoints;
-        result = run_test({specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock}, own_control);
+        const TestSetup setup{specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock};
+        own_control.device = opener_for(setup, device, note);
+        result = run_test(setup, own_control);
     }
     if (result.interrupted) return result;
     directory.write_text("job.toml", resolved_toml(run.job));

@@ -98,6 +98,7 @@ private:
     // An unstable setting is refused here; what the program chooses itself is stable.
     void judge_setting(const PlannedRun& run) {
         if (*control_.stop) throw Interrupted();
+        if (control_.device.open && !control_.device.where_possible) (void)opener_for(setup_of(run, specimen(run)), control_.device, {});
         const NumericsSpec& numerics = run.variant->numerics;
         if (numerics.kind == NumericsKind::adaptive && !numerics.mass_factor) return;
         RunControl judging;
@@ -177,7 +178,9 @@ public:
             RunControl own_control = run_control;
             own_control.keeper = &checkpoints;
             own_control.failed = [&](const TestResult& record) { write_record(record, *run_control.more_threads); };
-            TestResult result = run_test(setup_of(run, specimen), own_control);
+            const TestSetup setup = setup_of(run, specimen);
+            own_control.device = opener_for(setup, control_.device, [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
+            TestResult result = run_test(setup, own_control);
             result.variant = run.variant->name;
             if (result.history.empty()) return result;   // interrupted before the first row
             write_record(result, *run_control.more_threads);

@@ -10,6 +10,7 @@
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/output/checkpoints.hpp"
 #include "feldspar/output/results.hpp"
+#include "feldspar/study/device_use.hpp"
 #include "feldspar/study/planned_runs.hpp"
 
 namespace feldspar {
@@ -43,6 +44,7 @@ struct JobControl {
     std::optional<std::string> out;          ///< the directory, which must not exist, or have an unfinished run of the same job; else results/<job name>-<n>
     bool fresh = false;                      ///< a new directory, even if there is an unfinished run of the same job
     CheckpointSettings checkpoints;
+    DeviceUse device;                        ///< where the steps are made
     Provenance provenance;
     std::atomic<bool>* stop = nullptr;       ///< becomes true when the user interrupts, or when nothing more can be written
     JobListener* listener = nullptr;

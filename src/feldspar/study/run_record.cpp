@@ -28,6 +28,7 @@ RunRecord record_for(const Run& run, const Provenance& provenance) {
                     {"version", provenance.version},            {"commit_id", provenance.commit},
                     {"machine", provenance.machine},            {"compiler", provenance.compiler},
                     {"started", provenance.started},            {"command_line", provenance.command_line}};
+    if (!provenance.device.empty()) record.texts["machine"] += "; steps on " + provenance.device;
     return record;
 }
 

@@ -1,0 +1,13 @@
+#include "feldspar/lab/on_device.hpp"
+
+#include "feldspar/gpu/device.hpp"
+#include "feldspar/lab/experiment.hpp"
+
+namespace feldspar {
+
+CardNeeds card_needs(const TestSetup& setup, const RunControl& control) {
+    const Experiment e(setup, control);
+    return {not_ported(e.assembly), card_bytes(e.assembly)};
+}
+
+}  // namespace feldspar
