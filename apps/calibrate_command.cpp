@@ -9,6 +9,7 @@
 #include "progress.hpp"
 #include "running_study.hpp"
 #include "say.hpp"
+#include "terminal.hpp"
 
 namespace feldspar {
 namespace {
@@ -76,7 +77,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     directory.write_text("calibration.json", calibration_json(calibration, result, control.provenance));
     directory.write_text("calibrated.toml", calibrated_job(calibration, result));
     write_calibration_report(calibration, result, control.provenance, calibration_page(calibration));
-    say("\n{}\nJob with the best set: {}\nReport: {}\n", calibration_text(result), (calibration.results / "calibrated.toml").string(), calibration_page(calibration).string());
+    say("\n{}\nJob with the best set: {}\nReport: {}\n", calibration_text(result, output_columns()), (calibration.results / "calibrated.toml").string(), calibration_page(calibration).string());
     return ExitCode::success;
 }
 

@@ -16,10 +16,11 @@ namespace feldspar {
 
 /// What stands on the command line beside the job file; it takes precedence over the job.
 struct JobOptions {
-    std::string job;
+    std::string job;                     ///< the file; "-": standard input
+    std::vector<std::string> settings;   ///< "key=value", laid over the file
     std::vector<std::uint64_t> seeds;    ///< for every test; empty = as the job says
     std::vector<std::string> variants;   ///< names or file stems of the variants to run; empty = all
-    std::vector<std::string> tests;      ///< kinds of the tests to run; empty = all
+    std::vector<std::string> tests;      ///< kinds of the tests to run, or short names such as UCS; empty = all
     std::optional<int> threads;
     std::optional<int> at_once;          ///< tests side by side
     std::string device = "cpu";          ///< "cpu", "gpu", "auto": where the steps are made
@@ -28,11 +29,39 @@ struct JobOptions {
 struct RunOptions : JobOptions {
     std::optional<std::string> out;
     bool fresh = false;        ///< never goes on with an unfinished run
+    bool go_on = false;        ///< only goes on with one
+    Keep keep = Keep::all;     ///< what stays of the tests
+    bool json = false;         ///< the summary on stdout, all else on stderr
+    bool quiet = false;        ///< only warnings, mistakes and where the results are
     std::string command_line;  ///< for provenance
 };
 
 /// Runs all tests of a job and leaves a directory of results.
 ExitCode run_command(const RunOptions& options);
+
+/// What stands on the command line of `export`.
+struct ExportOptions {
+    std::string run;                     ///< directory of a run, or one archive
+    bool vtu = false;
+    std::vector<std::string> tests;      ///< stems or kinds; empty = all
+    std::optional<std::string> out;
+    std::optional<int> threads;
+};
+
+/// Writes the fields of a run's archives for other programs.
+ExitCode export_command(const ExportOptions& options);
+
+/// What stands on the command line of `view`.
+struct ViewOptions {
+    std::optional<std::string> run;   ///< a directory or a page; none: the newest in results/
+    bool print = false;               ///< opens nothing
+};
+
+/// Opens a page in the browser.
+ExitCode view_command(const ViewOptions& options);
+
+/// Prints a manual page or a completion.
+ExitCode pages_command(const std::string& text);
 
 /// What stands on the command line beside the study file.
 struct StudyOptions {
@@ -154,6 +183,9 @@ ExitCode schema_command(bool markdown, const std::optional<std::string>& out);
 
 /// Reads the job and applies the command line to it.
 Job job_with_options(const JobOptions& options);
+
+/// Kinds of tests by their names, where short names may have been given. What is neither stays as it is.
+std::vector<std::string> full_kinds(std::vector<std::string> words);
 
 /// The number of threads to use: as wanted, or, with 0, one for each core that the program may use. Warns on stderr when there are
 /// fewer cores.

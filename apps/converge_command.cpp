@@ -6,6 +6,7 @@
 #include "interrupt.hpp"
 #include "running_study.hpp"
 #include "say.hpp"
+#include "terminal.hpp"
 
 namespace feldspar {
 namespace {
@@ -28,7 +29,7 @@ ExitCode converge_command(const ConvergeCommandOptions& options) {
     JobOptions whole = options;
     whole.tests.clear();   // the plan chooses
     const Job job = job_with_options(whole);
-    const ConvergePlan plan = plan_convergence(job, {options.packings, options.tests, limit(options.within), options.results});
+    const ConvergePlan plan = plan_convergence(job, {options.packings, full_kinds(options.tests), limit(options.within), options.results});
     for (const std::string& remark : plan.remarks) say(stderr, "{}\n", remark);
     Ledger ledger(plan.study.results, Ledger::Access::write);
     const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.device, options.retry_failed};
@@ -36,7 +37,7 @@ ExitCode converge_command(const ConvergeCommandOptions& options) {
 
     const std::vector<PointResults> points = point_results(plan.study, ledger);
     write_convergence(plan.study.results, plan, points, collect_provenance(options.command_line, running.threads));
-    say("\n{}\n", convergence_text(plan, points));
+    say("\n{}\n", convergence_text(plan, points, output_columns()));
     print_execution(plan.study, execution);
     say("Page: {}\n", (plan.study.results / "converge.html").string());
     return outcome(execution);

@@ -6,6 +6,7 @@
 #include "interrupt.hpp"
 #include "running_study.hpp"
 #include "say.hpp"
+#include "terminal.hpp"
 
 namespace feldspar {
 namespace {
@@ -38,7 +39,7 @@ ExitCode envelope_command(const EnvelopeCommandOptions& options) {
 
     const std::vector<PointResults> points = point_results(plan.study, ledger);
     write_envelope(plan.study.results, plan.study, points, options.with_tension, collect_provenance(options.command_line, running.threads));
-    say("\n{}\n", envelope_text(plan.study, points, options.with_tension));
+    say("\n{}\n", envelope_text(plan.study, points, options.with_tension, output_columns()));
     print_execution(plan.study, execution);
     say("Page: {}\n", (plan.study.results / "envelope.html").string());
     return outcome(execution);

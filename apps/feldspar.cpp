@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>
 #include <limits>
@@ -12,12 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "command_line.hpp"
+#include "command_pages.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "say.hpp"
 #include "feldspar/base/printable.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/job_template.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
 
 namespace feldspar {
@@ -27,16 +29,72 @@ constexpr const char* examples = R"(Examples:
   feldspar new uniaxial-compression --out granite.toml   a commented job to start from
   feldspar check granite.toml                            is it sound, how long will it take?
   feldspar run granite.toml                              results in results/granite-1
-  feldspar run granite.toml --out trial --seed 7         another packing, another place
-  feldspar run granite.toml --threads 2                  the results do not depend on the threads
-  feldspar run granite.toml --at-once 1                  one test after the other, each on all threads
-  feldspar run granite.toml --test brazilian             only a part of the job
-  feldspar export-cells granite.toml --out cells.msh     its grains for gmsh; .tess for Neper, .csv for anything
+  feldspar view results/granite-1                        opens the report
+  feldspar export results/granite-1 --vtu                files for ParaView
+  feldspar run granite.toml --set material.contact.tau=30MPa --seed 7
   feldspar envelope granite.toml                         strength envelope over five packings
   feldspar converge granite.toml                         does the answer depend on grains, size, mesh, rate, packings?
+'feldspar COMMAND --help' has more for each command.
 
 Exit codes: 0 done, 2 mistake in the input (no file is left), 3 numerical failure, 4 results could not be written,
 130 interrupted (the results so far are kept).)";
+
+constexpr const char* run_examples = R"(  feldspar run granite.toml                              results in results/granite-1
+  feldspar run granite.toml --out trial --seed 7         another packing, another place
+  feldspar run granite.toml --test UCS --test BTS        only a part of the job
+  feldspar run granite.toml --set numerics.accuracy=0.5% --set test.BTS.plate_mu=0.2
+  feldspar run granite.toml --keep numbers --quiet       prints only where the results are
+  feldspar run granite.toml --json > summary.json        the numbers, to be read by a program
+  feldspar run - < granite.toml                          the job from standard input
+  feldspar run granite.toml --threads 2                  the results do not depend on the threads
+  feldspar run granite.toml --at-once 1                  one test after the other, each on all threads
+  feldspar run granite.toml --continue                   only if there is an unfinished run to go on with
+)";
+
+constexpr const char* check_examples = R"(  feldspar check granite.toml
+  feldspar check granite.toml --set specimen.grains.diameter.minimum=1mm --test UCS
+)";
+
+constexpr const char* export_examples = R"(  feldspar export results/granite-1 --vtu                                files in results/granite-1/paraview
+  feldspar export results/granite-1 --vtu --test brazilian-s1 --out /tmp/fields
+  paraview --script=results/granite-1/paraview/brazilian-s1.py           opens them coloured
+)";
+
+constexpr const char* view_examples = R"(  feldspar view                      the report of the newest run in results/
+  feldspar view results/granite-1
+  feldspar view results/granite-1 --print    only its path
+)";
+
+constexpr const char* export_cells_examples = R"(  feldspar export-cells granite.toml --out cells.msh     for gmsh; .tess for Neper, .csv for anything
+  feldspar export-cells granite.toml --test BTS --seed 3 --out disc.tess
+)";
+
+constexpr const char* schema_examples = R"(  feldspar schema --out job.schema.json
+  feldspar schema --markdown
+)";
+
+constexpr const char* study_examples = R"(  feldspar study sweep.toml                              runs what is not done yet
+  feldspar study status sweep.toml
+  feldspar study table sweep.toml --runs > runs.csv
+  feldspar study sweep.toml --on slurm --partition short --time 2:00:00
+)";
+
+constexpr const char* envelope_examples = R"(  feldspar envelope granite.toml
+  feldspar envelope granite.toml --seeds 10 --sigma3 "2 MPa" "5 MPa" "10 MPa" --with-tension
+)";
+
+constexpr const char* converge_examples = R"(  feldspar converge granite.toml
+  feldspar converge granite.toml --test UCS --seeds 5 --within "3 %"
+)";
+
+constexpr const char* claims_examples = R"(  feldspar claims studies/paper
+  feldspar claims studies/paper --claim T3 --csv comparisons.csv
+)";
+
+constexpr const char* calibrate_examples = R"(  feldspar new calibration --UCS 120MPa --E 30GPa --BTS 9MPa --out targets.toml
+  feldspar calibrate targets.toml
+  feldspar calibrate targets.toml --budget 400 --threads 8
+)";
 
 int complain(ExitCode code, const std::string& message) {
     put(stderr, "feldspar: " + printable(message) + "\n");
@@ -109,8 +167,24 @@ constexpr const char* all_cores = "one for each core";
 constexpr const char* job_or_all_cores = "as the job says, else one for each core";
 constexpr const char* by_size = "as suits their size";
 
-void add_job_options(CLI::App& command, JobOptions& options) {
-    command.add_option("job", options.job, "the job file")->required()->type_name("JOB.toml");
+// Kinds of tests as people type them.
+std::vector<std::string> test_words() {
+    std::vector<std::string> words;
+    for (const MethodId method : test_methods()) words.emplace_back(name(method));
+    for (const std::string_view word : short_method_names()) words.emplace_back(word);
+    return words;
+}
+
+void add_set_option(CLI::App& command, JobOptions& options) {
+    command.add_option("--set", options.settings,
+                       "a key of the job and its value, over what the file says, such as material.contact.tau=30MPa; of all tests as test.plate_mu=0.2, of one kind as test.BTS.plate_mu=0.2; may be repeated")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+}
+
+void add_job_options(CommandLine& line, CLI::App& command, JobOptions& options) {
+    command.add_option("job", options.job, "the job file; - reads it from standard input")->required()->type_name("JOB.toml");
+    add_set_option(command, options);
     add_thread_options(command, options, job_or_all_cores, "as the job says, else one for each thread, but large specimens one after the other");
     command.add_option("--seed", options.seeds, "run all tests on this packing instead of the job's seeds; may be repeated")
         ->type_name("S")
@@ -119,7 +193,8 @@ void add_job_options(CLI::App& command, JobOptions& options) {
     command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
-    command.add_option("--test", options.tests, "only the job's tests of this kind; may be repeated")->type_name("KIND")->allow_extra_args(false);
+    CLI::Option* test = command.add_option("--test", options.tests, "only the job's tests of this kind, by its name or as UCS, DTS, BTS; may be repeated")->type_name("KIND")->allow_extra_args(false);
+    line.choices(test, test_words());
 }
 
 void add_study_options(CLI::App& command, StudyOptions& options) {
@@ -158,7 +233,8 @@ void add_slurm_options(CLI::App& command, StudyOptions& options) {
 // What commands that make a study of a job share.
 template <class Options>
 void add_made_study_options(CLI::App& command, Options& options, const char* packings) {
-    command.add_option("job", options.job, "the job file")->required()->type_name("JOB.toml");
+    command.add_option("job", options.job, "the job file; - reads it from standard input")->required()->type_name("JOB.toml");
+    add_set_option(command, options);
     command.add_option("--seeds", options.packings, packings)->type_name("N")->check(CLI::Range(1, 1000));
     command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")->type_name("NAME")->allow_extra_args(false);
     add_thread_options(command, options, job_or_all_cores, by_size);
@@ -166,73 +242,55 @@ void add_made_study_options(CLI::App& command, Options& options, const char* pac
     add_checkpoint_option(command);
 }
 
-// The commands, each with what it does. What follows from the command line lives in the action, as long as it may be called.
-class CommandLine {
-public:
-    using Action = std::function<ExitCode()>;
-
-    explicit CommandLine(std::string text) : text_(std::move(text)) {
-        app_.footer(examples);
-        app_.require_subcommand(1);
-        app_.set_version_flag("--version", version_text);
-        app_.failure_message([](const CLI::App*, const CLI::Error& error) {
-            return fmt::format("feldspar: {}\n  'feldspar --help' shows the commands with examples\n", printable(error.what()));
-        });
-    }
-
-    CLI::App& add(const char* name, const char* what) { return *app_.add_subcommand(name, what); }
-
-    /// What a command does; of a command inside another before that of the other.
-    void does(CLI::App& command, Action action) { actions_.emplace_back(&command, std::move(action)); }
-
-    /// New options that know the whole command line, for provenance.
-    template <class Options>
-    std::shared_ptr<Options> options() const {
-        auto options = std::make_shared<Options>();
-        options->command_line = text_;
-        return options;
-    }
-
-    int run(int argc, char** argv) {
-        try {
-            app_.parse(argc, argv);
-        } catch (const CLI::ParseError& error) {
-            return app_.exit(error) == 0 ? static_cast<int>(ExitCode::success) : static_cast<int>(ExitCode::input);
-        }
-        for (const auto& [command, action] : actions_)
-            if (command->parsed()) return guarded(action);
-        return static_cast<int>(ExitCode::input);   // not reached: one command is required
-    }
-
-private:
-    CLI::App app_{"A laboratory for rock fracture with the flexible particle model.", "feldspar"};
-    std::string text_;   // the whole command line
-    std::vector<std::pair<CLI::App*, Action>> actions_;
-};
-
 void add_run(CommandLine& line) {
     const auto options = line.options<RunOptions>();
-    CLI::App& command = line.add("run", "run all tests of a job");
-    add_job_options(command, *options);
+    CLI::App& command = line.add("run", "run all tests of a job", run_examples);
+    add_job_options(line, command, *options);
     command.add_option("--out", options->out, "a new directory for the results (default: results/<job>-<n>); one with an unfinished run of this job is gone on with")->type_name("DIR");
-    command.add_flag("--fresh", options->fresh, "begin in a new directory, even if there is an unfinished run of this job");
+    CLI::Option* fresh = command.add_flag("--fresh", options->fresh, "begin in a new directory, even if there is an unfinished run of this job");
+    command.add_flag("--continue", options->go_on, "only go on with an unfinished run of this job; it is a mistake if there is none")->excludes(fresh);
+    CLI::Option* keep = command.add_option("--keep", options->keep, "what stays of the tests: numbers (summary and report), histories (also curves and events as CSV), all (also packings and fields; default)")->type_name("WHAT");
+    keep->transform(CLI::CheckedTransformer(std::map<std::string, Keep>{{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}).description(""));
+    line.choices(keep, {"numbers", "histories", "all"});
+    command.add_flag("--json", options->json, "print the summary as JSON on standard output, and all else on standard error");
+    command.add_flag("--quiet", options->quiet, "print only warnings and mistakes, and at the end the directory of the results");
     add_checkpoint_option(command);
     line.does(command, [options] { return run_command(*options); });
 }
 
 void add_check(CommandLine& line) {
     const auto options = std::make_shared<JobOptions>();
-    CLI::App& command = line.add("check", "build everything, print counts, memory and expected time, and stop");
-    add_job_options(command, *options);
+    CLI::App& command = line.add("check", "build everything, print counts, memory and expected time, and stop", check_examples);
+    add_job_options(line, command, *options);
     line.does(command, [options] { return check_command(*options); });
+}
+
+void add_export(CommandLine& line) {
+    const auto options = std::make_shared<ExportOptions>();
+    CLI::App& command = line.add("export", "write the fields of a run for other programs, from the .h5 files in its directory", export_examples);
+    command.add_option("run", options->run, "the directory of a run, or one .h5 file")->required()->type_name("RUN");
+    command.add_flag("--vtu", options->vtu, "for ParaView and other programs that read VTK: a .pvd for each test, with a script that opens it coloured");
+    command.add_option("--test", options->tests, "only this test, as its files are named (brazilian-s1), or all of a kind; may be repeated")->type_name("TEST")->allow_extra_args(false);
+    command.add_option("--out", options->out, "directory of the files (default: RUN/paraview)")->type_name("DIR");
+    command.add_option("--threads", options->threads, "number of threads (default: one for each core)")->type_name("N")->check(CLI::Range(1, 256));
+    line.does(command, [options] { return export_command(*options); });
+}
+
+void add_view(CommandLine& line) {
+    const auto options = std::make_shared<ViewOptions>();
+    CLI::App& command = line.add("view", "open the report of a run in the browser, or print its path where there is no display", view_examples);
+    command.add_option("run", options->run, "the directory of a run, study, envelope or calibration, or a page (default: the newest in results/)")->type_name("RUN");
+    command.add_flag("--print", options->print, "only print the path");
+    line.does(command, [options] { return view_command(*options); });
 }
 
 void add_export_cells(CommandLine& line) {
     const auto options = std::make_shared<ExportCellsOptions>();
-    CLI::App& command = line.add("export-cells", "write the cells of a specimen for other programs: Neper (.tess), gmsh (.msh) or as polygons (.csv)");
-    command.add_option("job", options->job, "the job file")->required()->type_name("JOB.toml");
+    CLI::App& command = line.add("export-cells", "write the cells of a specimen for other programs: Neper (.tess), gmsh (.msh) or as polygons (.csv)", export_cells_examples);
+    command.add_option("job", options->job, "the job file; - reads it from standard input")->required()->type_name("JOB.toml");
+    add_set_option(command, *options);
     command.add_option("--seed", options->seeds, "the packing (default: the job's first)")->type_name("S")->expected(1);
-    command.add_option("--test", options->tests, "the specimen of this kind of test, such as the disc of 'brazilian' (default: that of the job)")->type_name("KIND")->expected(1);
+    line.choices(command.add_option("--test", options->tests, "the specimen of this kind of test, such as the disc of 'brazilian' (default: that of the job)")->type_name("KIND")->expected(1), test_words());
     command.add_option("--threads", options->threads, "threads (default: as the job says)")->type_name("N")->check(CLI::Range(0, 256));
     command.add_option("--out", options->out, "a new file; its ending says the format")->required()->type_name("FILE");
     line.does(command, [options] { return export_cells_command(*options); });
@@ -240,15 +298,15 @@ void add_export_cells(CommandLine& line) {
 
 void add_study(CommandLine& line) {
     const auto options = line.options<StudyOptions>();
-    CLI::App& command = line.add("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted");
+    CLI::App& command = line.add("study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted", study_examples);
     command.require_subcommand(0, 1);
     add_thread_options(command, *options, all_cores, by_size);
     add_slurm_options(command, *options);
     add_retry_option(command, *options);
     add_checkpoint_option(command);
     add_study_options(command, *options);
-    const auto inside = [&](const char* name, const char* what, ExitCode (*does)(const StudyOptions&)) -> CLI::App& {
-        CLI::App& own = *command.add_subcommand(name, what);
+    const auto inside = [&](const char* name, const char* what, ExitCode (*does)(const StudyOptions&), const char* own_examples) -> CLI::App& {
+        CLI::App& own = line.add(command, name, what, own_examples);
         add_study_options(own, *options);
         line.does(own, [options, does] {
             if (options->study.empty()) throw InputError({}, "study: a study file is required", "feldspar study STUDY.toml");
@@ -256,10 +314,10 @@ void add_study(CommandLine& line) {
         });
         return own;
     };
-    inside("status", "how much of the study is done", study_status_command);
-    inside("table", "print the study's points, or its runs, as CSV", study_table_command)
+    inside("status", "how much of the study is done", study_status_command, "  feldspar study status sweep.toml\n");
+    inside("table", "print the study's points, or its runs, as CSV", study_table_command, "  feldspar study table sweep.toml > points.csv\n  feldspar study table sweep.toml --runs > runs.csv\n")
         .add_flag("--runs", options->runs, "a row a run, in SI units, instead of a row a point");
-    inside("gather", "take what the elements of a job array have left into the ledger; STUDY.toml or its results' directory", study_gather_command);
+    inside("gather", "take what the elements of a job array have left into the ledger; STUDY.toml or its results' directory", study_gather_command, "  feldspar study gather sweep.toml\n");
 
     const auto element = line.options<ElementOptions>();
     CLI::App& element_command = *command.add_subcommand("element", "what an element of a job array runs")->group("");   // not the user's to call
@@ -274,7 +332,7 @@ void add_study(CommandLine& line) {
 
 void add_envelope(CommandLine& line) {
     const auto options = line.options<EnvelopeCommandOptions>();
-    CLI::App& command = line.add("envelope", "strength envelope: UCS, biaxial series, DTS and BTS on several packings, with Mohr-Coulomb and Hoek-Brown");
+    CLI::App& command = line.add("envelope", "strength envelope: UCS, biaxial series, DTS and BTS on several packings, with Mohr-Coulomb and Hoek-Brown", envelope_examples);
     add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 5)");
     command.add_option("--sigma3", options->sigma3, "confining stresses, such as \"2 MPa\" \"5 MPa\" (default: the job's biaxial tests, else 2.5, 5, 10 and 15 % of the expected strength)")
         ->type_name("STRESS");
@@ -285,11 +343,12 @@ void add_envelope(CommandLine& line) {
 
 void add_converge(CommandLine& line) {
     const auto options = line.options<ConvergeCommandOptions>();
-    CLI::App& command = line.add("converge", "does the answer depend on grain size, specimen size, mesh, loading rate or the number of packings?");
+    CLI::App& command = line.add("converge", "does the answer depend on grain size, specimen size, mesh, loading rate or the number of packings?", converge_examples);
     add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 3)");
-    command.add_option("--test", options->tests, "only the job's tests of this kind (default: uniaxial, direct tension and Brazilian); may be repeated")
-        ->type_name("KIND")
-        ->allow_extra_args(false);
+    line.choices(command.add_option("--test", options->tests, "only the job's tests of this kind (default: uniaxial, direct tension and Brazilian); may be repeated")
+                     ->type_name("KIND")
+                     ->allow_extra_args(false),
+                 test_words());
     command.add_option("--within", options->within, "a change that does not matter (default: 5 %)")->type_name("SHARE");
     command.add_option("--results", options->results, "directory of the results (default: results/<job>-converge); goes on with what is there")->type_name("DIR");
     line.does(command, [options] { return converge_command(*options); });
@@ -297,7 +356,7 @@ void add_converge(CommandLine& line) {
 
 void add_claims(CommandLine& line) {
     const auto options = std::make_shared<ClaimsOptions>();
-    CLI::App& command = line.add("claims", "hold claims about a model against what studies have found; runs nothing");
+    CLI::App& command = line.add("claims", "hold claims about a model against what studies have found; runs nothing", claims_examples);
     command.add_option("folder", options->folder, "the folder with claims.toml and the study files")->required()->type_name("FOLDER");
     command.add_option("--results", options->results, "directory of the ledger (default: as the studies say)")->type_name("DIR");
     command.add_option("--claim", options->claims, "only this claim, by its id; may be repeated")->type_name("ID")->allow_extra_args(false);
@@ -308,7 +367,7 @@ void add_claims(CommandLine& line) {
 
 void add_calibrate(CommandLine& line) {
     const auto options = line.options<CalibrateOptions>();
-    CLI::App& command = line.add("calibrate", "laboratory numbers in, contact parameters out, confirmed on fresh packings; tests that are not quasi-static (grade C) count as upper bounds or not at all; goes on where it was interrupted");
+    CLI::App& command = line.add("calibrate", "laboratory numbers in, contact parameters out, confirmed on fresh packings; tests that are not quasi-static (grade C) count as upper bounds or not at all; goes on where it was interrupted", calibrate_examples);
     command.add_option("calibration", options->calibration, "the file with targets and unknowns")->required()->type_name("TARGETS.toml");
     command.add_option("--results", options->results, "directory of the ledger and the runs (default: as the file says)")->type_name("DIR");
     command.add_option("--budget", options->budget, "at most so many runs (default: as the file says)")->type_name("N")->check(CLI::Range(20, 100'000));
@@ -334,8 +393,7 @@ struct NewOptions {
     }
 };
 
-constexpr const char* new_example = R"(Examples:
-  feldspar new biaxial --out biaxial.toml
+constexpr const char* new_examples = R"(  feldspar new biaxial --out biaxial.toml
   feldspar new laboratory --UCS 120MPa --E 30GPa --BTS 9MPa --nu 0.25 --friction-angle "50 deg" --out granite.toml
       all tests of a rock of which these numbers are known, with first contact parameters (docs/validation/first-parameters.md)
   feldspar new uniaxial-compression --rock lac-du-bonnet-granite        a rock of the literature (feldspar new --presets lists them)
@@ -344,13 +402,15 @@ constexpr const char* new_example = R"(Examples:
 
 void add_new(CommandLine& line) {
     const auto options = std::make_shared<NewOptions>();
-    CLI::App& command = line.add("new", "print a commented job, study or calibration to start from");
+    CLI::App& command = line.add("new", "print a commented job, study or calibration to start from", new_examples);
     CLI::Option* kind = command.add_option("kind", options->kind, fmt::format("a job: {} (the tests of one rock); study; calibration", fmt::join(job_template_kinds(), ", ")))->type_name("KIND");
     CLI::Option* file = command.add_option("--out", options->file, "write it to this new file instead")->type_name("FILE");
     command.add_option("--rock", options->rock, "a rock of the literature (feldspar new --presets), or a kind such as granite, for what is not given")->type_name("NAME");
     for (const GivenName& name : given_names())
         command.add_option("--" + std::string(name.option), options->numbers[std::string(name.option)], std::string(name.meaning))->type_name("VALUE");
-    command.footer(new_example);
+    std::vector<std::string> kinds = test_words();
+    kinds.insert(kinds.end(), {"laboratory", "study", "calibration"});
+    line.choices(kind, kinds);
     command.add_flag("--presets", options->presets, "print the materials that a job may name, and the rocks of the literature, instead")->excludes(kind)->excludes(file);
     line.does(command, [options] {
         if (options->presets && options->given().any()) throw InputError({}, "new --presets prints what there is and takes no numbers of a rock");
@@ -367,10 +427,35 @@ struct SchemaOptions {
 
 void add_schema(CommandLine& line) {
     const auto options = std::make_shared<SchemaOptions>();
-    CLI::App& command = line.add("schema", "print every key of job files as a JSON Schema, by which editors complete and check them (docs/job.md)");
+    CLI::App& command = line.add("schema", "print every key of job files as a JSON Schema, by which editors complete and check them (docs/job.md)", schema_examples);
     command.add_flag("--markdown", options->markdown, "as tables to be read instead");
     command.add_option("--out", options->file, "write it to this new file instead")->type_name("FILE");
     line.does(command, [options] { return schema_command(options->markdown, options->file); });
+}
+
+// For packages: pages and completions are written when the program is installed.
+void add_pages(CommandLine& line) {
+    struct Options {
+        std::string shell;
+        std::vector<std::string> command;
+        std::string page;
+        bool list = false;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App& shells = line.add("completion", "print the completion of commands, options and values for a shell", "  source <(feldspar completion bash)\n  feldspar completion fish > ~/.config/fish/completions/feldspar.fish\n");
+    CLI::Option* shell = shells.add_option("shell", options->shell, "bash, zsh or fish")->required()->type_name("SHELL")->check(CLI::IsMember({"bash", "zsh", "fish"}).description(""));
+    line.choices(shell, {"bash", "zsh", "fish"});
+    line.does(shells, [options, &line] { return pages_command(completion(line, options->shell)); });
+
+    CLI::App& pages = line.add("manual", "print a manual page", "  feldspar manual run | man -l -\n");
+    pages.add_option("command", options->command, "the command (default: the whole program)")->type_name("COMMAND");
+    pages.add_flag("--list", options->list, "print the names of all pages instead");
+    pages.add_option("--page", options->page, "the command by the name of its page, such as feldspar-study-status")->type_name("NAME");
+    line.does(pages, [options, &line] {
+        if (!options->page.empty()) return pages_command(manual_page_named(line, options->page));
+        if (options->list) return pages_command(fmt::format("{}\n", fmt::join(manual_names(line), "\n")));
+        return pages_command(manual_page(line, fmt::format("{}", fmt::join(options->command, " "))));
+    });
 }
 
 }  // namespace
@@ -378,7 +463,7 @@ void add_schema(CommandLine& line) {
 
 int main(int argc, char** argv) {
     using namespace feldspar;
-    CommandLine line(joined(argc, argv));
-    for (auto* add : {add_run, add_check, add_export_cells, add_new, add_schema, add_study, add_envelope, add_converge, add_claims, add_calibrate}) add(line);
-    return line.run(argc, argv);
+    CommandLine line(joined(argc, argv), examples, version_text);
+    for (auto* add : {add_run, add_check, add_view, add_export, add_export_cells, add_new, add_schema, add_study, add_envelope, add_converge, add_claims, add_calibrate, add_pages}) add(line);
+    return line.run(argc, argv, guarded);
 }

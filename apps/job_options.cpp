@@ -9,6 +9,7 @@
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/usable_cores.hpp"
 #include "feldspar/job/toml_reader.hpp"
+#include "feldspar/methods/method.hpp"
 #include "say.hpp"
 
 namespace feldspar {
@@ -47,10 +48,16 @@ void keep_tests(Job& job, const std::vector<std::string>& wanted) {
 
 }  // namespace
 
+std::vector<std::string> full_kinds(std::vector<std::string> words) {
+    for (std::string& word : words)
+        if (const auto method = find_method_called(word)) word = name(*method);
+    return words;
+}
+
 Job job_with_options(const JobOptions& options) {
-    Job job = read_job(options.job);
+    Job job = options.job == "-" ? parse_job(read_toml_file("/dev/stdin", "job"), "standard input", options.settings) : read_job(options.job, options.settings);
     keep_variants(job, options.variants);
-    keep_tests(job, options.tests);
+    keep_tests(job, full_kinds(options.tests));
     if (options.threads) job.threads = *options.threads;
     if (options.at_once) job.at_once = *options.at_once;
     if (options.seeds.empty()) return job;

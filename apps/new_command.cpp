@@ -46,7 +46,8 @@ std::string next_step(const std::string& kind, const std::string& file) {
 
 ExitCode presets_command() { return print_whole(preset_overview()); }
 
-ExitCode new_command(const std::string& kind, const GivenRock& rock, const std::optional<std::string>& out) {
+ExitCode new_command(const std::string& given, const GivenRock& rock, const std::optional<std::string>& out) {
+    const std::string kind = full_kinds({given}).front();
     const std::string text = file_to_start_from(kind, rock);
     if (!out) return print_whole(text);
     write_whole(text, *out, "--out");

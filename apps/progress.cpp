@@ -1,6 +1,7 @@
 #include "progress.hpp"
 
 #include "feldspar/base/printable.hpp"
+#include "feldspar/base/utf8.hpp"
 #include "say.hpp"
 
 #include <fmt/format.h>
@@ -76,7 +77,7 @@ void Progress::rewrite(const std::vector<std::string>& lines) {
     const auto [columns, rows] = screen();
     const std::size_t shown = lines.size() < rows ? lines.size() : rows - 2;  // lines that scroll away could not be taken back
     std::string text;
-    for (std::size_t i = 0; i < shown; ++i) text += (i > 0 ? "\n" : "") + printable(lines[i], LineEnds::escaped).substr(0, columns - 1);
+    for (std::size_t i = 0; i < shown; ++i) text += (i > 0 ? "\n" : "") + std::string(first_columns(printable(lines[i], LineEnds::escaped), columns - 1));
     if (shown < lines.size()) text += fmt::format("\nand {} more", lines.size() - shown);
     put(stderr, text);
     std::fflush(stderr);

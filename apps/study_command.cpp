@@ -11,6 +11,7 @@
 #include "progress.hpp"
 #include "running_study.hpp"
 #include "say.hpp"
+#include "terminal.hpp"
 
 namespace feldspar {
 Study study_with_options(const StudyOptions& options) {
@@ -30,7 +31,7 @@ ExitCode study_command(const StudyOptions& options) {
 
     const std::vector<PointResults> points = point_results(study, ledger);
     write_study_report(study, points, study_page(study));
-    say("\n{}\n", study_text(study, points));
+    say("\n{}\n", study_text(study, points, output_columns()));
     print_execution(study, execution);
     say("Page: {}\n", study_page(study).string());
     return outcome(execution);

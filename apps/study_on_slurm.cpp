@@ -13,6 +13,7 @@
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"
+#include "terminal.hpp"
 
 namespace feldspar {
 namespace {
@@ -118,7 +119,7 @@ ExitCode study_on_slurm(const Study& study, const StudyOptions& options) {
         return ExitCode::interrupted;
     }
     const Gathering gathering = gather(ledger);   // again, should the gathering job have failed
-    say("\n{}\n", study_text(study, point_results(study, ledger)));
+    say("\n{}\n", study_text(study, point_results(study, ledger), output_columns()));
     print_gathering(gathering);
     return outcome(gathering);
 }

@@ -66,7 +66,7 @@ std::string median_and_range(const PropertySummary& properties, const std::strin
     return fmt::format("{} ({}..{})", table_number(s.median * factor), table_number(s.minimum * factor), table_number(s.maximum * factor));
 }
 
-std::string compared_table(const Job& job, const std::vector<VariantSummary>& summaries) {
+std::string compared_table(const Job& job, const std::vector<VariantSummary>& summaries, std::size_t columns) {
     std::vector<std::string> present;
     for (const RockProperty& property : rock_properties()) {
         const std::string name = property.kept_name();
@@ -87,10 +87,10 @@ std::string compared_table(const Job& job, const std::vector<VariantSummary>& su
         laboratory.push_back(known == job.laboratory.end() ? "" : table_number(laboratory_in_user_units(known->first, known->second)));
     }
     if (!job.laboratory.empty()) rows.push_back(laboratory);
-    return aligned(rows, 1) + "median (minimum..maximum) over the packings; strengths are positive magnitudes\n";
+    return aligned(rows, 1, columns) + "median (minimum..maximum) over the packings; strengths are positive magnitudes\n";
 }
 
-std::string cost_table(const std::vector<VariantSummary>& summaries) {
+std::string cost_table(const std::vector<VariantSummary>& summaries, std::size_t columns) {
     std::vector<MethodId> kinds;
     for (const VariantSummary& summary : summaries)
         for (const auto& [kind, cost] : summary.ms_per_step)
@@ -109,11 +109,11 @@ std::string cost_table(const std::vector<VariantSummary>& summaries) {
             rows.back().push_back(cell);
         }
     }
-    return "\n" + aligned(rows, 1) + fmt::format("in brackets: as a multiple of {}\n", summaries.front().variant->name);
+    return "\n" + aligned(rows, 1, columns) + fmt::format("in brackets: as a multiple of {}\n", summaries.front().variant->name);
 }
 
 // How each disc of a Brazilian test failed: its strength is worth as much as that.
-std::string disc_table(std::span<const TestResult> results) {
+std::string disc_table(std::span<const TestResult> results, std::size_t columns) {
     std::vector<Row> rows{{"Brazilian test", "seed", "BTS MPa", "first dip", "largest", "valid (ISRM)", "arc top", "bottom", "first crack r/R", "at share"}};
     bool flattened = false;
     for (const TestResult& r : results) flattened = flattened || (r.specimen && r.specimen->outline.flattened() && method_of(r.test).specimen.own_disc);
@@ -128,19 +128,21 @@ std::string disc_table(std::span<const TestResult> results) {
         if (flattened) rows.back().push_back(table_number(b.flat_coefficient));
     }
     if (rows.size() == 1) return {};
-    return "\n" + aligned(rows, 1) + "BTS: largest stress until the disc is split ('>': it was not); first dip: before the first fall of 5 %; largest: of the whole record\n" +
+    return "\n" + aligned(rows, 1, columns, 2) +
+           wrapped_text("BTS: largest stress until the disc is split ('>': it was not); first dip: before the first fall of 5 %; largest: of the whole record", {}, columns) +
            wrapped_text("valid (ISRM): split by a crack from the central part, r/R up to 0.6; arcs: of contact at the BTS; share: of the BTS, at the first crack" +
-                        std::string(flattened ? "; k: stresses are k 2P / (pi D t)" : ""));
+                            std::string(flattened ? "; k: stresses are k 2P / (pi D t)" : ""),
+                        {}, columns);
 }
 
 }  // namespace
 
-std::string variant_table(const Job& job, std::span<const TestResult> results) {
+std::string variant_table(const Job& job, std::span<const TestResult> results, std::size_t columns) {
     const std::vector<VariantSummary> summaries = summarise_variants(job, results);
-    return compared_table(job, summaries) + cost_table(summaries);
+    return compared_table(job, summaries, columns) + cost_table(summaries, columns);
 }
 
-std::string property_table(const Job& job, const PropertySummary& properties) {
+std::string property_table(const Job& job, const PropertySummary& properties, std::size_t columns) {
     std::map<std::string, std::string> laboratory_name;  // of a property
     for (const auto& [key, value] : job.laboratory) laboratory_name[property_of_laboratory(key)] = key;
 
@@ -169,15 +171,21 @@ std::string property_table(const Job& job, const PropertySummary& properties) {
         }
         rows.push_back(std::move(row));
     }
-    std::string text = aligned(rows, 2);
+    std::string text = aligned(rows, 2, columns, 2);
     const ModelSpec& model = job.variants.front().model;
-    text += fmt::format("median, minimum, maximum over n packings; {}strengths are positive magnitudes\n",
-                        model.kind == GrainKind::flexible ? fmt::format("plane {}; ", name(model.plane)) : "");
-    if (!properties.envelope_method.empty()) text += wrapped_text(properties.envelope_method);
+    text += wrapped_text(fmt::format("median, minimum, maximum over n packings; {}strengths are positive magnitudes",
+                                     model.kind == GrainKind::flexible ? fmt::format("plane {}; ", name(model.plane)) : ""),
+                         {}, columns);
+    if (!properties.envelope_method.empty()) text += wrapped_text(properties.envelope_method, {}, columns);
     return text;
 }
 
-std::string test_table(std::span<const TestResult> results, std::span<const FailedTest> failed) {
+bool worse_than_asked(const TestResult& result) {
+    const double asked = result.numerics.kind == NumericsKind::adaptive && !result.numerics.residual_target ? result.numerics.accuracy : NumericsSpec{}.accuracy;
+    return result.evidence.grade == 'C' || !(result.evidence.error_estimate <= asked);
+}
+
+std::string test_table(std::span<const TestResult> results, std::span<const FailedTest> failed, std::size_t columns) {
     if (results.empty() && failed.empty()) return "No test ran.\n";
     std::vector<Row> rows{{"Test", "seed", "peak MPa", "cracks t + s", "steps", "time", "energy residual", "quasi-static"}};
     for (const TestResult& r : results)
@@ -185,19 +193,19 @@ std::string test_table(std::span<const TestResult> results, std::span<const Fail
                         duration_text(r.wall_s), fmt::format("{:.3f} %", 100.0 * r.energy_residual),
                         std::string(1, r.evidence.grade)});
     for (const FailedTest& f : failed) rows.push_back({title(f.variant, f.test), std::to_string(f.seed), "failed", "-", "-", "-", "-", "-"});
-    std::string text = aligned(rows, 1);
-    text += "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached\n";
-    text += "quasi-static: A to about 0.5 %, B to about 2 %, C not shown\n";
-    text += disc_table(results);
-    for (const FailedTest& f : failed) text += wrapped_text(fmt::format("{}, seed {}: failed: {}", title(f.variant, f.test), f.seed, in_one_line(f.reason)));
+    std::string text = aligned(rows, 1, columns, 2);
+    text += wrapped_text("cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached", {}, columns);
+    text += wrapped_text("quasi-static: A to about 0.5 %, B to about 2 %, C not shown", {}, columns);
+    text += disc_table(results, columns);
+    for (const FailedTest& f : failed) text += wrapped_text(fmt::format("{}, seed {}: failed: {}", title(f.variant, f.test), f.seed, in_one_line(f.reason)), {}, columns);
     for (const TestResult& r : results) {   // a section other than the whole width is said beside the number
-        for (const std::string& remark : r.properties.remarks) text += wrapped_text(fmt::format("{}, seed {}: {}", title(r.variant, r.test), r.seed, remark));
+        for (const std::string& remark : r.properties.remarks) text += wrapped_text(fmt::format("{}, seed {}: {}", title(r.variant, r.test), r.seed, remark), {}, columns);
     }
-    if (std::any_of(results.begin(), results.end(), [](const TestResult& r) { return !r.variant.empty(); }))
-        return text + "the verdicts in words are in the report\n";
     for (const TestResult& r : results) {
-        text += fmt::format("\n{}, seed {}{}\n", title(r.test), r.seed, r.interrupted ? " (interrupted)" : "");
-        text += wrapped_text(r.evidence.verdict, "  ");
+        if (r.interrupted) text += wrapped_text(fmt::format("{}, seed {}: interrupted", title(r.variant, r.test), r.seed), {}, columns);
+        if (!worse_than_asked(r)) continue;
+        text += fmt::format("\n{}, seed {}: worse than asked\n", title(r.variant, r.test), r.seed);
+        text += wrapped_text(r.evidence.verdict, "  ", columns);
     }
     return text;
 }

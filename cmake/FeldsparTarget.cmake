@@ -17,8 +17,9 @@ endif()
 function(feldspar_room name)
     cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS" ${ARGN})
     add_library(feldspar_${name} STATIC ${ROOM_SOURCES})
-    target_link_libraries(feldspar_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE feldspar_options)
-    target_include_directories(feldspar_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
+    target_link_libraries(feldspar_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE $<BUILD_INTERFACE:feldspar_options>)
+    target_include_directories(feldspar_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    set_target_properties(feldspar_${name} PROPERTIES EXPORT_NAME ${name})
 endfunction()
 
 # feldspar_test(NAME SOURCES ... DEPENDS ... LABELS ... [TIMEOUT s]): one GoogleTest program; each of its tests is a CTest.

@@ -12,7 +12,12 @@ TEST(CommandLine, HelpAndVersion) {
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
     EXPECT_NE(help.out.find("feldspar run"), std::string::npos);
-    for (const char* command : {"run", "check", "new", "schema", "envelope", "converge", "export-cells"}) EXPECT_EQ(run_program(place.path(), {command, "--help"}).code, 0);
+    for (const char* command : {"run", "check", "view", "export", "new", "schema", "study", "envelope", "converge", "claims", "calibrate", "export-cells"}) {
+        const Outcome own = run_program(place.path(), {command, "--help"});
+        EXPECT_EQ(own.code, 0);
+        EXPECT_NE(own.out.find(std::string("Examples:\n  feldspar ")), std::string::npos) << own.out;
+        EXPECT_NE(own.out.find(std::string("feldspar ") + command), std::string::npos) << own.out;
+    }
     const Outcome version = run_program(place.path(), {"--version"});
     EXPECT_EQ(version.code, 0);
     EXPECT_EQ(version.out.rfind("feldspar 0.", 0), 0u) << version.out;
@@ -50,6 +55,20 @@ TEST(CommandLine, RefusesWhatItDoesNotKnow) {
                                                       {"run", "job.toml", "--out", ""},
                                                       {"run", "job.toml", "other.toml"},
                                                       {"check", "job.toml", "--out", "x"},
+                                                      {"run", "job.toml", "--keep", "some"},
+                                                      {"run", "job.toml", "--set", "material.contact.tau"},
+                                                      {"run", "job.toml", "--set", "material.contact.tua=1MPa"},
+                                                      {"run", "job.toml", "--fresh", "--continue"},
+                                                      {"run", "job.toml", "--continue"},
+                                                      {"export"},
+                                                      {"export", "job.toml"},
+                                                      {"export", "none", "--vtu"},
+                                                      {"export", ".", "--vtu"},
+                                                      {"view"},
+                                                      {"view", "none"},
+                                                      {"view", "job.toml"},
+                                                      {"completion", "csh"},
+                                                      {"manual", "walk"},
                                                       {"export-cells", "job.toml"},
                                                       {"export-cells", "--out", "x.tess"},
                                                       {"export-cells", "job.toml", "--out", "x.vtk"},
@@ -343,6 +362,130 @@ TEST(CommandLine, ResultsSayWhichCardMadeThem) {
     const auto here = summary_of("here"), there = summary_of("there");
     EXPECT_NE(there.at("provenance").at("device").get<std::string>().find("an emulated card"), std::string::npos);
     EXPECT_FALSE(here.at("provenance").contains("device"));
+// What was probably meant, and where to read on.
+TEST(CommandLine, SuggestsCommandsAndOptions) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases{
+        {{"rnu", "job.toml"}, {"'rnu' is not a command", "did you mean 'run'?", "'feldspar --help'"}},
+        {{"chekc", "job.toml"}, {"did you mean 'check'?"}},
+        {{"run", "job.toml", "--treads", "2"}, {"'--treads' is not an option of 'feldspar run'", "did you mean '--threads'?", "'feldspar run --help'"}},
+        {{"run", "job.toml", "--sed=1"}, {"'--sed' is not an option", "'--seed'"}},
+        {{"study", "table", "x.toml", "--run"}, {"'--run' is not an option of 'feldspar study table'", "'--runs'"}},
+        {{"run"}, {"'feldspar run' needs JOB.toml"}},
+        {{"export-cells", "job.toml"}, {"'feldspar export-cells' needs --out FILE"}},
+        {{"run", "job.toml", "--test", "UTS"}, {"the job has no test 'UTS'"}},
+        {{"run", "job.toml", "--set", "material.contact.mu=0.4", "--set", "material.contact.tua=3MPa"}, {"--set 'material.contact.tua=3MPa'", "did you mean 'tau'?"}},
+        {{"run", "job.toml", "--keep", "nothing"}, {"nothing"}},
+    };
+    for (const auto& [arguments, parts] : cases) {
+        const Outcome outcome = run_program(place.path(), arguments);
+        EXPECT_EQ(outcome.code, 2) << outcome.err;
+        for (const std::string& part : parts) EXPECT_NE(outcome.err.find(part), std::string::npos) << part << "\n" << outcome.err;
+        EXPECT_TRUE(outcome.out.empty()) << outcome.out;
+    }
+    EXPECT_EQ(place.entries(), (std::set<std::string>{"job.toml"}));
+}
+
+TEST(CommandLine, AJobComesFromStandardInput) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"direct-tension\"\n"));
+    const auto from_file = [&] { dup2(open((place / "job.toml").c_str(), O_RDONLY), STDIN_FILENO); };
+    const Outcome outcome = run_program(place.path(), {"run", "-", "--out", "out", "--set", "numerics.accuracy=9%", "--quiet", "--keep", "numbers"}, from_file);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.out, "out\n");
+    EXPECT_TRUE(outcome.err.empty()) << outcome.err;
+    EXPECT_EQ(read_text(place / "out/job.toml").rfind(read_text(place / "job.toml"), 0), 0u);
+    EXPECT_NE(read_text(place / "out/job.toml").find("# --set numerics.accuracy=9%"), std::string::npos);
+    const std::string resolved = read_text(place / "out/job-resolved.toml");
+    EXPECT_NE(resolved.find("accuracy = 0.09"), std::string::npos) << resolved;
+    EXPECT_NE(resolved.find("sigma_nt = \"8.5 MPa\""), std::string::npos) << resolved;
+    EXPECT_FALSE(fs::exists(place / "out/direct-tension-s1.h5"));
+    EXPECT_FALSE(fs::exists(place / "out/history-direct-tension-s1.csv"));
+    EXPECT_TRUE(fs::exists(place / "out/report.html"));
+
+    write_text(place / "wrong.toml", "[specimen]\nshap = 1\n");
+    const Outcome wrong = run_program(place.path(), {"check", "-"}, [&] { dup2(open((place / "wrong.toml").c_str(), O_RDONLY), STDIN_FILENO); });
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_NE(wrong.err.find("standard input:2:1"), std::string::npos) << wrong.err;
+}
+
+TEST(CommandLine, JsonIsAloneOnStandardOutput) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"direct-tension\"\n[[test]]\nkind = \"uniaxial-compression\"\n"));
+    const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "out", "--json", "--test", "DTS"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json.at("directory"), "out");
+    EXPECT_EQ(json.at("interrupted"), false);
+    ASSERT_EQ(json.at("tests").size(), 1u);
+    EXPECT_EQ(json.at("tests").at(0).at("kind"), "direct-tension");
+    EXPECT_EQ(json.at("properties"), nlohmann::json::parse(read_text(place / "out/summary.json")).at("properties"));
+    EXPECT_NE(outcome.err.find("Report: out/report.html"), std::string::npos) << outcome.err;
+
+    const Outcome wrong = run_program(place.path(), {"run", "job.toml", "--json", "--set", "specimen.width=-1mm"});
+    EXPECT_EQ(wrong.code, 2);
+    const auto error = nlohmann::json::parse(wrong.out).at("error");
+    EXPECT_EQ(error.at("key"), "specimen.width");
+    EXPECT_NE(error.at("message").get<std::string>().find("--set"), std::string::npos) << wrong.out;
+}
+
+TEST(CommandLine, FieldsAreExportedFromTheRun) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"direct-tension\"\n[[test]]\nkind = \"brazilian\"\n"));
+    ASSERT_EQ(run_program(place.path(), {"run", "job.toml", "--out", "out"}).code, 0);
+    EXPECT_FALSE(fs::exists(place / "out/direct-tension-s1.pvd"));
+    const Outcome outcome = run_program(place.path(), {"export", "out", "--vtu", "--test", "BTS"});
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    for (const char* file : {"brazilian-s1.pvd", "brazilian-s1.py", "brazilian-s1/snapshot-000.vtm", "brazilian-s1/contacts-000.vtu"}) EXPECT_TRUE(fs::exists(place / "out/paraview" / file)) << file;
+    EXPECT_FALSE(fs::exists(place / "out/paraview/direct-tension-s1.pvd"));
+    const Outcome again = run_program(place.path(), {"export", "out", "--vtu"});
+    EXPECT_EQ(again.code, 0) << again.err;
+    EXPECT_NE(again.out.find("in place of those of an earlier export"), std::string::npos) << again.out;
+    EXPECT_TRUE(fs::exists(place / "out/paraview/direct-tension-s1.pvd"));
+    expect_no_half_files(place / "out");
+    const Outcome unknown = run_program(place.path(), {"export", "out", "--vtu", "--test", "brasilian"});
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("brazilian-s1"), std::string::npos) << unknown.err;
+    EXPECT_EQ(run_program(place.path(), {"export", "out/brazilian-s1.h5", "--vtu", "--out", "elsewhere"}).code, 0);
+    EXPECT_TRUE(fs::exists(place / "elsewhere/brazilian-s1.pvd"));
+}
+
+TEST(CommandLine, ViewFindsTheNewestReport) {
+    const TemporaryFolder place;
+    for (const char* run : {"results/a-1", "results/a-2"}) {
+        fs::create_directories(place / run);
+        write_text(place / run / "report.html", "x\n");
+    }
+    fs::last_write_time(place / "results/a-1/report.html", fs::last_write_time(place / "results/a-2/report.html") + std::chrono::seconds(5));
+    const auto no_display = [] {
+        unsetenv("DISPLAY");
+        unsetenv("WAYLAND_DISPLAY");
+    };
+    const Outcome newest = run_program(place.path(), {"view"}, no_display);
+    EXPECT_EQ(newest.code, 0) << newest.err;
+    EXPECT_EQ(newest.out, (fs::canonical(place.path()) / "results/a-1/report.html").string() + "\n");
+    EXPECT_NE(newest.err.find("no display"), std::string::npos) << newest.err;
+    const Outcome one = run_program(place.path(), {"view", "results/a-2", "--print"});
+    EXPECT_EQ(one.out, (fs::canonical(place.path()) / "results/a-2/report.html").string() + "\n");
+    EXPECT_TRUE(one.err.empty()) << one.err;
+    fs::create_directory(place / "empty");
+    EXPECT_EQ(run_program(place.path(), {"view", "empty"}).code, 2);
+}
+
+TEST(CommandLine, PagesAndCompletionsKnowEveryCommand) {
+    const TemporaryFolder place;
+    const std::string names = run_program(place.path(), {"manual", "--list"}).out;
+    for (const char* command : {"run", "check", "view", "export", "study", "calibrate"}) {
+        EXPECT_NE(names.find(std::string("feldspar-") + command + "\n"), std::string::npos) << names;
+        const Outcome page = run_program(place.path(), {"manual", command});
+        EXPECT_EQ(page.code, 0);
+        for (const char* part : {".SH NAME\n", ".SH SYNOPSIS\n", ".SH OPTIONS\n", ".SH EXAMPLES\n", ".SH EXIT STATUS\n"}) EXPECT_NE(page.out.find(part), std::string::npos) << part << page.out;
+        for (const char* shell : {"bash", "zsh", "fish"}) EXPECT_NE(run_program(place.path(), {"completion", shell}).out.find(command), std::string::npos) << shell;
+    }
+    EXPECT_EQ(names.find("element"), std::string::npos);   // not the user's to call
+    EXPECT_NE(run_program(place.path(), {"manual", "study", "status"}).out.find("feldspar study status"), std::string::npos);
+    EXPECT_NE(run_program(place.path(), {"new", "UCS"}).out.find("uniaxial-compression"), std::string::npos);
 }
 
 TEST(CommandLine, AnExistingDirectoryIsRefused) {

@@ -129,7 +129,7 @@ void expect_whole_files(const fs::path& results) {
         const std::string kind = entry.path().extension().string();
         EXPECT_TRUE(kind != ".json" || Json::accept(text));
         EXPECT_TRUE(kind != ".html" || last_line(text) == "</html>");
-        EXPECT_TRUE((kind != ".vtu" && kind != ".pvd") || last_line(text) == "</VTKFile>");
+        EXPECT_TRUE((kind != ".vtu" && kind != ".vtm" && kind != ".pvd") || last_line(text) == "</VTKFile>");
         if (kind == ".csv") {
             EXPECT_TRUE(text.ends_with('\n'));
             std::set<std::ptrdiff_t> columns;   // equally many in each row

@@ -53,7 +53,7 @@ std::string target_text(const Target& target, double value) {
 
 std::string unknown_text(const Unknown& unknown, double value) { return std::isfinite(value) ? with_unit(value, unit_word(unknown)) : "-"; }
 
-std::string calibration_text(const CalibrationResult& result) {
+std::string calibration_text(const CalibrationResult& result, std::size_t columns) {
     std::vector<Row> unknowns{{"unknown", "best", "as good (90 %)", "range"}};
     for (const UnknownOutcome& u : result.unknowns)
         unknowns.push_back({u.unknown.name, unknown_text(u.unknown, u.best), range_text(u.unknown, u.low, u.high), range_text(u.unknown, u.unknown.low, u.unknown.high)});
@@ -62,7 +62,7 @@ std::string calibration_text(const CalibrationResult& result) {
         targets.push_back({t.target.label(), target_text(t.target, t.target.value), "± " + target_text(t.target, t.target.tolerance),
                            target_text(t.target, t.predicted) + " ± " + target_text(t.target, 0.5 * (t.foreseen.high - t.foreseen.low)), target_text(t.target, t.confirmed.mean),
                            "± " + target_text(t.target, t.confirmed.half_width()), std::to_string(t.confirmed.count), grades_text(t.grades), verdict_on(t)});
-    std::string text = aligned(unknowns, 1) + "\n" + aligned(targets, 1);
+    std::string text = aligned(unknowns, 1, columns) + "\n" + aligned(targets, 1, columns);
     text += "Predicted: what the mean of the confirming packings was to show, 95 %. A/B/C: grades of the tests that confirm; those of grade C are not in the mean.\n";
     if (std::any_of(result.targets.begin(), result.targets.end(), [](const TargetOutcome& t) { return !t.missed.empty(); })) text += "\n";
     for (const TargetOutcome& t : result.targets)

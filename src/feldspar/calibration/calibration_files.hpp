@@ -9,7 +9,7 @@
 namespace feldspar {
 
 /// The answer for a terminal: unknowns with their ranges, targets with predicted and confirmed values, findings.
-std::string calibration_text(const CalibrationResult& result);
+std::string calibration_text(const CalibrationResult& result, std::size_t columns = 0);
 
 /// calibration.json: the same and the sensitivities, SI units and degrees.
 std::string calibration_json(const Calibration& calibration, const CalibrationResult& result, const Provenance& provenance);

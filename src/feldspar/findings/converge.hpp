@@ -100,7 +100,7 @@ Finding judge_packings(const MeanInterval& mean, double within);
 /// converge.csv, converge.json and converge.html in `directory`, which is there.
 void write_convergence(const std::filesystem::path& directory, const ConvergePlan& plan, std::span<const PointResults> points, const Provenance& provenance);
 
-/// What the command prints.
-std::string convergence_text(const ConvergePlan& plan, std::span<const PointResults> points);
+/// What the command prints. @param columns  of the terminal; 0: of none
+std::string convergence_text(const ConvergePlan& plan, std::span<const PointResults> points, std::size_t columns = 0);
 
 }  // namespace feldspar

@@ -139,7 +139,7 @@ std::string signed_percent(double share) {
     return tenths == 0.0 ? "0.0" : fmt::format("{:+.1f}", 0.1 * tenths);
 }
 
-std::string axis_table(const AxisResult& axis) {
+std::string axis_table(const AxisResult& axis, std::size_t columns) {
     std::vector<Row> rows{{axis.axis.name, "property", "unit", "mean", "95 % interval", "n", "change", "95 % interval"}};
     for (const PropertyAlong& along : axis.properties)
         for (std::size_t v = 0; v < along.values.size(); ++v) {
@@ -156,7 +156,7 @@ std::string axis_table(const AxisResult& axis) {
             }
             rows.push_back(std::move(row));
         }
-    return aligned(rows, 3);
+    return aligned(rows, 3, columns, 3);
 }
 
 }  // namespace
@@ -169,13 +169,13 @@ void write_convergence(const std::filesystem::path& directory, const ConvergePla
     write_beside(directory / "converge.html", html_page(plan.study.title, json, asset_converge_js));
 }
 
-std::string convergence_text(const ConvergePlan& plan, std::span<const PointResults> points) {
+std::string convergence_text(const ConvergePlan& plan, std::span<const PointResults> points, std::size_t columns) {
     const Convergence result = judge_convergence(plan, points);
     std::string text;
-    for (const AxisResult& axis : result.axes) text += axis_table(axis) + wrapped_text(axis.axis.name + ": " + axis.verdict.words) + "\n";
-    for (const std::string& remark : plan.remarks) text += wrapped_text(remark);
-    text += wrapped_text("packings: " + result.seed_verdict.words) + "\n";
-    return text + wrapped_text(result.overall);
+    for (const AxisResult& axis : result.axes) text += axis_table(axis, columns) + wrapped_text(axis.axis.name + ": " + axis.verdict.words, {}, columns) + "\n";
+    for (const std::string& remark : plan.remarks) text += wrapped_text(remark, {}, columns);
+    text += wrapped_text("packings: " + result.seed_verdict.words, {}, columns) + "\n";
+    return text + wrapped_text(result.overall, {}, columns);
 }
 
 }  // namespace feldspar

@@ -40,7 +40,7 @@ std::vector<double> default_series(double expected_UCS_Pa);
 void write_envelope(const std::filesystem::path& directory, const Study& study, std::span<const PointResults> points, bool with_tension,
                     const Provenance& provenance);
 
-/// What the command prints.
-std::string envelope_text(const Study& study, std::span<const PointResults> points, bool with_tension);
+/// What the command prints. @param columns  of the terminal; 0: of none
+std::string envelope_text(const Study& study, std::span<const PointResults> points, bool with_tension, std::size_t columns = 0);
 
 }  // namespace feldspar

@@ -174,15 +174,15 @@ std::string interval_text(const MeanInterval& interval, double factor) {
     return interval.count < 2 ? "-" : fmt::format("{} .. {}", table_number(interval.low * factor), table_number(interval.high * factor));
 }
 
-std::string strength_table(const EnvelopeFits& fits) {
+std::string strength_table(const EnvelopeFits& fits, std::size_t columns) {
     std::vector<Row> rows{{"sigma_3 MPa", "sigma_1 MPa", "95 % interval", "n", "line", "parabola"}};
     for (const StrengthAt& s : fits.strengths)
         rows.push_back({fmt::format("{:g}", s.sigma3_Pa * MPa), table_number(s.sigma1_Pa.mean * MPa), interval_text(s.sigma1_Pa, MPa), std::to_string(s.sigma1_Pa.count),
                         table_number(fits.joint.mohr_coulomb_at(s.sigma3_Pa) * MPa), table_number(fits.joint.hoek_brown_at(s.sigma3_Pa) * MPa)});
-    return aligned(rows, 0);
+    return aligned(rows, 0, columns);
 }
 
-std::string constant_table(const Job& job, const EnvelopeFits& fits) {
+std::string constant_table(const Job& job, const EnvelopeFits& fits, std::size_t columns) {
     std::vector<Row> rows{{"Constant", "unit", "mean", "95 % interval", "n", "joint fit", "laboratory"}};
     const auto laboratory = [&](const std::string& property) -> std::string {
         for (const auto& [key, value] : job.laboratory)
@@ -197,15 +197,15 @@ std::string constant_table(const Job& job, const EnvelopeFits& fits) {
     for (const EnvelopeConstant& c : fits.constants) add(c.property, c.packings, table_number(c.joint * user_quantity(c.property).factor));
     add("UCS_Pa", fits.UCS_measured, "measured");
     for (const TensileStrength& t : fits.tension) add(t.property, t.measured, "measured");
-    return aligned(rows, 2);
+    return aligned(rows, 2, columns, 2);
 }
 
-std::string goodness_table(const CurvePair& joint) {
+std::string goodness_table(const CurvePair& joint, std::size_t columns) {
     const auto R2 = [](double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : std::string("-"); };
     return aligned({{"Joint fit", "rms residual MPa", "R2"},
                           {"Mohr-Coulomb line", table_number(joint.mohr_coulomb.rms_Pa * MPa), R2(joint.mohr_coulomb.R2)},
                           {"Hoek-Brown parabola", table_number(joint.hoek_brown.rms_Pa * MPa), R2(joint.hoek_brown.R2)}},
-                         1);
+                         1, columns);
 }
 
 std::string grades_text(std::span<const TestResult> results) {
@@ -223,7 +223,7 @@ void write_envelope(const std::filesystem::path& directory, const Study& study, 
     write_beside(directory / "envelope.html", html_page(study.title, json, asset_envelope_js));
 }
 
-std::string envelope_text(const Study& study, std::span<const PointResults> points, bool with_tension) {
+std::string envelope_text(const Study& study, std::span<const PointResults> points, bool with_tension, std::size_t columns) {
     std::string text;
     for (const PointResults& point : points) {
         if (!text.empty()) text += "\n";
@@ -233,8 +233,8 @@ std::string envelope_text(const Study& study, std::span<const PointResults> poin
             text += "No compression test has reached its peak.\n";
             continue;
         }
-        text += strength_table(fits) + "\n" + constant_table(study.points.front().job, fits) + "\n" + goodness_table(fits.joint) + "\n";
-        text += wrapped_text(fits.verdict) + grades_text(point.results) + wrapped_text(fits.method);
+        text += strength_table(fits, columns) + "\n" + constant_table(study.points.front().job, fits, columns) + "\n" + goodness_table(fits.joint, columns) + "\n";
+        text += wrapped_text(fits.verdict, {}, columns) + wrapped_text(grades_text(point.results), {}, columns) + wrapped_text(fits.method, {}, columns);
     }
     return text;
 }

@@ -1,31 +1,41 @@
 #include "feldspar/job/job.hpp"
 
-#include <cctype>
+#include <algorithm>
+#include <string_view>
 #include <utility>
 
+#include "feldspar/base/printable.hpp"
+#include "feldspar/base/utf8.hpp"
 #include "feldspar/job/file_reader.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/set_keys.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
 namespace {
 
-bool fits_file_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.'; }
+constexpr std::string_view kFurtherSigns = "-_.";   // of a file's name, beside letters and digits
 
 // A name for the run's directory: letters, digits, '-', '_' and '.', not beginning with '.'.
 std::string name_from_stem(const std::filesystem::path& file) {
-    std::string stem = file.stem().string();
-    for (char& c : stem)
-        if (!fits_file_name(c)) c = '-';
-    while (!stem.empty() && stem.front() == '.') stem.erase(0, 1);
-    return stem.empty() ? "job" : stem.substr(0, 100);
+    const std::string stem = file.stem().string();
+    std::string name;
+    for (std::size_t i = 0; i < stem.size();) {
+        const std::size_t length = std::max<std::size_t>(1, character_length(stem, i));
+        const std::string_view character = std::string_view(stem).substr(i, length);
+        if (name.size() + length > 100) break;
+        name += made_of_letters_and(character, kFurtherSigns) ? character : "-";
+        i += length;
+    }
+    name.erase(0, std::min(name.find_first_not_of('.'), name.size()));
+    return name.empty() ? "job" : name;
 }
 
 std::string read_name(const JobTable& root, const std::filesystem::path& file) {
     if (!root.has("name")) return name_from_stem(file);
     const std::string given = root.text("name");
     root.check({"name"}, [&] {
-        if (given.front() == '.' || given.size() > 100 || !std::all_of(given.begin(), given.end(), fits_file_name))
+        if (given.front() == '.' || given.size() > 100 || !made_of_letters_and(given, kFurtherSigns))
             root.fail("name", shown(*root.find("name")) + " cannot name a directory", root.allowed("name"));
     });
     return given;
@@ -49,11 +59,13 @@ public:
         : FileReader(std::move(tree), name, job_table("").names(), {}, job_level) {
         job_.file = name;
         job_.text = text;
+        job_.written = texts_of(tree_);
     }
 
     Job read() {
         const JobTable root(root_, job_table(""));
         job_.name = read_name(root, job_.file);
+        (void)root.integer("format");   // only that it is one that we read
         if (root.has("variant"))
             root.require({"specimen", "test"});
         else
@@ -98,10 +110,20 @@ SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double fla
 
 Job read_tree(toml::table tree, const std::string& text, const std::string& name) { return JobReader(std::move(tree), text, name).read(); }
 
-Job parse_job(const std::string& text, const std::string& name) { return read_tree(parse_toml(text, name), text, name); }
+Job parse_job(const std::string& text, const std::string& name, std::span<const std::string> settings) {
+    toml::table tree = parse_toml(text, name);
+    set_keys(tree, settings);
+    std::string whole = text;
+    if (!settings.empty()) {
+        whole += (text.empty() || text.back() == '\n') ? "\n" : "\n\n";
+        whole += "# set on the command line, over what stands above:\n";
+        for (const std::string& setting : settings) whole += "# --set " + printable(setting, LineEnds::escaped) + "\n";
+    }
+    return read_tree(std::move(tree), whole, name);
+}
 
-Job read_job(const std::filesystem::path& file) {
-    return parse_job(read_toml_file(file, "job", "'feldspar new uniaxial-compression' prints a job to start from"), file.string());
+Job read_job(const std::filesystem::path& file, std::span<const std::string> settings) {
+    return parse_job(read_toml_file(file, "job", "'feldspar new uniaxial-compression' prints a job to start from"), file.string(), settings);
 }
 
 }  // namespace feldspar

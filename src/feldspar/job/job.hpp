@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,17 @@ struct ConfinedStrength {
     double sigma1_Pa = 0.0;
 };
 
+/// A value as the user has written it: "25.8 GPa", behind the key "E" of whichever table.
+struct WrittenText {
+    std::string key, text;
+};
+
 /// A whole job, in SI.
 struct Job {
     std::filesystem::path file;         ///< as given
     std::string name;                   ///< from the key `name`, else the file's stem
-    std::string text;                   ///< the file as it was read, for provenance
+    std::string text;                   ///< the file as it was read, for provenance; behind it, as comments, what was set beside the file
+    std::vector<WrittenText> written;   ///< texts with digits, in the file's order
     SpecimenSpec specimen;              ///< of all tests that have none of their own
     std::vector<Variant> variants{{}};  ///< at least one; a single one without a name if the job has no [[variant]]
     std::vector<TestSpec> tests;
@@ -59,11 +66,11 @@ struct Job {
 /// A variant's name as the beginning of a file name: "Rigid, brittle" -> "rigid-brittle".
 std::string variant_stem(const std::string& name);
 
-/// Reads and checks a job file. @throws InputError naming file, line, column, key, value and what is allowed.
-Job read_job(const std::filesystem::path& file);
+/// Reads and checks a job file. @param settings  "key=value" laid over it (set_keys.hpp). @throws InputError naming file, line, column, key, value and what is allowed.
+Job read_job(const std::filesystem::path& file, std::span<const std::string> settings = {});
 
-/// The same from text (tests and the `new` command); `name` stands in for the file in messages.
-Job parse_job(const std::string& text, const std::string& name);
+/// The same from text (standard input, tests and the `new` command); `name` stands in for the file in messages.
+Job parse_job(const std::string& text, const std::string& name, std::span<const std::string> settings = {});
 
 /// Sentences on what is allowed but may not be what was meant; none if there is nothing to say.
 std::vector<std::string> warnings(const Job& job);
@@ -82,7 +89,10 @@ void for_each_specimen(Job& job, const Change& change) {
         if (test.specimen) change(*test.specimen);
 }
 
-/// The job with every default written out, as TOML: provenance that can be run again.
+/// The job with every default written out, as TOML in SI units: what runs are known by.
 std::string resolved_toml(const Job& job);
+
+/// The same with the user's units, where a value that the user has written is the same to the last bit: provenance that can be read, and run again.
+std::string resolved_toml_in_given_units(const Job& job);
 
 }  // namespace feldspar

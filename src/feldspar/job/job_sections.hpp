@@ -14,6 +14,9 @@
 
 namespace feldspar {
 
+/// The texts of a file in which a number may stand, each with the key that it belongs to.
+std::vector<WrittenText> texts_of(const toml::table& tree);
+
 /// A whole job from its tree. @param text  as it was read, for provenance; @param name  stands in for the file in messages
 Job read_tree(toml::table tree, const std::string& text, const std::string& name);
 

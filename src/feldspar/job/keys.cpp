@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "feldspar/job/format.hpp"
 #include "feldspar/job/presets.hpp"
 #include "feldspar/job/words.hpp"
 #include "feldspar/lab/experiment.hpp"
@@ -133,6 +134,7 @@ std::string usual_plate_mu() {
 std::vector<JobKey> file_keys() {
     return {
         {"name", text("up to 100 letters, digits, '-', '_' and '.', not beginning with '.'"), words("the file's name"), "names the directory of the results"},
+        {"format", integer(1, job_format), usual(job_format), "version of the format of the file (docs/formats.md), for jobs that are to be read by later versions of the program"},
         {"specimen", table("specimen"), needed, "the specimen"},
         {"model", table("model"), words("its defaults"), "how grains and contacts are modelled"},
         {"material", table("material"), must, "the rock"},

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/base/utf8.hpp"
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/methods/method.hpp"
 
@@ -13,14 +14,12 @@ namespace {
 constexpr std::size_t largest_variant_count = 50;
 constexpr std::size_t longest_name = 60;
 
-bool is_plain(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
+bool is_plain(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80U; }   // letters of other scripts have no byte below
 
 std::string read_variant_name(const JobTable& table) {
     const std::string given = table.text("name");
     if (!table.sound({"name"})) return given;
-    const bool fits = std::all_of(given.begin(), given.end(), [](char c) {
-        return is_plain(c) || std::string_view(" ,.-_%()+=").find(c) != std::string_view::npos;
-    });
+    const bool fits = made_of_letters_and(given, " ,.-_%()+=");
     if (!fits || given.size() > longest_name || variant_stem(given).empty() || given.front() == ' ' || given.back() == ' ')
         table.check({}, [&] {
             table.fail("name", shown(*table.find("name")) + " cannot name a variant", table.allowed("name"));

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <limits>
 
+#include "feldspar/job/set_keys.hpp"
+
 namespace feldspar {
 namespace {
 
@@ -55,6 +57,7 @@ std::string type_words(const toml::node& node) {
 }
 
 InputPlace place_of(const toml::source_region& region, const std::string& file, std::string key) {
+    if (is_setting(region)) return {*region.path, 0, 0, std::move(key)};
     return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), std::move(key)};
 }
 

@@ -23,10 +23,10 @@ void keep(Archive& archive, StepSettings& settings) {
 template <class Archive>
 void keep_course(Archive& archive, TestResult& result) {
     auto& [variant, test, model, contact, grain, rock, texture, numerics, seed, specimen,   // of the setup
-           history, cracks, snapshots, stages, gauges, length, section, energy_at_end, energy_residual, evidence, properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages,
+           history, cracks, snapshots, grain_contacts, stages, gauges, length, section, energy_at_end, energy_residual, evidence, properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages,
            preparation_steps, wall, ms_per_step, threads, shape_fallbacks, angular_momentum_loss, vanished_compressions, new_contacts, travel_steps, travel_time, stable_omega2,
            stable_limit] = result;
-    archive(history, cracks, snapshots, stages, gauges, length, section, energy_at_end, energy_residual, evidence, properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages,
+    archive(history, cracks, snapshots, grain_contacts, stages, gauges, length, section, energy_at_end, energy_residual, evidence, properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages,
             preparation_steps, wall, ms_per_step, threads, shape_fallbacks, angular_momentum_loss, vanished_compressions, new_contacts, travel_steps, travel_time, stable_omega2,
             stable_limit);
 }

@@ -168,7 +168,7 @@ void Recorder::collect_cracks() {
 }
 
 Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& row) const {
-    Fields f{label, row, e_.assembly.nodes.displacement, {}, {}, {}, static_cast<int>(result_.cracks.size())};
+    Fields f{label, row, e_.assembly.nodes.displacement, {}, {}, {}, {}, {}, {}, static_cast<int>(result_.cracks.size())};
     if (e_.assembly.triangles.empty()) f.grain_stress = grain_stresses(e_.assembly, *result_.specimen);
     f.damage.reserve(e_.assembly.points.size());
     f.opening.reserve(e_.assembly.points.size());
@@ -179,7 +179,32 @@ Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& ro
     if (!e_.assembly.dilations.empty())
         for (const Contact& contact : e_.assembly.contacts)
             for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) f.opening[p] += e_.assembly.dilated_m(contact, p);
+    for (const Contact& contact : e_.assembly.contacts) {
+        if (!joins_grains(contact)) continue;
+        double damage = 0.0, normal = 0.0, shear = 0.0;
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+            const BondState bond = e_.assembly.bond(p);
+            damage = std::max(damage, bond.damage);
+            normal += bond.Fn_N;
+            shear += bond.Fs_N;
+        }
+        f.contact_damage.push_back(static_cast<float>(damage));
+        f.contact_normal.push_back(static_cast<float>(normal));
+        f.contact_shear.push_back(static_cast<float>(shear));
+    }
     return f;
+}
+
+// New contacts come behind those of the initial assembly, which stay in the list when they are dropped.
+bool Recorder::joins_grains(const Contact& contact) const { return contact.material == between_grains && !contact.plate && !contact.new_contact; }
+
+void Recorder::name_grain_contacts() {
+    for (std::size_t c = 0; c < e_.assembly.contacts.size(); ++c) {
+        const Contact& contact = e_.assembly.contacts[c];
+        if (!joins_grains(contact)) continue;
+        const ContactOrigin& origin = e_.assembly.origins[c];
+        result_.grain_contacts.push_back({e_.assembly.bodies[contact.a.body].grain, e_.assembly.bodies[contact.b.body].grain, origin.from, origin.to});
+    }
 }
 
 void Recorder::keep_snapshots(const HistoryRow& row) {
@@ -239,11 +264,15 @@ Snapshot Recorder::complete(const Fields& f) const {
     }
     s.cracks = f.cracks;
     for (int c = 0; c < f.cracks; ++c) s.crack_opening_m.push_back(f.opening[now_.crack_points[c]]);
+    s.contact_damage = f.contact_damage;
+    s.contact_normal_N = f.contact_normal;
+    s.contact_shear_N = f.contact_shear;
     return s;
 }
 
 void Recorder::finish() {
     if (result_.history.empty()) return;
+    name_grain_contacts();
     std::vector<Fields> all;
     for (const Kept& one : {now_.start, now_.first_crack, now_.peak})
         if (one) all.push_back(*one);

@@ -45,12 +45,15 @@ private:
         std::vector<Mat2> grain_stress;   // a grain, unless grains have triangles of their own
         std::vector<float> damage;     // a contact point
         std::vector<double> opening;   // a contact point
+        std::vector<float> contact_damage, contact_normal, contact_shear;   // a contact that bonded two grains before the test
         int cracks = 0;
     };
     HistoryRow present(Phase phase);
     Fields fields(const std::string& label, const HistoryRow& row) const;
     Snapshot complete(const Fields& fields) const;
     void collect_cracks();
+    bool joins_grains(const Contact& contact) const;
+    void name_grain_contacts();
     void keep_snapshots(const HistoryRow& row);
     int strength_sign() const { return e_.direction < 0.0 ? -1 : 1; }
 

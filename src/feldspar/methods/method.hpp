@@ -192,6 +192,11 @@ std::span<const MethodId> test_methods();
 /// The method that files call so; none if there is no such method.
 std::optional<MethodId> find_method(std::string_view name);
 
+/// The same by its name or by the short name of the strength that it gives, such as UCS, DTS or BTS, in capitals or not: what people type on a command line.
+std::optional<MethodId> find_method_called(std::string_view word);
+/// All short names, in the order of the methods.
+std::vector<std::string_view> short_method_names();
+
 /// The method that measures the strength of this name ("UCS"), which must exist.
 MethodId method_of_strength(std::string_view name);
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "feldspar/methods/method.hpp"
 
@@ -46,6 +47,21 @@ std::optional<MethodId> find_method(std::string_view name) {
     const std::span<const MethodId> all = test_methods();
     const auto found = std::ranges::find_if(all, [&](MethodId id) { return name == id.definition().name; });
     return found == all.end() ? std::nullopt : std::optional(*found);
+}
+
+std::vector<std::string_view> short_method_names() {
+    std::vector<std::string_view> names;
+    for (const MethodId id : test_methods())
+        if (const std::string_view strength = id.definition().strength.name; !strength.empty()) names.push_back(strength);
+    return names;
+}
+
+std::optional<MethodId> find_method_called(std::string_view word) {
+    if (const auto found = find_method(word)) return found;
+    const auto capital = [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; };
+    const auto same = [&](std::string_view name) { return std::ranges::equal(word, name, [&](char a, char b) { return capital(a) == capital(b); }); };
+    const auto found = std::ranges::find_if(test_methods(), [&](MethodId id) { return !word.empty() && same(id.definition().strength.name); });
+    return found == test_methods().end() ? std::nullopt : std::optional(*found);
 }
 
 MethodId method_of_strength(std::string_view name) {

@@ -94,6 +94,15 @@ struct Snapshot {
     std::vector<float> damage;               ///< a triangle: largest damage of the contact points on its grain edge, 0 ... 1
     int cracks = 0;                          ///< the first so many of TestResult::cracks exist at this moment
     std::vector<double> crack_opening_m;     ///< one for each of these cracks; > 0 open
+    std::vector<float> contact_damage;       ///< one for each of TestResult::grain_contacts: the largest of its points, 0 ... 1
+    std::vector<float> contact_normal_N;     ///< the same: sum over its points, > 0 compression
+    std::vector<float> contact_shear_N;      ///< the same: on grain b, along the normal turned by a quarter to the left
+};
+
+/// Where two grains were bonded before the test.
+struct ContactPlace {
+    int grain_a = 0, grain_b = 0;
+    Vec2 from, to;   ///< m, undeformed: the part of the grain edge that the contact stands for
 };
 
 /// Evidence that the run was quasi-static, from half the peak to the peak unless said, and the verdict in words.
@@ -253,6 +262,7 @@ struct TestResult {
     std::vector<HistoryRow> history;
     std::vector<Crack> cracks;
     std::vector<Snapshot> snapshots;
+    std::vector<ContactPlace> grain_contacts;   ///< of the initial assembly, for the fields of snapshots; empty without snapshots
     std::vector<StageRecord> stages;      ///< of a test that has stages, in order
     std::vector<GaugeSpec> gauges;        ///< that the rows of the history have, beside those of the strain in the middle
     double length_m = std::numeric_limits<double>::quiet_NaN();     ///< strain = loading motion / length

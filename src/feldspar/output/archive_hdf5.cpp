@@ -3,7 +3,6 @@
 // The file is built in memory (the library's core driver) and handed to the run directory as bytes. Writing straight to disk
 // was rejected: after a failed flush HDF5 1.10 keeps the file open and complains again when the program ends.
 #include <fmt/format.h>
-#include <hdf5.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -14,6 +13,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/event_columns.hpp"
+#include "feldspar/output/hdf5_handles.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -21,90 +21,6 @@
 namespace feldspar {
 
 namespace {
-
-/// The first description on HDF5's error stack: the cause.
-std::string hdf5_reason() {
-    std::string text = "HDF5 failed";
-    H5Ewalk2(
-        H5E_DEFAULT, H5E_WALK_UPWARD,
-        [](unsigned number, const H5E_error2_t* error, void* into) -> herr_t {
-            if (number == 0 && error->desc != nullptr) *static_cast<std::string*>(into) = error->desc;
-            return 0;
-        },
-        &text);
-    return text;
-}
-
-/// Whether a failed call found too little memory.
-bool memory_was_missing() {
-    bool missing = false;
-    H5Ewalk2(
-        H5E_DEFAULT, H5E_WALK_UPWARD,
-        [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
-            const std::string_view words = error->desc != nullptr ? error->desc : "";
-            if (error->min_num == H5E_CANTALLOC || error->min_num == H5E_NOSPACE || words.find("alloc") != words.npos) *static_cast<bool*>(into) = true;
-            return 0;
-        },
-        &missing);
-    return missing;
-}
-
-/// @throws std::bad_alloc or OutputError if an HDF5 call failed (they all answer with a negative number).
-template <class Result>
-Result require(Result result) {
-    if (result < 0 && memory_was_missing()) throw std::bad_alloc();
-    if (result < 0) throw OutputError(hdf5_reason());
-    return result;
-}
-
-/// An HDF5 identifier that closes itself.
-class Handle {
-public:
-    Handle(hid_t id, herr_t (*close)(hid_t)) : id_(require(id)), close_(close) {}
-    Handle(const Handle&) = delete;
-    Handle& operator=(const Handle&) = delete;
-    ~Handle() { close_(id_); }
-    operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): it stands for the identifier
-
-private:
-    hid_t id_;
-    herr_t (*close_)(hid_t);
-};
-
-/// Keeps HDF5 from printing while it lives.
-class Silence {
-public:
-    Silence() {
-        H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
-        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    }
-    Silence(const Silence&) = delete;
-    Silence& operator=(const Silence&) = delete;
-    ~Silence() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
-
-private:
-    H5E_auto2_t print_ = nullptr;
-    void* data_ = nullptr;
-};
-
-template <class Number>
-hid_t type_of();
-template <>
-hid_t type_of<double>() {
-    return H5T_NATIVE_DOUBLE;
-}
-template <>
-hid_t type_of<float>() {
-    return H5T_NATIVE_FLOAT;
-}
-template <>
-hid_t type_of<int>() {
-    return H5T_NATIVE_INT;
-}
-template <>
-hid_t type_of<std::int64_t>() {
-    return H5T_NATIVE_INT64;
-}
 
 Handle make_group(hid_t parent, const std::string& name) {
     return {H5Gcreate2(parent, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose};
@@ -174,6 +90,8 @@ std::vector<Number> each(const std::vector<Crack>& cracks, Pick pick) {
 }
 
 void put_provenance(hid_t root, const TestResult& result, const Job& job, const Provenance& provenance) {
+    set_text(root, "format", "feldspar archive of a test");
+    set_number(root, "format_version", archive_version);
     set_text(root, "program", "feldspar");
     set_text(root, "version", provenance.version);
     set_text(root, "commit", provenance.commit);
@@ -278,6 +196,26 @@ void put_mesh(hid_t root, const GrainMesh& mesh, const std::vector<int>& phase_o
     if (!phase_of_grain.empty()) put(group, "mineral", phase_of_grain, 1, "1", "of each grain, in the order of [[material.phase]]");
 }
 
+void put_contacts(hid_t root, const std::vector<ContactPlace>& contacts) {
+    const Handle group = make_group(root, "contacts");
+    const auto grains = [&](int ContactPlace::*grain) {
+        std::vector<int> list;
+        list.reserve(contacts.size());
+        for (const ContactPlace& contact : contacts) list.push_back(contact.*grain);
+        return list;
+    };
+    const auto ends = [&](Vec2 ContactPlace::*end) {
+        std::vector<Vec2> list;
+        list.reserve(contacts.size());
+        for (const ContactPlace& contact : contacts) list.push_back(contact.*end);
+        return flat(list);
+    };
+    put(group, "grain_a", grains(&ContactPlace::grain_a), 1, "1", "grain on one side");
+    put(group, "grain_b", grains(&ContactPlace::grain_b), 1, "1", "grain on the other side");
+    put(group, "from", ends(&ContactPlace::from), 2, "m", "start of the contact's share of the edge, undeformed");
+    put(group, "to", ends(&ContactPlace::to), 2, "m", "its end");
+}
+
 void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
     const Handle all = make_group(root, "snapshots");
     for (std::size_t n = 0; n < snapshots.size(); ++n) {
@@ -295,6 +233,9 @@ void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
         put(group, "damage", snapshot.damage, 1, "1", "largest damage on the grain edge of each triangle, 0 intact, 1 broken");
         put(group, "crack_opening", snapshot.crack_opening_m, 1, "m",
             "of the first cracks of /cracks, in their order; positive is open");
+        put(group, "contact_damage", snapshot.contact_damage, 1, "1", "of each of /contacts, 0 intact, 1 broken: the largest of its points");
+        put(group, "contact_normal_force", snapshot.contact_normal_N, 1, "N", "of each of /contacts, compression positive");
+        put(group, "contact_shear_force", snapshot.contact_shear_N, 1, "N", "of each of /contacts: on grain_b, along the normal turned by a quarter to the left");
     }
 }
 
@@ -302,7 +243,7 @@ void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
 /// @throws std::bad_alloc
 void require_memory(const TestResult& result) {
     std::size_t numbers = 64 * result.history.size() + 16 * result.cracks.size();
-    for (const Snapshot& snapshot : result.snapshots) numbers += 2 * snapshot.displacement_m.size() + 4 * snapshot.stress_xx_Pa.size() + snapshot.crack_opening_m.size();
+    for (const Snapshot& snapshot : result.snapshots) numbers += 2 * snapshot.displacement_m.size() + 4 * snapshot.stress_xx_Pa.size() + snapshot.crack_opening_m.size() + 2 * snapshot.contact_damage.size();
     if (result.specimen) numbers += 2 * result.specimen->mesh.nodes.size() + 4 * result.specimen->mesh.triangles.size();
     const std::size_t bytes = 3 * numbers * sizeof(double) + (std::size_t{24} << 20);   // the file as it grows, its copy, and what the library keeps
     ::operator delete(::operator new(bytes));   // called by name: a new-expression might be left out by the compiler
@@ -320,6 +261,7 @@ std::string archive_bytes(const TestResult& result, const Job& job, const Proven
         put_cracks(root, result.cracks);
         put_events(root, result);
         if (result.specimen) put_mesh(root, result.specimen->mesh, result.texture.phase_of_grain);
+        put_contacts(root, result.grain_contacts);
         put_snapshots(root, result.snapshots);
     }
     require(H5Fflush(file, H5F_SCOPE_LOCAL));
@@ -331,12 +273,21 @@ std::string archive_bytes(const TestResult& result, const Job& job, const Proven
 
 }  // namespace
 
+std::mutex& hdf5_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+void hdf5_closes_nothing() {
+    static const bool done = H5dont_atexit() >= 0;
+    (void)done;
+}
+
 void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance) {
     const std::string file = test_stem(result) + ".h5";
     std::string bytes;
-    // What the library would do at the end is to write open files. There are none on disk; and after a failed call it can crash there.
-    static const bool closes_nothing = H5dont_atexit() >= 0;
-    (void)closes_nothing;
+    const std::lock_guard alone(hdf5_mutex());
+    hdf5_closes_nothing();
     require_memory(result);
     try {
         bytes = archive_bytes(result, job, provenance);

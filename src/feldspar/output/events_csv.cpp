@@ -35,7 +35,7 @@ std::span<const EventColumn> event_columns() {
 void write_events_csv(const RunDirectory& directory, const TestResult& result) {
     const AcousticEmission& emission = result.emission;
     if (emission.events.empty()) return;
-    std::string text = fmt::format("# acoustic events of {}: cracks within {:.6g} m and {:.6g} steps of each other (P64)\n# signs: {}\n", test_stem(result),
+    std::string text = fmt::format("# acoustic events of {}: cracks within {:.6g} m and {:.6g} steps of each other (P64)\n# format: feldspar events 1\n# signs: {}\n", test_stem(result),
                                    emission.radius_m, emission.window_steps, sign_convention);
     append_meanings(text, event_columns());
     append_csv(text, event_columns(), emission.events);

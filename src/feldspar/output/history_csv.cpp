@@ -22,7 +22,7 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     fmt::format_to(line, "# history of {}, seed {}", test_name(result.test), result.seed);
     if (tells_pressure(result.test)) fmt::format_to(line, ", {} {:.6g} MPa", pressure_key(method_of(result.test)), result.test.sigma3_Pa * MPa);
     if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", printable(result.variant, LineEnds::escaped));
-    fmt::format_to(line, "\n# signs: {}\n", sign_convention);
+    fmt::format_to(line, "\n# format: feldspar history 1\n# signs: {}\n", sign_convention);
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),
                    name(result.model.contact), name(result.contact.law), name(result.numerics.kind), name(result.model.plane));
     fmt::format_to(line, "# feldspar {}, commit {}\n# columns: name [unit] meaning\n", provenance.version, provenance.commit);

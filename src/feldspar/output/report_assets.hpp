@@ -15,6 +15,7 @@ extern const char* const asset_envelope_js;  ///< strength envelopes (findings/e
 extern const char* const asset_converge_js;  ///< convergence (findings/converge_files.cpp)
 extern const char* const asset_study_js;     ///< points of a study (study/study_report.cpp)
 extern const char* const asset_calibration_js;   ///< calibration (calibration/calibration_report.cpp)
+extern const char* const asset_paraview_py;   ///< by which ParaView shows a test, with marks such as {{stem}}
 extern const char* const asset_uPlot_iife_min_js;
 extern const char* const asset_uPlot_min_css;
 

@@ -81,12 +81,8 @@ void write_history_csv(const RunDirectory& directory, const TestResult& result, 
 /// events-<stem>.csv: the acoustic events of a test; no file without cracks.
 void write_events_csv(const RunDirectory& directory, const TestResult& result);
 
-/// <stem>.h5: history, cracks, acoustic events, mesh and fields at the snapshots, with provenance.
+/// <stem>.h5: history, cracks, acoustic events, mesh, contacts and fields at the snapshots, with provenance. May be called on any thread, but one archive is made after the other.
 void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance);
-
-/// <stem>.pvd with <stem>-vtu/*.vtu: triangles with stress and damage, cracks as lines with mode, time and opening. The snapshots are
-/// compressed side by side on `threads`.
-void write_vtu(const RunDirectory& directory, const TestResult& result, int threads = 1);
 
 /// summary.json: rewritten after each test, so that an interrupted run leaves what it had.
 void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,

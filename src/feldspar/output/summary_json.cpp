@@ -50,7 +50,7 @@ Json files_json(const RunDirectory& directory, const std::string& stem) {
     };
     add("history", "history-" + stem + ".csv");
     add("archive", stem + ".h5");
-    add("paraview", stem + ".pvd");
+    add("paraview", "paraview/" + stem + ".pvd");
     add("events", "events-" + stem + ".csv");
     return files;
 }
@@ -335,6 +335,8 @@ Json variants_json(const Job& job, std::span<const TestResult> results) {
 void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
                    const Provenance& provenance, bool complete, std::span<const FailedTest> failed) {
     Json summary;
+    summary["format"] = "feldspar summary";
+    summary["format_version"] = 1;
     summary["version"] = provenance.version;
     summary["commit"] = provenance.commit;
     summary["complete"] = complete;

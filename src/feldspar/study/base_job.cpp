@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "feldspar/base/utf8.hpp"
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/methods/method.hpp"
 
@@ -145,9 +146,7 @@ toml::table read_piece(const TableReader& table, std::string_view key) {
 
 std::string read_directory_name(const TableReader& table, std::string_view key, const std::string& fallback) {
     const std::string name = table.text(key, fallback);
-    const bool fits = !name.empty() && name.size() <= 100 && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
-    });
+    const bool fits = !name.empty() && name.size() <= 100 && name.front() != '.' && made_of_letters_and(name, "-_.");
     if (!fits) {
         table.check({key}, [&] { table.fail(key, "'" + name + "' cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'"); });
         return fallback;

@@ -50,7 +50,6 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
     directory.write_text("job.toml", resolved_toml(run.job));
     if (keep != Keep::numbers) write_history_csv(directory, result, provenance);
     if (keep == Keep::all) write_events_csv(directory, result);
-    if (keep == Keep::all) write_vtu(directory, result, control.threads);
     return result;
 }
 

@@ -27,25 +27,27 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// Bytes that the job will leave, roughly: fields at the snapshots in two formats, histories and the report.
-double expected_bytes(const std::vector<PlannedRun>& runs) {
+constexpr double kBytesOfAGrain = 350.0;   // at each snapshot of an archive
+
+// Bytes that the job will leave, roughly: fields at the snapshots, histories and the report.
+double expected_bytes(const std::vector<PlannedRun>& runs, Keep keep) {
     double bytes = 1e6;
-    for (const PlannedRun& run : runs) bytes += 1e6 + 500.0 * grain_count(specimen_of(run)) * (run.test->snapshots + 4);
+    for (const PlannedRun& run : runs) bytes += 1e6 + (keep == Keep::all ? kBytesOfAGrain * grain_count(specimen_of(run)) * (run.test->snapshots + 4) : 0.0);
     return bytes;
 }
 
-void check_space(const std::optional<std::string>& out, const std::vector<PlannedRun>& runs) {
+void check_space(const std::optional<std::string>& out, const std::vector<PlannedRun>& runs, Keep keep) {
     std::error_code error;
     fs::path place = fs::absolute(out ? fs::path(*out) : fs::path("results"), error);
     while (!fs::exists(place, error) && place.has_relative_path()) place = place.parent_path();
     const fs::space_info space = fs::space(place, error);
     if (error || space.capacity == 0) return;  // a file system that does not tell is not full
-    const double wanted = expected_bytes(runs);
+    const double wanted = expected_bytes(runs, keep);
     if (static_cast<double>(space.available) < wanted)
         throw InputError({{}, 0, 0, "--out"},
                          fmt::format("the results need about {:.0f} MB, but the disk of '{}' has only {:.0f} MB free",
                                      wanted / 1e6, place.string(), static_cast<double>(space.available) / 1e6),
-                         "a directory on a disk with more space, or fewer snapshots");
+                         "a directory on a disk with more space, fewer snapshots, or --keep histories");
 }
 
 // The runs of a job with their packings, all of which stay until the job is over.
@@ -70,7 +72,7 @@ public:
         const auto warn = [&](const std::vector<std::string>& warnings) {
             for (const std::string& warning : warnings) {
                 if (std::find(told.begin(), told.end(), warning) != told.end()) continue;
-                tell_.note("warning: " + warning);
+                tell_.warn("warning: " + warning);
                 told.push_back(warning);
             }
         };
@@ -143,7 +145,7 @@ public:
           directory_(found.unfinished ? RunDirectory::open(*found.unfinished) : RunDirectory::create(control.out, job.name)),
           lock_(found.unfinished ? std::move(*found.lock) : begin_unfinished(directory_, job)) {
         directory_.write_text("job.toml", job_.text);
-        directory_.write_text("job-resolved.toml", resolved_toml(job_));
+        directory_.write_text("job-resolved.toml", resolved_toml_in_given_units(job_));
         if (!found.unfinished) {
             tell_.note(fmt::format("results go to {}", directory_.path().string()));
             return;
@@ -167,7 +169,7 @@ public:
         const std::shared_ptr<const Specimen> specimen = runs_.specimen(run);
         const bool given = specimen->spec.given_cells.given();   // no packing makes these cells again
         const std::string packing = given ? "cells" + packing_stem(run).substr(std::string_view("packing").size()) + ".tess" : packing_stem(run) + ".txt";
-        if (packings_.insert(packing).second) {
+        if (control_.keep == Keep::all && packings_.insert(packing).second) {
             if (given) directory_.write_text(packing, cells_as_text(*specimen, CellFormat::tess));
             else directory_.write(packing, [&](const fs::path& file) { write_packing(*specimen, file); });
         }
@@ -177,13 +179,13 @@ public:
                                         [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
             RunControl own_control = run_control;
             own_control.keeper = &checkpoints;
-            own_control.failed = [&](const TestResult& record) { write_record(record, *run_control.more_threads); };
+            own_control.failed = [&](const TestResult& record) { write_failed(run, record); };
             const TestSetup setup = setup_of(run, specimen);
             own_control.device = opener_for(setup, control_.device, [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
             TestResult result = run_test(setup, own_control);
             result.variant = run.variant->name;
             if (result.history.empty()) return result;   // interrupted before the first row
-            write_record(result, *run_control.more_threads);
+            write_record(result);
             if (result.interrupted) return result;
             try {
                 write_checkpoint(directory_, kept_as(run, ".result"), owner, [&](const StatePut& put) { keep_result(result, put); });
@@ -196,7 +198,7 @@ public:
     }
 
     void beat() override {
-        for (const std::string& line : notes_.take()) tell_.note(line);
+        for (const std::string& line : notes_.take()) tell_.warn(line);
     }
 
     void progress(std::size_t i, const TestProgress& state) override {
@@ -205,12 +207,13 @@ public:
 
     void ended(std::size_t i) override { tell_.ended(number_of(i)); }
 
-    // Writes what only this thread may write: the HDF5 library is not made for several, and the overview holds all tests.
+    // Writes what holds all tests, and the archive, of which only one is made at a time.
     void finished(std::size_t i, TestResult ended) override {
         beat();
         tell_.finished(numbered_label(i), ended);
         if (ended.history.empty()) return;
-        write_hdf5(directory_, add(i, std::move(ended)), job_, control_.provenance);
+        const TestResult& result = add(i, std::move(ended));
+        if (control_.keep == Keep::all) write_hdf5(directory_, result, job_, control_.provenance);
         if (results_.size() < runs_.count()) write_overview(false, false);
     }
 
@@ -226,7 +229,7 @@ public:
         } catch (...) {
             reasons_[i] = reason_of(error);
         }
-        tell_.note(fmt::format("{}: failed: {}", numbered_label(i), reasons_[i]));
+        tell_.warn(fmt::format("{}: failed: {}", numbered_label(i), reasons_[i]));
         if (results_.size() + reasons_.size() < runs_.count()) write_overview(false, false);
     }
 
@@ -249,10 +252,18 @@ public:
 
 private:
     // What a test's own thread writes.
-    void write_record(const TestResult& result, int threads) const {
+    void write_record(const TestResult& result) const {
+        if (control_.keep == Keep::numbers) return;
         write_history_csv(directory_, result, control_.provenance);
         write_events_csv(directory_, result);
-        write_vtu(directory_, result, threads);
+    }
+
+    // What there is of a test whose motion became unstable: it never comes to finished().
+    void write_failed(const PlannedRun& run, const TestResult& record) const {
+        TestResult result = record;
+        result.variant = run.variant->name;
+        write_record(result);
+        if (control_.keep == Keep::all) write_hdf5(directory_, result, job_, control_.provenance);
     }
 
     // Name of a file that is kept of a run until the job is complete.
@@ -274,9 +285,10 @@ private:
             result.variant = run.variant->name;
             found_.insert(i);
             const TestResult& here = add(i, std::move(result));
-            if (!fs::exists(directory_.path() / (test_stem(here) + ".h5"))) write_hdf5(directory_, here, job_, control_.provenance);
+            if (!fs::exists(directory_.path() / ("history-" + test_stem(here) + ".csv"))) write_record(here);   // it was begun with another `keep`
+            if (control_.keep == Keep::all && !fs::exists(directory_.path() / (test_stem(here) + ".h5"))) write_hdf5(directory_, here, job_, control_.provenance);
         } catch (const StateError& error) {
-            tell_.note(fmt::format("{}: what it had left is not used, and it is made again: {}", numbered_label(i), error.what()));
+            tell_.warn(fmt::format("{}: what it had left is not used, and it is made again: {}", numbered_label(i), error.what()));
         }
     }
 
@@ -328,8 +340,12 @@ private:
 JobOutcome run_job(const Job& job, const JobControl& control) {
     PreparedRuns runs(job, control);
     FoundPlace found = find_place(control.out, job, control.fresh);
+    if (control.go_on && !found.unfinished) {
+        const std::string place = control.out ? "'" + *control.out + "'" : "'results/" + job.name + "-<n>'";
+        throw InputError({{}, 0, 0, "--continue"}, fmt::format("there is no unfinished run of this job in {}", place), "the directory of a run of the same job that was ended, or the command without --continue");
+    }
     if (!found.unfinished) RunDirectory::check(control.out, job.name);
-    check_space(control.out, runs.all());
+    check_space(control.out, runs.all(), control.keep);
     runs.prepare();
     DirectorySink sink(job, runs, control, std::move(found));
     try {

@@ -12,6 +12,7 @@
 #include "feldspar/output/results.hpp"
 #include "feldspar/study/device_use.hpp"
 #include "feldspar/study/planned_runs.hpp"
+#include "feldspar/study/study.hpp"
 
 namespace feldspar {
 
@@ -26,6 +27,8 @@ public:
     virtual void making(const std::string& packing, const SpecimenProgress& progress) = 0;
     /// Something that the user should read.
     virtual void note(const std::string& line) = 0;
+    /// The same of something that went wrong, or may have been meant otherwise.
+    virtual void warn(const std::string& line) { note(line); }
     /// Test `number` of `count` (from 1 on) runs; its label is "biaxial at 4 MPa, seed 1".
     virtual void progress(int number, int count, const std::string& label, const TestProgress& state) = 0;
     /// Test `number` no longer runs.
@@ -43,6 +46,8 @@ struct JobControl {
     int threads = 1;                         ///< of the whole program
     std::optional<std::string> out;          ///< the directory, which must not exist, or have an unfinished run of the same job; else results/<job name>-<n>
     bool fresh = false;                      ///< a new directory, even if there is an unfinished run of the same job
+    bool go_on = false;                      ///< only an unfinished run of the same job is gone on with; InputError if there is none
+    Keep keep = Keep::all;                   ///< numbers: summary, report and jobs; histories: also histories and events; all: also packings and archives
     CheckpointSettings checkpoints;
     DeviceUse device;                        ///< where the steps are made
     Provenance provenance;

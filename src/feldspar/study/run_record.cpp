@@ -32,6 +32,8 @@ RunRecord record_for(const Run& run, const Provenance& provenance) {
     return record;
 }
 
+constexpr const char* record_format = "feldspar run 1";
+
 Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 // Of all that stands before it.
@@ -141,6 +143,7 @@ std::string to_json(const RunRecord& record) {
         if (const auto found = record.numbers.find(column); found != record.numbers.end()) json["numbers"][column] = number_json(found->second);
     json["texts"] = record.texts;
     json["job"] = record.job;
+    json["format"] = record_format;
     json["checksum"] = checksum_of(json);
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -155,6 +158,8 @@ RunRecord read_record(const std::filesystem::path& file) {
             json.erase("checksum");
             if (expected != checksum_of(json)) throw InputError({file.string(), 0, 0, {}}, "is damaged: it is not what was written");
         }
+        if (json.value("format", record_format) != record_format)
+            throw InputError({file.string(), 0, 0, "format"}, "'" + json.at("format").get<std::string>() + "' was written by a later version of this program", record_format);
         RunRecord record;
         record.id = json.at("id");
         const std::string state = json.at("state");

@@ -54,7 +54,7 @@ std::vector<std::string> properties_of(std::span<const PointResults> points) {
     return ordered;
 }
 
-std::string study_text(const Study& study, std::span<const PointResults> points) {
+std::string study_text(const Study& study, std::span<const PointResults> points, std::size_t columns) {
     std::vector<std::string> properties = properties_of(points);
     std::erase_if(properties, [](const std::string& name) { return std::find(main_properties.begin(), main_properties.end(), name) == main_properties.end(); });
     std::vector<Row> rows(1, study.axes);
@@ -72,7 +72,7 @@ std::string study_text(const Study& study, std::span<const PointResults> points)
         if (point.missing > 0) runs += fmt::format(", {} missing", point.missing);
         row.push_back(runs);
     }
-    return aligned(rows, study.axes.size());
+    return aligned(rows, study.axes.size(), columns, std::max<std::size_t>(1, study.axes.size()));
 }
 
 std::string points_csv(const Study& study, std::span<const PointResults> points) {

@@ -12,8 +12,8 @@ namespace feldspar {
 /// Properties that any point has, in the order of reports; keys of PropertySummary.
 std::vector<std::string> properties_of(std::span<const PointResults> points);
 
-/// The main properties of each point for a terminal, mean +- half of the 95 % interval, user units.
-std::string study_text(const Study& study, std::span<const PointResults> points);
+/// The main properties of each point for a terminal, mean +- half of the 95 % interval, user units. @param columns  of the terminal; 0: of none
+std::string study_text(const Study& study, std::span<const PointResults> points, std::size_t columns = 0);
 
 /// CSV: a row a point; the axes, then for each property mean, bounds of the 95 % interval and number of packings, user units, empty where not defined.
 std::string points_csv(const Study& study, std::span<const PointResults> points);

@@ -108,6 +108,12 @@ inline TestResult make_result(MethodId kind = methods::uniaxial_compression, std
     };
     crack(0, 1, {1e-3, 0.25e-3}, {1e-3, 0.75e-3}, CrackMode::tensile, 11);
     crack(0, nx, {0.0, 1e-3}, {0.5e-3, 1e-3}, CrackMode::shear, 16);
+    for (int j = 0; j < ny; ++j)
+        for (int i = 0; i < nx; ++i) {
+            const double x = (i + 1) * 1e-3, y = (j + 1) * 1e-3;
+            if (i + 1 < nx) result.grain_contacts.push_back({j * nx + i, j * nx + i + 1, {x, y - 1e-3}, {x, y}});
+            if (j + 1 < ny) result.grain_contacts.push_back({j * nx + i, (j + 1) * nx + i, {x, y}, {x - 1e-3, y}});
+        }
     const auto snapshot = [&](const char* label, int row, int cracks) {
         Snapshot s;
         s.label = label;
@@ -128,6 +134,11 @@ inline TestResult make_result(MethodId kind = methods::uniaxial_compression, std
         }
         s.cracks = cracks;
         s.crack_opening_m.assign(static_cast<std::size_t>(cracks), 1e-6);
+        for (std::size_t c = 0; c < result.grain_contacts.size(); ++c) {   // the first two are those of the cracks
+            s.contact_damage.push_back(static_cast<int>(c) < cracks ? 1.0F : 0.01F * static_cast<float>(c));
+            s.contact_normal_N.push_back(static_cast<int>(c) < cracks ? 0.0F : 10.0F * static_cast<float>(c));
+            s.contact_shear_N.push_back(static_cast<int>(c) < cracks ? 0.0F : -1.0F * static_cast<float>(c));
+        }
         result.snapshots.push_back(s);
     };
     snapshot("start", 1, 0);

@@ -8,7 +8,9 @@
 
 #include "feldspar/output/crack_geometry.hpp"
 #include "feldspar/output/history_columns.hpp"
+#include "feldspar/base/error.hpp"
 #include "feldspar/output/results.hpp"
+#include "feldspar/output/test_fields.hpp"
 #include "feldspar/output/vtu_grid.hpp"
 #include "../../temporary_folder.hpp"
 #include "synthetic_result.hpp"
@@ -103,7 +105,8 @@ TEST_F(Fields, ArchiveOfATestWithoutAnythingIsWhole) {
     TestResult empty;
     empty.seed = 1;
     EXPECT_NO_THROW(write_hdf5(directory, empty, make_job(), make_provenance()));
-    EXPECT_NO_THROW(write_vtu(directory, empty));
+    EXPECT_NO_THROW(write_paraview(directory, fields_of(empty)));
+    EXPECT_NO_THROW(write_paraview(directory, read_archive(directory.path() / "uniaxial-compression-s1.h5")));
 }
 
 /// What VTK does to a compressed array.
@@ -146,9 +149,79 @@ std::vector<Number> vtu_array(const std::string& file, const std::string& name) 
     return values;
 }
 
+TEST_F(Fields, ArchiveGivesBackWhatIsDrawn) {
+    write_hdf5(directory, result, make_job(), make_provenance());
+    const TestFields written = fields_of(result), read = read_archive(directory.path() / "uniaxial-compression-s3.h5");
+    EXPECT_EQ(read.stem, written.stem);
+    EXPECT_EQ(read.triangles, written.triangles);
+    EXPECT_EQ(read.grain, written.grain);
+    ASSERT_EQ(read.contacts.size(), written.contacts.size());
+    EXPECT_EQ(read.contacts[1].grain_b, written.contacts[1].grain_b);
+    EXPECT_EQ(read.contacts[1].to.y, written.contacts[1].to.y);
+    ASSERT_EQ(read.cracks.size(), 2U);
+    EXPECT_EQ(read.cracks[1].mode, CrackMode::shear);
+    ASSERT_EQ(read.snapshots.size(), written.snapshots.size());
+    for (std::size_t n = 0; n < read.snapshots.size(); ++n) {
+        EXPECT_EQ(read.snapshots[n].label, written.snapshots[n].label);
+        EXPECT_EQ(read.snapshots[n].step, written.snapshots[n].step);
+        EXPECT_EQ(read.snapshots[n].cracks, written.snapshots[n].cracks);
+        EXPECT_EQ(read.snapshots[n].damage, written.snapshots[n].damage);
+        EXPECT_EQ(read.snapshots[n].contact_normal_N, written.snapshots[n].contact_normal_N);
+        ASSERT_EQ(read.snapshots[n].displacement_m.size(), written.snapshots[n].displacement_m.size());
+        EXPECT_EQ(read.snapshots[n].displacement_m[6].y, written.snapshots[n].displacement_m[6].y);
+    }
+    EXPECT_EQ(read.events.size(), written.events.size());
+}
+
+// The files for ParaView are the same whether they are made of the result or of its archive.
+TEST_F(Fields, ExportOfAnArchiveHasTheBytesOfTheResult) {
+    write_hdf5(directory, result, make_job(), make_provenance());
+    const RunDirectory one = RunDirectory::create(scratch.path() / "one", "job"), other = RunDirectory::create(scratch.path() / "other", "job");
+    write_paraview(one, fields_of(result));
+    write_paraview(other, read_archive(directory.path() / "uniaxial-compression-s3.h5"), 2);
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(one.path())) {
+        if (!entry.is_regular_file() || entry.path().extension() == ".py") continue;   // which names its directory
+        const auto twin = other.path() / std::filesystem::relative(entry.path(), one.path());
+        EXPECT_EQ(read_text(entry.path()), read_text(twin)) << entry.path();
+        ++files;
+    }
+    EXPECT_EQ(files, 1 + 3 * 6);   // the collection; of each snapshot five blocks and their list
+}
+
+TEST_F(Fields, WhatIsNoArchiveIsRefused) {
+    directory.write_text("text.h5", "no archive");
+    EXPECT_THROW((void)read_archive(directory.path() / "text.h5"), InputError);
+    EXPECT_THROW((void)read_archive(directory.path() / "missing.h5"), InputError);
+    write_hdf5(directory, result, make_job(), make_provenance());
+    const std::string file = (directory.path() / "uniaxial-compression-s3.h5").string();
+    {
+        const hid_t archive = H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+        const hid_t version = H5Aopen_by_name(archive, "/", "format_version", H5P_DEFAULT, H5P_DEFAULT);
+        const int later = 99;
+        H5Awrite(version, H5T_NATIVE_INT, &later);
+        H5Aclose(version);
+        H5Fclose(archive);
+    }
+    try {
+        (void)read_archive(file);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("version 99"), std::string::npos) << error.what();
+    }
+    const std::string whole = read_text(file);
+    for (const std::size_t length : {whole.size() / 4, whole.size() / 2, whole.size() - 200}) {   // a file that was cut is refused, or read as far as it is whole
+        directory.write_text("cut.h5", whole.substr(0, length));
+        try {
+            (void)read_archive(directory.path() / "cut.h5");
+        } catch (const InputError&) {
+        }
+    }
+}
+
 TEST_F(Fields, VtuReadsBack) {
-    write_vtu(directory, result);
-    const auto folder = directory.path() / "uniaxial-compression-s3-vtu";
+    write_paraview(directory, fields_of(result));
+    const auto folder = directory.path() / "uniaxial-compression-s3";
     const std::string grains = read_text(folder / "grains-001.vtu");
     const GrainMesh& mesh = result.specimen->mesh;
     const Snapshot& snapshot = result.snapshots[1];
@@ -174,29 +247,74 @@ TEST_F(Fields, VtuReadsBack) {
     EXPECT_EQ(vtu_array<float>(cracks, "opening_m").size(), 2U);
     EXPECT_FLOAT_EQ(vtu_array<float>(cracks, "time")[0], static_cast<float>(result.cracks[0].axial_strain));
     EXPECT_EQ(vtu_array<std::uint8_t>(cracks, "types").front(), 3);
+    // the line of the first crack lies midway between the faces of grains 0 and 1, which are 1 um apart
+    const auto moved = vtu_array<float>(cracks, "displacement_m");
+    const auto faces = find_crack_faces(*result.specimen, result.cracks);
+    const auto a = face_displacement(faces[0].a, result.snapshots[2].displacement_m), b = face_displacement(faces[0].b, result.snapshots[2].displacement_m);
+    EXPECT_FLOAT_EQ(moved[0], static_cast<float>(0.5 * (a[0].x + b[0].x)));
+    EXPECT_FLOAT_EQ(moved[4], static_cast<float>(0.5 * (a[1].y + b[1].y)));
 }
 
-TEST_F(Fields, CollectionNamesEveryFileAtGrowingTimes) {
-    write_vtu(directory, result);
+TEST_F(Fields, ContactsThatAreNotBrokenHaveDamageAndForce) {
+    write_paraview(directory, fields_of(result));
+    const auto folder = directory.path() / "uniaxial-compression-s3";
+    const std::size_t contacts = result.grain_contacts.size();
+    EXPECT_EQ(vtu_array<float>(read_text(folder / "contacts-000.vtu"), "damage").size(), contacts);
+    const std::string end = read_text(folder / "contacts-002.vtu");
+    const auto damage = vtu_array<float>(end, "damage");
+    ASSERT_EQ(damage.size(), contacts - 2);   // two cracks broke one each
+    for (const float one : damage) EXPECT_LT(one, 1.0F);
+    EXPECT_EQ(vtu_array<float>(end, "normal_force_N").size(), damage.size());
+    EXPECT_EQ(vtu_array<float>(end, "shear_force_N").size(), damage.size());
+    EXPECT_EQ(vtu_array<std::int32_t>(end, "grain_a").size(), damage.size());
+}
+
+TEST_F(Fields, EdgesOfGrainsAreThoseOfTheirCells) {
+    write_paraview(directory, fields_of(result));
+    const std::string edges = read_text(directory.path() / "uniaxial-compression-s3/grain-edges-000.vtu");
+    const auto ends = vtu_array<std::int32_t>(edges, "connectivity");
+    ASSERT_EQ(ends.size(), 2 * 4 * result.specimen->cells.cells.size());
+    for (const std::int32_t node : ends) EXPECT_NE(node % 5, 4) << "the node in the middle";   // each grain has four corners, then that
+}
+
+TEST_F(Fields, CollectionNamesEveryBlockAtGrowingTimes) {
+    write_paraview(directory, fields_of(result));
     const std::string collection = read_text(directory.path() / "uniaxial-compression-s3.pvd");
     double before = -1.0;
-    int entries = 0;
-    for (std::size_t at = collection.find("<DataSet"); at != std::string::npos;
-         at = collection.find("<DataSet", at + 1), ++entries) {
-        const std::string file = value_of(collection, "file", at);
-        EXPECT_TRUE(std::filesystem::exists(directory.path() / file)) << file;
+    int entries = 0, blocks = 0;
+    for (std::size_t at = collection.find("<DataSet"); at != std::string::npos; at = collection.find("<DataSet", at + 1), ++entries) {
+        const auto file = directory.path() / value_of(collection, "file", at);
+        ASSERT_TRUE(std::filesystem::exists(file)) << file;
         const double time = std::stod(value_of(collection, "timestep", at));
-        const std::string part = value_of(collection, "part", at);
-        EXPECT_EQ(part, std::to_string(entries % 3));
-        EXPECT_TRUE(part == "0" ? time > before : time == before) << time;
+        EXPECT_GT(time, before);
         before = time;
+        const std::string list = read_text(file);
+        std::vector<std::string> names;
+        for (std::size_t block = list.find("<DataSet"); block != std::string::npos; block = list.find("<DataSet", block + 1), ++blocks) {
+            names.push_back(value_of(list, "name", block));
+            EXPECT_TRUE(std::filesystem::exists(file.parent_path() / value_of(list, "file", block))) << list;
+        }
+        EXPECT_EQ(names, (std::vector<std::string>{"grains", "grain-edges", "contacts", "cracks", "events"}));
     }
-    EXPECT_EQ(entries, 9);   // three snapshots of grains, cracks and events
+    EXPECT_EQ(entries, 3);
+    EXPECT_EQ(blocks, 15);
+    const std::string script = read_text(directory.path() / "uniaxial-compression-s3.py");
+    EXPECT_EQ(script.find("{{"), std::string::npos);
+    EXPECT_NE(script.find("STEM = \"uniaxial-compression-s3\""), std::string::npos);
+}
+
+TEST_F(Fields, WhatAnEarlierExportLeftBeyondIsRemoved) {
+    write_paraview(directory, fields_of(result));
+    result.snapshots.pop_back();
+    write_paraview(directory, fields_of(result));
+    const auto folder = directory.path() / "uniaxial-compression-s3";
+    EXPECT_TRUE(std::filesystem::exists(folder / "grains-001.vtu"));
+    for (const char* file : {"grains-002.vtu", "grain-edges-002.vtu", "contacts-002.vtu", "cracks-002.vtu", "events-002.vtu", "snapshot-002.vtm"}) EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
 }
 
 TEST_F(Fields, TimesThatDoNotGrowBecomeNumbers) {
     result.snapshots[2].axial_strain = result.snapshots[1].axial_strain;
-    write_vtu(directory, result);
+    write_paraview(directory, fields_of(result));
     const std::string collection = read_text(directory.path() / "uniaxial-compression-s3.pvd");
     EXPECT_NE(collection.find("timestep=\"2\""), std::string::npos);
     EXPECT_NE(collection.find("timestep = number of the snapshot"), std::string::npos);

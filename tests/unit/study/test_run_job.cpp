@@ -48,8 +48,10 @@ public:
 
 class RunJob : public ::testing::Test {
 protected:
-    JobOutcome run(const Job& job, int threads = 1) {
+    JobOutcome run(const Job& job, int threads = 1, Keep keep = Keep::all, bool go_on = false) {
         JobControl control;
+        control.keep = keep;
+        control.go_on = go_on;
         control.threads = threads;
         control.out = (folder_ / "results").string();
         control.provenance = collect_provenance("test", threads);
@@ -75,7 +77,7 @@ TEST_F(RunJob, LeavesEveryTestsFilesAndResultsInTheJobsOrder) {
         EXPECT_EQ(outcome.results[i].seed, 1 + i / 2);
         EXPECT_EQ(outcome.results[i].test.kind, job_.tests[i % 2].kind);
         const std::string stem = test_stem(outcome.results[i]);
-        for (const std::string& file : {"history-" + stem + ".csv", stem + ".h5", stem + ".pvd"}) EXPECT_TRUE(there(file)) << file;
+        for (const std::string& file : {"history-" + stem + ".csv", stem + ".h5"}) EXPECT_TRUE(there(file)) << file;
     }
     for (const char* file : {"job.toml", "job-resolved.toml", "packing-s1.txt", "packing-s2.txt", "summary.json", "report.html"}) EXPECT_TRUE(there(file)) << file;
     EXPECT_EQ(outcome.properties.values.at("UCS_Pa").seeds, (std::vector<std::uint64_t>{1, 2}));
@@ -86,6 +88,29 @@ TEST_F(RunJob, LeavesEveryTestsFilesAndResultsInTheJobsOrder) {
     EXPECT_EQ(listener_.over.size(), 4u);
     EXPECT_NE(std::find(listener_.results.begin(), listener_.results.end(), "4/4 direct-tension, seed 2"), listener_.results.end());
     EXPECT_TRUE(listener_.broken.empty());
+}
+
+TEST_F(RunJob, KeepsWhatIsAskedFor) {
+    job_.seeds = {1};
+    job_.tests.resize(1);
+    listener_.expected_count = 1;
+    const std::string stem = test_stem(run(job_, 1, Keep::numbers).results.front());
+    for (const char* file : {"job.toml", "job-resolved.toml", "summary.json", "report.html"}) EXPECT_TRUE(there(file)) << file;
+    for (const std::string& file : {"history-" + stem + ".csv", "events-" + stem + ".csv", stem + ".h5", std::string("packing-s1.txt")}) EXPECT_FALSE(there(file)) << file;
+    fs::remove_all(folder_ / "results");
+    (void)run(job_, 1, Keep::histories);
+    EXPECT_TRUE(there("history-" + stem + ".csv"));
+    for (const std::string& file : {stem + ".h5", std::string("packing-s1.txt")}) EXPECT_FALSE(there(file)) << file;
+}
+
+TEST_F(RunJob, GoesOnOnlyWithWhatIsThere) {
+    try {
+        (void)run(job_, 1, Keep::all, true);
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.place().key, "--continue");
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "results"));
 }
 
 TEST_F(RunJob, ASinglePackingTellsHowFarItIs) {

@@ -583,7 +583,7 @@ function writeShearEnvelope() {
 function writePattern() {
   if (!data.fields.length) return;
   page.append(h("h2", {}, "Failure pattern"), h("p", {class: "soft"},
-    "One packing of each kind of test. Drag to move, buttons or Ctrl + wheel to zoom, double click to fit. The full fields of every test are in the .h5 and .pvd files."));
+    "One packing of each kind of test. Drag to move, buttons or Ctrl + wheel to zoom, double click to fit. The full fields of every test are in the .h5 files; feldspar export makes files for ParaView of them."));
   const canvas = h("canvas", {tabindex: "0", role: "img", "aria-label": "Failure pattern"}), readout = h("div", {class: "readout"}), stage = h("div", {class: "stage"}, canvas);
   const left = h("div", {class: "card"}), right = h("div", {}), box = h("div", {class: "viewer"}, left, right);
   const moment = h("div", {class: "small"}), slider = h("input", {type: "range", min: 0, value: 0, step: 1, "aria-label": "Moment of the test"});
@@ -681,7 +681,7 @@ function writePattern() {
   left.append(moment, h("div", {class: "slider"}, play, slider, zoom), stage, readout);
   right.append(settings, curveCard, rosetteCard);
   redraw.push(() => { if (specimen) { viewer.resize(); viewer.draw(); drawRosette(rosette, specimen, viewer.snapshot); } });
-  if (typeof DecompressionStream === "undefined") left.replaceChildren(h("p", {}, "This view needs a browser of 2023 or later. The same fields are in the .pvd files."));
+  if (typeof DecompressionStream === "undefined") left.replaceChildren(h("p", {}, "This view needs a browser of 2023 or later. The same fields are in the .h5 files; feldspar export makes files for ParaView of them."));
   else open(0);
 }
 

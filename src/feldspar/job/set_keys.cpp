@@ -1,0 +1,129 @@
+#include "feldspar/job/set_keys.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "feldspar/methods/method.hpp"
+
+namespace feldspar {
+namespace {
+
+constexpr std::string_view kOption = "--set ";
+
+[[noreturn]] void refuse(const std::string& setting, const std::string& problem, const std::string& allowed = {}, const std::string& suggestion = {}) {
+    throw InputError({std::string(kOption) + "'" + setting + "'", 0, 0, {}}, problem, allowed, suggestion);
+}
+
+std::string quoted(const std::string& text) {
+    std::ostringstream stream;
+    stream << toml::value<std::string>(text);
+    return stream.str();
+}
+
+std::string trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+    return begin == std::string_view::npos ? std::string() : std::string(text.substr(begin, end - begin + 1));
+}
+
+// The tree of one setting. Its keys and values know that they come from here.
+toml::table parse_setting(const std::string& setting) {
+    // the sign behind the key: one in quotes is part of a name
+    std::size_t equals = 0;
+    for (bool inside = false; equals < setting.size() && (inside || setting[equals] != '='); ++equals)
+        if (setting[equals] == '"') inside = !inside;
+    const std::string key = trimmed(std::string_view(setting).substr(0, equals));
+    const std::string form = "key=value, such as material.contact.tau=30MPa";
+    if (equals >= setting.size()) refuse(setting, "has no '='", form);
+    const std::string value = trimmed(std::string_view(setting).substr(equals + 1));
+    if (key.empty()) refuse(setting, "has no key", form);
+    if (value.empty()) refuse(setting, "has no value", form);
+    const std::string source = std::string(kOption) + "'" + setting + "'";
+    const auto read = [&](const std::string& written) { return toml::parse(key + " = " + written, source); };
+    const auto single = [](const toml::table& tree) {   // a value with a line end could bring further keys
+        const toml::table* table = &tree;
+        while (table->size() == 1 && table->begin()->second.is_table() && !table->begin()->second.as_table()->is_inline()) table = table->begin()->second.as_table();
+        return table->size() == 1;
+    };
+    try {
+        toml::table tree = read(value);
+        const toml::node* node = &tree;
+        while (node->is_table() && !node->as_table()->empty() && !node->as_table()->is_inline()) node = &node->as_table()->begin()->second;
+        if (single(tree) && !node->is_date() && !node->is_time() && !node->is_date_time()) return tree;
+    } catch (const toml::parse_error& error) {
+        if (std::string_view("[{\"'").find(value.front()) != std::string_view::npos) refuse(setting, "syntax error: " + std::string(error.description()), form);
+    }
+    try {
+        return read(quoted(value));
+    } catch (const toml::parse_error& error) {
+        refuse(setting, "'" + key + "' is not a key: " + std::string(error.description()), form);
+    }
+}
+
+void lay(toml::table& under, const toml::table& over, const std::string& setting, const std::string& path) {
+    for (const auto& [key, value] : over) {
+        toml::node* there = under.get(key.str());
+        const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+        if (value.is_table() && !value.as_table()->is_inline() && there != nullptr) {
+            if (!there->is_table()) refuse(setting, "'" + full + "' is not a table in the job, so it has no keys");
+            lay(*there->as_table(), *value.as_table(), setting, full);
+        } else {
+            under.insert_or_assign(key, value);
+        }
+    }
+}
+
+// The keys of `over` in each table of a list; those in a table that is named as some of them, in these. @param of_name  the tables that a word names, by their numbers; nothing if it names none
+template <class OfName>
+void lay_over_list(toml::array& list, const toml::table& over, const std::string& setting, const std::string& path, const OfName& of_name) {
+    for (const auto& [key, value] : over) {
+        const std::vector<std::size_t> some = value.is_table() ? of_name(key.str()) : std::vector<std::size_t>{};
+        if (!some.empty()) {
+            for (const std::size_t i : some) lay(*list.get(i)->as_table(), *value.as_table(), setting, path + "." + std::string(key.str()));
+            continue;
+        }
+        toml::table one;
+        one.insert_or_assign(key, value);
+        for (toml::node& table : list)
+            if (table.is_table()) lay(*table.as_table(), one, setting, path);
+    }
+}
+
+std::vector<std::size_t> tables_with(const toml::array& list, std::string_view key, std::string_view word) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < list.size(); ++i)
+        if (const toml::table* table = list.get(i)->as_table(); table != nullptr && (*table)[key].value<std::string_view>() == word) found.push_back(i);
+    return found;
+}
+
+}  // namespace
+
+bool is_setting(const toml::source_region& region) { return region.path && region.path->starts_with(kOption); }
+
+void set_keys(toml::table& job, std::span<const std::string> settings) {
+    for (const std::string& setting : settings) {
+        const toml::table tree = parse_setting(setting);
+        for (const auto& [key, value] : tree) {
+            toml::node* there = job.get(key.str());
+            toml::array* list = there != nullptr ? there->as_array() : nullptr;
+            if (list == nullptr || !value.is_table()) {
+                toml::table one;
+                one.insert_or_assign(key, value);
+                lay(job, one, setting, {});
+            } else if (key.str() == "test") {
+                lay_over_list(*list, *value.as_table(), setting, "test", [&](std::string_view word) {
+                    const auto method = find_method_called(word);
+                    if (!method) return std::vector<std::size_t>{};
+                    std::vector<std::size_t> found = tables_with(*list, "kind", name(*method));
+                    if (found.empty()) refuse(setting, "the job has no test '" + std::string(name(*method)) + "'");
+                    return found;
+                });
+            } else {
+                lay_over_list(*list, *value.as_table(), setting, std::string(key.str()), [&](std::string_view word) { return tables_with(*list, "name", word); });
+            }
+        }
+    }
+}
+
+}  // namespace feldspar

@@ -1,0 +1,37 @@
+# Installs BUILD into PLACE and looks at what is there: cmake -DBUILD=... -DPLACE=... -DPART=program|consumer -P installs.cmake
+# PART consumer: an outside project (consumer/) is configured, built and run against the installed package.
+set(prefix ${PLACE}/usr)
+file(REMOVE_RECURSE ${PLACE})
+
+function(succeeds)
+    execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+    if(NOT code EQUAL 0)
+        message(FATAL_ERROR "${ARGN}: exit code ${code}\n${output}")
+    endif()
+    set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(says)
+    if(NOT output MATCHES "${ARGV0}")
+        message(FATAL_ERROR "no '${ARGV0}' in\n${output}")
+    endif()
+endfunction()
+
+if(PART STREQUAL program)
+    succeeds(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component program)
+    succeeds(${prefix}/bin/feldspar --version)
+    says("^feldspar [0-9]+\\.[0-9]+\\.[0-9]+")
+    foreach(file share/man/man1/feldspar.1.gz share/man/man1/feldspar-run.1.gz share/man/man1/feldspar-study-status.1.gz share/bash-completion/completions/feldspar
+                 share/zsh/vendor-completions/_feldspar share/fish/vendor_completions.d/feldspar.fish share/doc/feldspar/copyright share/doc/feldspar/examples/augig/short.toml)
+        if(NOT EXISTS ${prefix}/${file})
+            message(FATAL_ERROR "${file} was not installed")
+        endif()
+    endforeach()
+    succeeds(${prefix}/bin/feldspar check ${prefix}/share/doc/feldspar/examples/augig/short.toml)
+else()
+    succeeds(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component library)
+    succeeds(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${PLACE}/build -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release)
+    succeeds(${CMAKE_COMMAND} --build ${PLACE}/build)
+    succeeds(${PLACE}/build/consumer ${CMAKE_CURRENT_LIST_DIR}/../regression/small.toml)
+    says("[0-9]+ grains, [0-9]+ contacts")
+endif()
