@@ -44,7 +44,9 @@ public:
     virtual void refuse(const std::string& reason) = 0;
 };
 
-/// What the caller decides about the running itself; none of it changes a result.
+class TestObserver;
+
+/// What the caller decides about the running itself; none of it changes a result, but for an observer that gives orders.
 struct RunControl {
     int threads = 1;
     const std::atomic<int>* more_threads = nullptr;      ///< may grow while the test runs: so many threads from then on
@@ -52,6 +54,7 @@ struct RunControl {
     const std::atomic<bool>* stop = nullptr;             ///< becomes true when the user interrupts: the test ends at the next record
     std::function<void(const TestResult&)> failed;       ///< told the record of a test whose motion has become unstable, before its error; without properties; may be empty
     StateKeeper* keeper = nullptr;                       ///< if it has the state of this test, the test goes on from there
+    TestObserver* observer = nullptr;                    ///< sees the test while it loads, and may lead it (lab/observer.hpp); there is then no keeper
 };
 
 /// Everything that defines a test.
