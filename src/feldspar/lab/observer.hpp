@@ -65,6 +65,9 @@ public:
 
     /// @return what is to change. @throws what it likes: the test ends with that
     virtual TestOrders look(const TestView& view) = 0;
+
+    /// Given the body when its test is over, in whatever way: for those who still look at its arrays. Must not throw.
+    virtual void leaves(Assembly&& assembly) noexcept { (void)assembly; }
 };
 
 }  // namespace feldspar

@@ -59,11 +59,21 @@ TestResult begin_result(const TestSetup& setup) {
     return result;
 }
 
+// Hands the body on when the test is over.
+struct Leaving {
+    TestObserver* observer;
+    Assembly& assembly;
+    ~Leaving() {
+        if (observer != nullptr) observer->leaves(std::move(assembly));
+    }
+};
+
 TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeeping& keeping) {
     TestResult result = begin_result(setup);
     if (keeping.take_finished(result)) return result;
 
     Experiment e(setup, control);
+    const Leaving leaving{control.observer, e.assembly};
     result.gauges = e.gauges.specs();
     result.length_m = e.length_m;
     result.section_m2 = e.section_m2;
