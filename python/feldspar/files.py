@@ -119,7 +119,7 @@ class RunTest:
         files = self.summary.get("files", {})
         if what not in files or not (self._directory / files[what]).exists():
             raise _wrong(self._directory, f"has no {what} of {self.name}, seed {self.seed}", ", ".join(files))
-        return self._directory / files[what]
+        return self._directory / str(files[what])
 
     @property
     def history(self) -> Table:

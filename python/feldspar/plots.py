@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _core
 from .errors import InputError, MissingPackage, Mistake
@@ -39,7 +40,7 @@ def _numbers(result: Union[_core.Result, RunTest]) -> dict[str, Any]:
     return {"strength_MPa": result.summary.get("peak_stress_MPa"), **{k: v for k, v in result.summary.items() if not isinstance(v, (dict, list))}}
 
 
-def _first_at(stress: np.ndarray, value: float) -> Optional[int]:
+def _first_at(stress: NDArray[Any], value: float) -> Optional[int]:
     """The row that first reaches a stress (magnitudes), if any does."""
     reached = np.flatnonzero(stress >= value * (1.0 - 1e-9))
     return int(reached[0]) if len(reached) else None
@@ -69,7 +70,9 @@ def stress_strain(result: Union[_core.Result, RunTest], ax: Optional["Axes"] = N
     marks = (("strength_MPa", "strength", "o"), ("sigma_cd_MPa", r"$\sigma_{cd}$", "s"), ("sigma_ci_crack_volume_MPa", r"$\sigma_{ci}$", "^"), ("first_crack_MPa", "first crack", "x"))
     for key, words, marker in marks:
         value = numbers.get(key)
-        row = _first_at(rising, abs(value)) if value is not None else None
+        if value is None:
+            continue
+        row = _first_at(rising, abs(value))
         if row is not None:
             ax.plot(strain[row], sign * abs(value), marker, color=line.get_color() if key == "strength_MPa" else _GRAY, ms=6, label=f"{words} {abs(value):.4g} MPa")
     if numbers.get("E_GPa") is not None and strength is not None and abs(strength) > 0.0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping
 
-import numpy as np
+from numpy.typing import NDArray
 
 from .errors import MissingPackage
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 __all__ = ["Table"]
 
 
-class Table(Mapping[str, np.ndarray]):
+class Table(Mapping[str, NDArray[Any]]):
     """Columns by name, each a NumPy array; all have as many rows. Places have two numbers a row: shape (n, 2)."""
 
-    def __init__(self, columns: Iterable[tuple[str, str, str, np.ndarray]]) -> None:
-        self._columns: dict[str, np.ndarray] = {}
+    def __init__(self, columns: Iterable[tuple[str, str, str, NDArray[Any]]]) -> None:
+        self._columns: dict[str, NDArray[Any]] = {}
         self._units: dict[str, str] = {}
         self._meanings: dict[str, str] = {}
         for name, unit, meaning, values in columns:
@@ -26,7 +26,7 @@ class Table(Mapping[str, np.ndarray]):
             self._units[name] = unit
             self._meanings[name] = meaning
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         try:
             return self._columns[name]
         except KeyError:
@@ -59,7 +59,7 @@ class Table(Mapping[str, np.ndarray]):
         frame.attrs["units"] = {name: unit for name, unit, _ in self._flat()}
         return frame
 
-    def _flat(self) -> Iterator[tuple[str, str, np.ndarray]]:
+    def _flat(self) -> Iterator[tuple[str, str, NDArray[Any]]]:
         for name, values in self._columns.items():
             if values.ndim == 1:
                 yield name, self._units[name], values
