@@ -91,6 +91,16 @@ public:
         return std::move(job_);
     }
 
+    SpecimenSpec read_specimen_alone() {
+        const JobTable root(root_, job_table(""));
+        root.require({"specimen"});
+        const bool filled = static_cast<bool>(tree_["specimen"]["grains"]["particles_per_grain"]);
+        SpecimenSpec specimen;
+        if (root.has("specimen")) specimen = read_specimen(root, job_.file.parent_path(), filled);
+        finish();
+        return specimen;
+    }
+
 private:
     Job job_;
 };
@@ -109,6 +119,8 @@ SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double fla
 }
 
 Job read_tree(toml::table tree, const std::string& text, const std::string& name) { return JobReader(std::move(tree), text, name).read(); }
+
+SpecimenSpec parse_specimen(const std::string& text, const std::string& name) { return JobReader(parse_toml(text, name), text, name).read_specimen_alone(); }
 
 Job parse_job(const std::string& text, const std::string& name, std::span<const std::string> settings) {
     toml::table tree = parse_toml(text, name);

@@ -72,6 +72,9 @@ Job read_job(const std::filesystem::path& file, std::span<const std::string> set
 /// The same from text (standard input, tests and the `new` command); `name` stands in for the file in messages.
 Job parse_job(const std::string& text, const std::string& name, std::span<const std::string> settings = {});
 
+/// Reads the table [specimen] of such a text alone, whatever else stands in it: a specimen without a test. @throws InputError likewise
+SpecimenSpec parse_specimen(const std::string& text, const std::string& name);
+
 /// Sentences on what is allowed but may not be what was meant; none if there is nothing to say.
 std::vector<std::string> warnings(const Job& job);
 

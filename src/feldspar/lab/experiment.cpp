@@ -67,21 +67,15 @@ void require_gauge(const Gauges& gauges, const std::string& name, const char* ke
                      name == "CMOD" ? "CMOD is measured on a beam with a notch in the middle of its lower side" : "");
 }
 
-// What a stage asks of the test and the specimen.
-void require_stages(const Experiment& e) {
-    if (e.stages.empty()) return;
+}  // namespace
+
+void require_stage(const Experiment& e, const StageSpec& stage) {
     if (e.setup.numerics.kind != NumericsKind::adaptive)
         throw InputError({.key = "test.stages"}, "stages turn the loading motion, which only adaptive numerics do", "[numerics] kind = \"adaptive\", or a test without stages");
-    for (const StageGroup& group : e.stages)
-        for (const StageSpec& stage : group.stages) {
-            if (stage.end == StageEnd::gauge) require_gauge(e.gauges, stage.gauge, "test.stages");
-            if (stage.kind != StageKind::confine) continue;
-            if (e.assembly.dead_loads.empty())
-                throw InputError({.key = "test.stages"}, "a stage changes the pressure on the specimen, and nothing presses on it", "stages without \"confine\", or a test with a pressure");
-        }
+    if (stage.end == StageEnd::gauge) require_gauge(e.gauges, stage.gauge, "test.stages");
+    if (stage.kind == StageKind::confine && e.assembly.dead_loads.empty())
+        throw InputError({.key = "test.stages"}, "a stage changes the pressure on the specimen, and nothing presses on it", "stages without \"confine\", or a test with a pressure");
 }
-
-}  // namespace
 
 double mean_body_diameter(const Assembly& assembly) {
     double sum = 0.0;
@@ -111,7 +105,8 @@ Experiment::Experiment(const TestSetup& s, const RunControl& c)
     if (method.build.gauges != nullptr) gauges = Gauges(assembly, *s.specimen, method.build.gauges(input));
     if (s.test.control == LoadControl::gauge) require_gauge(gauges, s.test.control_gauge, "test.control");
     if (s.test.stop_gauge) require_gauge(gauges, s.test.stop_gauge->gauge, "test.until");
-    require_stages(*this);
+    for (const StageGroup& group : stages)
+        for (const StageSpec& of_group : group.stages) require_stage(*this, of_group);
     stage = stages.empty() ? 0 : 1;
     axial_stiffness = elastic_guess.E_Pa * section_m2 / length_m;
     if (s.test.custom.gravity_m_s2 != Vec2{}) full_weight = weights(assembly, s.test.custom.gravity_m_s2);
@@ -169,6 +164,21 @@ void Experiment::change_speed(double speed) {
     }
     platen_travel_m += settings.dt * dv;
     settings.speed = speed;
+}
+
+// As change_speed() for the components that the fixture imposes: what its nodes and their contacts do is then of the step behind, too.
+void Experiment::change_motion(std::size_t fixture, Vec2 motion) {
+    Fixture& changed = assembly.fixtures[fixture];
+    const Vec2 more = motion - changed.motion, dv = settings.speed * Vec2{changed.imposed.x * more.x, changed.imposed.y * more.y};
+    stepped = false;
+    platen_work.loading -= 0.5 * settings.dt * dot(reaction(assembly, changed), dv);
+    Nodes& nodes = assembly.nodes;
+    for (const int node : changed.nodes) {
+        nodes.velocity[node] += dv;
+        nodes.displacement[node] += settings.dt * dv;
+    }
+    changed.motion = motion;
+    impose_motion();
 }
 
 namespace {

@@ -72,7 +72,7 @@ struct Experiment : ExperimentState {
     double length_m = 0.0;        ///< strain = loading motion / length (MethodBuild)
     double section_m2 = 0.0;      ///< stress = load / section
     double direction = 1.0;       ///< +1 compression, -1 tension
-    const std::vector<StageGroup> stages; ///< of the method or the job; empty: it loads until the test ends
+    std::vector<StageGroup> stages; ///< of the method or the job, then those that an observer orders; empty: it loads until the test ends
 
     ExperimentState& state() { return *this; }
     const ExperimentState& state() const { return *this; }
@@ -97,7 +97,13 @@ struct Experiment : ExperimentState {
 
     /// Changes the speed of the loading, and with it the velocity of the whole body by dv B; books the work.
     void change_speed(double speed);
+
+    /// Changes what a fixture does per unit of the loading motion (Assembly::fixtures), and with it the velocity of its nodes; books the work.
+    void change_motion(std::size_t fixture, Vec2 motion);
 };
+
+/// What a stage asks of the test and the specimen. @throws InputError
+void require_stage(const Experiment& experiment, const StageSpec& stage);
 
 /// Mean diameter of the contact circles of grains or inner particles, m.
 double mean_body_diameter(const Assembly& assembly);

@@ -12,6 +12,7 @@
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/keep_test.hpp"
+#include "feldspar/lab/observer.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
@@ -107,6 +108,7 @@ struct Lead {
     StopRule stop;
     StageCursor stages;
     double largest_travel_m = 0.0;   // of a test with stages, so far
+    std::optional<double> given_speed{};   // by an observer, in place of the test's own
 };
 
 // Everything that loading changes: a test may go back to it and pass the strength again, more slowly.
@@ -217,7 +219,11 @@ public:
                 result_.stop_reason = *reason;
                 break;
             }
-            if (!adaptive_) continue;
+            if (!adaptive_) {
+                if (observe().stop) break;
+                if (const double speed = lead_.given_speed.value_or(own_speed_); speed != e_.settings.speed) e_.change_speed(speed);
+                continue;
+            }
             if (lead_.stages.loads()) keep_state(load);
             lead_.mode_update.observe(e_.assembly, e_.step, e_.platen_travel_m, lead_.stages.staged());
             const bool known = past_peak && settled();
@@ -233,7 +239,13 @@ public:
                 speed = lead_.control.balanced() ? std::max(speed, allowed) : allowed;
             }
             if (lead_.control.balanced()) passages_.balanced_step = e_.step;
+            if (observe().stop) break;
+            if (lead_.given_speed) speed = *lead_.given_speed;
             if (speed != e_.settings.speed) e_.change_speed(speed);
+        }
+        if (led_) {
+            result_.test.stages.clear();
+            for (const StageSpec& stage : gone_through_) result_.test.stages.push_back({{stage}});
         }
         if (!result_.stages.empty()) result_.stages.back().last_row = result_.history.size() - 1;
         result_.steps_to_peak = result_.steps - (e_.step - lead_.stop.peak_step());
@@ -390,6 +402,53 @@ private:
         lead_.stages.begin(result_.history[row]);
         lead_.stop.stage_began();
         states_.clear();
+        gone_through_.push_back(lead_.stages.now());
+    }
+
+    // Shows an observer the state of the last row, and does what it orders, but for the stage. @param stage_ended  why the stage under way has come to its end at this row
+    TestOrders observe(const std::optional<std::string>& stage_ended = {}) {
+        if (e_.control.observer == nullptr) return {};
+        const TestView view{result_, e_.assembly, e_.gauges.specs(), e_.platen_travel_m, e_.settings.speed, e_.settings.dt, e_.travel_time, e_.stage, lead_.stages.kind(), stage_ended, result_.passages};
+        TestOrders orders = e_.control.observer->look(view);
+        for (const TestOrders::Pressure& order : orders.pressures) press(order);
+        for (const TestOrders::Motion& order : orders.motions) e_.change_motion(fixture_called(order.fixture), order.motion);
+        if (!orders.motions.empty()) lead_.mode_update.forget();
+        if (orders.stage && !lead_.stages.staged())
+            throw InputError({.key = "stage"}, "a stage is ordered of a test that has none", "a test with stages, or an observer that says with which one the loading begins (TestObserver::begins)");
+        if (orders.pace == TestOrders::Pace::given && !std::isfinite(orders.speed)) throw InputError({.key = "speed"}, "the speed that is ordered is not a number", "metres a step, or m/s with dynamic numerics");
+        if (orders.pace != TestOrders::Pace::as_before) lead_.given_speed = orders.pace == TestOrders::Pace::given ? std::optional(orders.speed) : std::nullopt;
+        if (orders.stop) result_.stop_reason = *orders.stop;
+        return orders;
+    }
+
+    void press(const TestOrders::Pressure& order) {
+        if (!(order.pressure_Pa >= 0.0) || !std::isfinite(order.pressure_Pa)) throw InputError({.key = "pressure"}, fmt::format("{} Pa is no pressure that can act", order.pressure_Pa), "0 or more");
+        bool found = false;
+        std::string known;
+        for (DeadLoad& load : e_.assembly.dead_loads) {
+            known += (known.empty() ? "" : ", ") + load.name;
+            if (!order.fixture.empty() && load.name != order.fixture) continue;
+            load.pressure_Pa = order.pressure_Pa;
+            found = true;
+        }
+        if (!found) throw InputError({.key = "pressure"}, fmt::format("no fixture '{}' presses with a pressure that could change", order.fixture), known.empty() ? "a test with a pressure" : known);
+    }
+
+    std::size_t fixture_called(const std::string& name) const {
+        std::string known;
+        for (std::size_t i = 0; i < e_.assembly.fixtures.size(); ++i) {
+            if (e_.assembly.fixtures[i].name == name) return i;
+            known += (known.empty() ? "" : ", ") + e_.assembly.fixtures[i].name;
+        }
+        throw InputError({.key = "fixture"}, fmt::format("the test has no fixture '{}' that imposes a motion", name), known);
+    }
+
+    // Goes to the stage that an observer has ordered.
+    void take(const StageSpec& stage) {
+        require_stage(e_, stage);
+        e_.stages.push_back({{stage}});
+        lead_.stages.go_to_last();
+        led_ = true;
     }
 
     // What the loading motion does until the next row of a test with stages. @return false when the last stage has ended
@@ -401,7 +460,14 @@ private:
         if (lead_.control.balanced()) passages_.balanced_step = e_.step;
         const bool past_peak = lead_.stages.loads() && lead_.stop.past_peak(load);
         lead_.arrest.observe(row, block);
-        if (const auto why = lead_.stages.ended(row, lead_.stop.peak(), past_peak, lead_.control.residual() / first_.residual)) {
+        auto why = lead_.stages.ended(row, lead_.stop.peak(), past_peak, lead_.control.residual() / first_.residual);
+        TestOrders orders;
+        if (!why) {
+            orders = observe();
+            if (orders.stop) return false;
+            if (orders.stage) why = "another stage was ordered";
+        }
+        if (why) {
             // A stage that ends while its specimen fails, as by its widening, has passed a strength too.
             const bool fails = lead_.stages.loads() && (!lead_.control.balanced() || load < (1.0 - kSame * wanted_) * lead_.stop.stage_peak());
             if (fails && passed_too_fast()) return true;
@@ -412,7 +478,11 @@ private:
                 result_.stop_reason = lead_.stop.fallen();
                 return false;
             }
-            if (!lead_.stages.next()) {
+            if (!orders.stage) orders = observe(why);
+            if (orders.stop) return false;
+            if (orders.stage) {
+                take(*orders.stage);
+            } else if (!lead_.stages.next()) {
                 e_.change_speed(0.0);
                 result_.stop_reason = "the last stage is done: " + *why;
                 return false;
@@ -421,6 +491,8 @@ private:
             begin_stage(result_.history.size() - 1);
             lead_.mode_update.forget();
             pace = lead_.control.start(lead_.largest_travel_m);
+            lead_.given_speed.reset();
+            if (orders.pace == TestOrders::Pace::given) lead_.given_speed = orders.speed;
             known = false;
         }
         double speed = lead_.stages.sense() * pace;
@@ -433,6 +505,7 @@ private:
         if (lead_.stages.kind() == StageKind::unload || lead_.stages.kind() == StageKind::confine) speed = std::min(speed, -lead_.arrest.arrest(lead_.largest_travel_m));
         const double most = lead_.stages.approach_m(lead_.stop.peak()) / (block * e_.settings.dt);
         if (std::abs(speed) > most && lead_.stages.sense() != 0.0 && speed * lead_.stages.sense() > 0.0) speed = lead_.stages.sense() * most;
+        if (lead_.given_speed) speed = *lead_.given_speed;
         if (speed != e_.settings.speed) e_.change_speed(speed);
         return true;
     }
@@ -479,6 +552,9 @@ private:
     std::vector<Loading> states_;   // the oldest first
     Passages passages_{.strict = first_, .balanced_step = e_.step};
     double loading_s_ = 0.0;        // before the program was ended, if it was
+    const double own_speed_ = e_.settings.speed;   // of numerics that keep one
+    std::vector<StageSpec> gone_through_;
+    bool led_ = false;              // by the stages that an observer orders
     std::optional<ProgressReporter> progress_;
 };
 

@@ -12,10 +12,12 @@
 #include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/memory.hpp"
 #include "feldspar/lab/nearest_to_failure.hpp"
+#include "feldspar/lab/observer.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
 #include "feldspar/lab/stability.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/texture.hpp"
 
@@ -57,11 +59,21 @@ TestResult begin_result(const TestSetup& setup) {
     return result;
 }
 
+// Hands the body on when the test is over.
+struct Leaving {
+    TestObserver* observer;
+    Assembly& assembly;
+    ~Leaving() {
+        if (observer != nullptr) observer->leaves(std::move(assembly));
+    }
+};
+
 TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeeping& keeping) {
     TestResult result = begin_result(setup);
     if (keeping.take_finished(result)) return result;
 
     Experiment e(setup, control);
+    const Leaving leaving{control.observer, e.assembly};
     result.gauges = e.gauges.specs();
     result.length_m = e.length_m;
     result.section_m2 = e.section_m2;
@@ -132,7 +144,7 @@ double other_damping(double damping) { return damping > 0.6 ? damping - 0.2 : da
 
 // Once, and again where the numerics ask for it.
 TestResult run_with_repeats(const TestSetup& setup, const RunControl& control) {
-    TestKeeping keeping(control.keeper);
+    TestKeeping keeping(control.observer == nullptr ? control.keeper : nullptr);
     TestResult result = run_once(setup, control, keeping);
     if (!setup.numerics.confirm || result.interrupted) return result;
     bool interrupted = false;
@@ -162,7 +174,13 @@ TestResult run_with_repeats(const TestSetup& setup, const RunControl& control) {
 
 }  // namespace
 
-TestResult run_test(const TestSetup& setup, const RunControl& control) {
+TestResult run_test(const TestSetup& given, const RunControl& control) {
+    TestSetup setup = given;
+    if (control.observer != nullptr)
+        if (const auto first = control.observer->begins()) {
+            if (!stages_of(setup.test).empty()) throw InputError({.key = "test.stages"}, "the test has stages of its own, and an observer begins others", "a test without stages, or an observer that does not begin any");
+            setup.test.stages = {{{*first}}};
+        }
     for (;;) {
         try {
             return run_with_repeats(setup, control);

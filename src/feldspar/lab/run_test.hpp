@@ -45,8 +45,10 @@ public:
 };
 
 class StepDevice;
+class TestObserver;
 
-/// What the caller decides about the running itself; none of it changes a result, but a device, whose breaking specimens take another, equally valid, course.
+/// What the caller decides about the running itself; none of it changes a result, but an observer that gives orders, and a device, whose breaking specimens take another,
+/// equally valid, course.
 struct RunControl {
     int threads = 1;
     const std::atomic<int>* more_threads = nullptr;      ///< may grow while the test runs: so many threads from then on
@@ -55,6 +57,7 @@ struct RunControl {
     std::function<void(const TestResult&)> failed;       ///< told the record of a test whose motion has become unstable, before its error; without properties; may be empty
     StateKeeper* keeper = nullptr;                       ///< if it has the state of this test, the test goes on from there
     std::function<std::unique_ptr<StepDevice>()> device; ///< opens what makes the steps (step/step.hpp); may be empty: the processor
+    TestObserver* observer = nullptr;                    ///< sees the test while it loads, and may lead it (lab/observer.hpp); there is then no keeper
 };
 
 /// Everything that defines a test.

@@ -154,6 +154,12 @@ bool StageCursor::next() {
     return true;
 }
 
+void StageCursor::go_to_last() {
+    group_ = static_cast<int>(e_->stages.size()) - 1;
+    pass_ = 0;
+    stage_ = 0;
+}
+
 double StageCursor::approach_m(double largest_load_Pa) const {
     const StageSpec& stage = now();
     const double end = target(largest_load_Pa), left = std::abs(end - value_);

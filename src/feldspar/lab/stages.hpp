@@ -46,6 +46,9 @@ public:
     /// To the next stage. @return false if there is none
     bool next();
 
+    /// To the last group of all, which has just been added.
+    void go_to_last();
+
     /// How far the loading motion may go until the next row, so that the stage's end is not passed by more than a thousandth, m.
     /// @param largest_load_Pa  of the test so far
     double approach_m(double largest_load_Pa) const;
