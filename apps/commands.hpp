@@ -24,10 +24,18 @@ struct JobOptions {
     std::optional<int> at_once;          ///< tests side by side
 };
 
+/// Whether a run is shown in a browser while it goes on, and where the page is.
+struct LiveOptions {
+    bool on = false;
+    std::optional<std::string> address;   ///< to listen at; none: this machine alone
+    std::optional<int> port;              ///< none: any that is free
+};
+
 struct RunOptions : JobOptions {
     std::optional<std::string> out;
     bool fresh = false;        ///< never goes on with an unfinished run
     std::string command_line;  ///< for provenance
+    LiveOptions live;
 };
 
 /// Runs all tests of a job and leaves a directory of results.

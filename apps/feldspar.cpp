@@ -104,6 +104,13 @@ void add_checkpoint_option(CLI::App& command) {
         ->type_name("TIME");
 }
 
+// The page in a browser.
+void add_live_options(CLI::App& command, LiveOptions& live) {
+    CLI::Option* on = command.add_flag("--live", live.on, "show the run in a browser while it goes on: curves, cracks, time left, and buttons that end a test or the run; prints the page's address");
+    command.add_option("--live-port", live.port, "the port of that page (default: any that is free)")->type_name("PORT")->check(CLI::Range(0, 65535))->needs(on);
+    command.add_option("--live-address", live.address, "the address of this machine to listen at; another than 127.0.0.1 lets other machines see the page, unencrypted")->type_name("ADDRESS")->needs(on);
+}
+
 constexpr const char* all_cores = "one for each core";
 constexpr const char* job_or_all_cores = "as the job says, else one for each core";
 constexpr const char* by_size = "as suits their size";
@@ -216,6 +223,7 @@ void add_run(CommandLine& line) {
     command.add_option("--out", options->out, "a new directory for the results (default: results/<job>-<n>); one with an unfinished run of this job is gone on with")->type_name("DIR");
     command.add_flag("--fresh", options->fresh, "begin in a new directory, even if there is an unfinished run of this job");
     add_checkpoint_option(command);
+    add_live_options(command, options->live);
     line.does(command, [options] { return run_command(*options); });
 }
 

@@ -8,6 +8,7 @@
 
 #include "feldspar/study/run_job.hpp"
 #include "interrupt.hpp"
+#include "live_view.hpp"
 #include "progress.hpp"
 #include "say.hpp"
 #include "tables.hpp"
@@ -22,7 +23,11 @@ void tell_place(std::size_t tests, const std::filesystem::path& directory) {
 // Shows on stderr what a job tells.
 class JobProgress final : public JobListener {
 public:
-    void busy(const std::string& what) override { progress_.busy(what); }
+    explicit JobProgress(LiveView& live) : live_(live) {}
+    void busy(const std::string& what) override {
+        progress_.busy(what);
+        live_.busy(what);
+    }
     void making(const std::string& packing, const SpecimenProgress& state) override { progress_.making(packing, state); }
     void note(const std::string& line) override { progress_.note(line); }
     void progress(int number, int count, const std::string& label, const TestProgress& state) override { progress_.report(number, count, label, state); }
@@ -33,6 +38,7 @@ public:
 
 private:
     Progress progress_;
+    LiveView& live_;
 };
 
 void print_results(const Job& job, const JobOutcome& outcome) {
@@ -46,8 +52,10 @@ void print_results(const Job& job, const JobOutcome& outcome) {
 ExitCode run_command(const RunOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
-    JobProgress progress;
+    LiveView live(options.live, job.name);
+    JobProgress progress(live);
     JobControl control;
+    control.live = live.board();
     control.threads = thread_count(job.threads);
     control.out = options.out;
     control.fresh = options.fresh;
@@ -57,6 +65,8 @@ ExitCode run_command(const RunOptions& options) {
     control.listener = &progress;
     const JobOutcome outcome = run_job(job, control);
     print_results(job, outcome);
+    std::fflush(stdout);
+    live.over(outcome);
     if (!outcome.failed.empty()) {
         std::fflush(stdout);
         tell_place(outcome.results.size(), outcome.directory);

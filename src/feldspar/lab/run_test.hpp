@@ -44,6 +44,8 @@ public:
     virtual void refuse(const std::string& reason) = 0;
 };
 
+class TestWatch;
+
 /// What the caller decides about the running itself; none of it changes a result.
 struct RunControl {
     int threads = 1;
@@ -52,6 +54,7 @@ struct RunControl {
     const std::atomic<bool>* stop = nullptr;             ///< becomes true when the user interrupts: the test ends at the next record
     std::function<void(const TestResult&)> failed;       ///< told the record of a test whose motion has become unstable, before its error; without properties; may be empty
     StateKeeper* keeper = nullptr;                       ///< if it has the state of this test, the test goes on from there
+    TestWatch* watch = nullptr;                          ///< looks at the test while it runs, and may end it (test_watch.hpp)
 };
 
 /// Everything that defines a test.
