@@ -46,6 +46,12 @@ def numbers(file):
     return [line for line in file.read_text().splitlines() if not line.startswith("#")]
 
 
+def stem(test):
+    """As its files are named."""
+    pressure = f"-p{test['sigma3_MPa']:g}" if test["kind"] == "biaxial" else ""
+    return f"{test['kind']}-s{test['seed']}{pressure}"
+
+
 def refused(address):
     try:
         with urllib.request.urlopen(address, timeout=10) as answer:
@@ -136,7 +142,7 @@ def main():
     for test in summary["tests"]:
         if test["stop_reason"] in ("ended by the user", "interrupted by the user"):
             continue
-        own = next(results.glob(f"history-{test['name']}.csv"))
+        own = next(results.glob(f"history-{stem(test)}.csv"))
         if numbers(own) != numbers(reference / own.name):
             wrong.append(f"{own.name} differs from that of the run that nobody looked at")
         same += 1

@@ -20,7 +20,6 @@ constexpr auto kBetweenFrames = std::chrono::milliseconds(1000);
 constexpr double kTimesItsCost = 100.0;             // a look is followed by so many times what it took: it takes at most a hundredth of the time
 constexpr std::size_t kFirstPoints = 400, kNewPoints = 12;   // of a curve, at the first look and at each later one
 constexpr std::size_t kMostPoints = 2400;           // then every other one goes
-constexpr std::size_t kMostGrains = 40'000;         // of more than these only the cracks are shown
 
 LivePoint point_of(const HistoryRow& row) {
     return {static_cast<float>(row.axial_strain * 1e3), static_cast<float>(row.axial_stress_Pa * 1e-6), row.cracks_tensile, row.cracks_shear};
@@ -98,7 +97,7 @@ void LiveBoard::Watch::see(const TestSight& sight) {
 void LiveBoard::Watch::add_frame(const TestSight& sight, Clock::time_point now) {
     next_frame_ = now + kBetweenFrames;
     const Specimen* specimen = sight.so_far().specimen.get();
-    if (specimen == nullptr || specimen->mesh.vertex_count.size() > kMostGrains) return;
+    if (specimen == nullptr || specimen->mesh.vertex_count.size() > kMostShownGrains) return;
     auto frame = std::make_shared<const LiveFrame>(frame_of(specimen->mesh, sight.displacements()));
     const std::lock_guard lock(board_.mutex_);
     test_.frame = std::move(frame);

@@ -151,6 +151,10 @@ struct LiveServer::Inside {
         server.set_keep_alive_max_count(1);   // its end waits for no page that could still ask
         server.set_payload_max_length(1024);
         server.set_tcp_nodelay(true);
+        server.set_socket_options([](socket_t socket) {   // the library's own let another program listen at the same port
+            const int yes = 1;
+            setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+        });
         server.set_default_headers({{"Cache-Control", "no-store"},
                                     {"Referrer-Policy", "no-referrer"},
                                     {"X-Content-Type-Options", "nosniff"},

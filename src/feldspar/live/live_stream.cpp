@@ -123,8 +123,8 @@ std::string LiveStream::next(std::chrono::milliseconds at_most) {
             one.cracks_from = std::exchange(seen.cracks, test.cracks.size());
             one.copy.curve.assign(test.curve.begin() + static_cast<std::ptrdiff_t>(one.points_from), test.curve.end());
             one.copy.cracks.assign(test.cracks.begin() + static_cast<std::ptrdiff_t>(one.cracks_from), test.cracks.end());
-            if (!seen.outline && test.frame) one.specimen = test.specimen;
-            seen.outline = seen.outline || test.frame;
+            if (!seen.outline && test.specimen && test.specimen->mesh.vertex_count.size() <= kMostShownGrains) one.specimen = test.specimen;
+            seen.outline = seen.outline || test.specimen;
             one.frame = test.frame && test.frame != seen.frame;
             one.copy.frame = seen.frame = test.frame;
         }

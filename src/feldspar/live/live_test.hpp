@@ -5,6 +5,8 @@
 
 namespace feldspar {
 
+inline constexpr std::size_t kMostShownGrains = 40'000;   ///< of a specimen with more there is only the curve
+
 /// Looks at a running test when it is asked to, and leaves on the board what is new.
 class LiveBoard::Watch final : public TestWatch {
 public:

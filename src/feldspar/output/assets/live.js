@@ -115,7 +115,7 @@
       this.axes = test.axes;
       this.words = h("p", {class: "state soft small"}, "begins");
       this.button = sureButton("End this test", "End it, keeping what it has?", () => end(String(test.n)));
-      const curve = h("div", {}), pattern = h("div", {class: "pattern"});
+      const curve = h("div", {}, h("p", {class: "soft small"}, "The curve begins with the loading.")), pattern = h("div", {class: "pattern"});
       this.element = h("div", {class: "test"}, h("div", {class: "top"}, h("h3", {}, test.label), this.button), this.words, h("div", {class: "both"}, curve, h("div", {}, pattern)));
       this.pattern = new Pattern(pattern);
       this.curveHost = curve;
@@ -125,8 +125,9 @@
       if (test.state === "writing") { this.words.textContent = "has ended; its files are being written"; this.button.remove(); }
       else if (test.progress) {
         const p = test.progress;
-        this.words.textContent = [p.stage, "stress " + show(p.stress) + " MPa", "strain " + show(p.strain) + "\u00b710\u207b\u00b3", "step " + p.step.toLocaleString("en"),
-          p.steps_per_second ? show(p.steps_per_second) + " steps/s" : null, p.seconds_left !== null ? "about " + duration(p.seconds_left) + " left" : null].filter(Boolean).join("  \u00b7  ");
+        const loads = p.stage === "loading";
+        this.words.textContent = [p.stage, loads ? "stress " + show(p.stress) + " MPa" : null, loads ? "strain " + show(p.strain) + "\u00b710\u207b\u00b3" : null, "step " + p.step.toLocaleString("en"),
+          p.steps_per_second ? show(p.steps_per_second) + " steps/s" : null, loads && p.seconds_left !== null ? "about " + duration(p.seconds_left) + " left" : null].filter(Boolean).join("  \u00b7  ");
       }
       if (test.curve) {
         for (const [own, sent] of [["x", "strain"], ["stress", "stress"], ["tensile", "tensile"], ["shear", "shear"]]) {
@@ -141,8 +142,10 @@
       const series = [{label: "stress", x: this.x, y: this.stress, color: "ink", width: 2.2}];
       if (this.tensile[this.tensile.length - 1] > 0) series.push({label: "tensile cracks", x: this.x, y: this.tensile, color: "tensile", width: 1.5, right: true, step: true});
       if (this.shear[this.shear.length - 1] > 0) series.push({label: "shear cracks", x: this.x, y: this.shear, color: "shear", width: 1.5, right: true, step: true});
-      if (!this.chart) this.chart = new XYChart(this.curveHost, {x: this.axes.strain + " (10\u207b\u00b3)", y: this.axes.stress + " (MPa)", right: "Cracks", whole: true, height: 290, series});
-      else this.chart.grow(series);
+      if (!this.chart) {
+        this.curveHost.replaceChildren();
+        this.chart = new XYChart(this.curveHost, {x: this.axes.strain + " (10\u207b\u00b3)", y: this.axes.stress + " (MPa)", right: "Cracks", whole: true, height: 290, series});
+      } else this.chart.grow(series);
     }
   }
 
