@@ -93,6 +93,7 @@ std::string LiveStream::next(std::chrono::milliseconds at_most) {
     };
     std::vector<News> news;
     Json run;
+    const double cost = board_.cost();
     {
         const std::lock_guard lock(board_.mutex_);
         version_ = board_.version_;
@@ -131,7 +132,7 @@ std::string LiveStream::next(std::chrono::milliseconds at_most) {
         const double left = board_.seconds_left();
         run = {{"name", board_.name_}, {"busy", board_.busy_}, {"tests", board_.tests_.size()}, {"running", running}, {"ended", ended}, {"failed", failed},
                {"seconds_left", left >= 0.0 ? rounded(left) : Json(nullptr)}, {"reports", board_.reports_},
-               {"over", board_.over_ ? Json(board_.over_words_) : Json(nullptr)}, {"ending", board_.ending_}};
+               {"over", board_.over_ ? Json(board_.over_words_) : Json(nullptr)}, {"ending", board_.ending_}, {"cost", rounded(cost)}};
         at_end_ = board_.over_;
     }
     Json tests = Json::array();
