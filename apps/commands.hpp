@@ -26,6 +26,13 @@ struct JobOptions {
     std::string device = "cpu";          ///< "cpu", "gpu", "auto": where the steps are made
 };
 
+/// Whether a run is shown in a browser while it goes on, and where the page is.
+struct LiveOptions {
+    bool on = false;
+    std::optional<std::string> address;   ///< to listen at; none: this machine alone
+    std::optional<int> port;              ///< none: any that is free
+};
+
 struct RunOptions : JobOptions {
     std::optional<std::string> out;
     bool fresh = false;        ///< never goes on with an unfinished run
@@ -34,6 +41,7 @@ struct RunOptions : JobOptions {
     bool json = false;         ///< the summary on stdout, all else on stderr
     bool quiet = false;        ///< only warnings, mistakes and where the results are
     std::string command_line;  ///< for provenance
+    LiveOptions live;
 };
 
 /// Runs all tests of a job and leaves a directory of results.

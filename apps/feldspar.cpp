@@ -163,6 +163,13 @@ void add_checkpoint_option(CLI::App& command) {
         ->type_name("TIME");
 }
 
+// The page in a browser.
+void add_live_options(CLI::App& command, LiveOptions& live) {
+    CLI::Option* on = command.add_flag("--live", live.on, "show the run in a browser while it goes on: curves, cracks, time left, and buttons that end a test or the run; prints the page's address");
+    command.add_option("--live-port", live.port, "the port of that page (default: any that is free)")->type_name("PORT")->check(CLI::Range(0, 65535))->needs(on);
+    command.add_option("--live-address", live.address, "the address of this machine to listen at; another than 127.0.0.1 lets other machines see the page, unencrypted")->type_name("ADDRESS")->needs(on);
+}
+
 constexpr const char* all_cores = "one for each core";
 constexpr const char* job_or_all_cores = "as the job says, else one for each core";
 constexpr const char* by_size = "as suits their size";
@@ -255,6 +262,7 @@ void add_run(CommandLine& line) {
     command.add_flag("--json", options->json, "print the summary as JSON on standard output, and all else on standard error");
     command.add_flag("--quiet", options->quiet, "print only warnings and mistakes, and at the end the directory of the results");
     add_checkpoint_option(command);
+    add_live_options(command, options->live);
     line.does(command, [options] { return run_command(*options); });
 }
 

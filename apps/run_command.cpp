@@ -11,6 +11,7 @@
 #include "feldspar/study/run_job.hpp"
 #include "device_option.hpp"
 #include "interrupt.hpp"
+#include "live_view.hpp"
 #include "progress.hpp"
 #include "say.hpp"
 #include "tables.hpp"
@@ -28,9 +29,12 @@ void tell_place(std::size_t tests, const std::filesystem::path& directory) {
 // Shows on stderr what a job tells; if it is to be quiet, only what should not be missed.
 class JobProgress final : public JobListener {
 public:
-    explicit JobProgress(bool quiet) : quiet_(quiet) {}
+    JobProgress(bool quiet, LiveView& live) : quiet_(quiet), live_(live) {}
 
-    void busy(const std::string& what) override { unless_quiet([&] { progress_.busy(what); }); }
+    void busy(const std::string& what) override {
+        unless_quiet([&] { progress_.busy(what); });
+        live_.busy(what);
+    }
     void making(const std::string& packing, const SpecimenProgress& state) override { unless_quiet([&] { progress_.making(packing, state); }); }
     void note(const std::string& line) override { unless_quiet([&] { progress_.note(line); }); }
     void warn(const std::string& line) override { progress_.note(line); }
@@ -48,6 +52,7 @@ private:
 
     bool quiet_;
     Progress progress_;
+    LiveView& live_;
 };
 
 // The properties last, where they stay in sight.
@@ -78,8 +83,10 @@ void print_results(const RunOptions& options, const Job& job, const JobOutcome& 
 ExitCode run_and_print(const RunOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
-    JobProgress progress(options.quiet);
+    LiveView live(options.live, job.name);
+    JobProgress progress(options.quiet, live);
     JobControl control;
+    control.live = live.board();
     control.threads = thread_count(job.threads);
     control.out = options.out;
     control.fresh = options.fresh;
@@ -92,6 +99,8 @@ ExitCode run_and_print(const RunOptions& options) {
     control.listener = &progress;
     const JobOutcome outcome = run_job(job, control);
     print_results(options, job, outcome);
+    std::fflush(stdout);
+    live.over(outcome);
     if (!outcome.failed.empty()) {
         std::fflush(stdout);
         tell_place(outcome.results.size(), outcome.directory);

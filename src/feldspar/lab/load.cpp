@@ -11,6 +11,7 @@
 #include "feldspar/base/stopwatch.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/grain_fields.hpp"
 #include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/observer.hpp"
 #include "feldspar/lab/post_peak.hpp"
@@ -20,6 +21,7 @@
 #include "feldspar/lab/servo.hpp"
 #include "feldspar/lab/stages.hpp"
 #include "feldspar/lab/stop_rule.hpp"
+#include "feldspar/lab/test_watch.hpp"
 
 namespace feldspar {
 namespace {
@@ -58,6 +60,18 @@ private:
     long long steps_before_;
     Clock::time_point start_ = Clock::now();
     double last_ = -1.0;
+};
+
+// What a watch sees.
+class Sight final : public TestSight {
+public:
+    Sight(const Experiment& e, const TestResult& result) : e_(e), result_(result) {}
+    const TestResult& so_far() const override { return result_; }
+    std::vector<Vec2> displacements() const override { return mesh_displacements(e_.assembly, *result_.specimen, e_.assembly.nodes.displacement); }
+
+private:
+    const Experiment& e_;
+    const TestResult& result_;
 };
 
 // Contacts between grains, looked after every few steps.
@@ -212,6 +226,13 @@ public:
             std::optional<std::string> reason = lead_.stop.ended(row, lead_.stages.loads(), lead_.servo.unloading());
             if (!reason && lead_.stages.staged()) reason = lead_.stages.stuck(row);
             progress_->loading(row, lead_.stop.peak(), result_.steps, kUsualPassages * static_cast<double>(passages_.first_steps));
+            if (TestWatch* const watch = e_.control.watch) {
+                if (watch->due()) watch->see(Sight(e_, result_));
+                if (watch->ended()) {
+                    result_.stop_reason = kEndedByUser;
+                    break;
+                }
+            }
             const double load = e_.direction * row.axial_stress_Pa;
             const bool past_peak = lead_.stages.loads() && lead_.stop.past_peak(load);
             if (adaptive_ && lead_.stages.loads() && !lead_.stop.steps_are_spent() && (reason || past_peak || (unrest() > kRunOut && e_.method.reading != Reading::disc)) && passed_too_fast()) continue;

@@ -17,6 +17,7 @@
 #include "feldspar/lab/rate_control.hpp"
 #include "feldspar/lab/recorder.hpp"
 #include "feldspar/lab/stability.hpp"
+#include "feldspar/lab/test_watch.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/texture.hpp"
@@ -121,6 +122,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     if (!result.history.empty()) result.energy_at_end = result.history.back().energy;
     result.energy_residual = largest_energy_residual(result.history);
     result.properties = measure(result);
+    if (result.stop_reason == kEndedByUser) result.properties.remarks.push_back("The test was ended by the user, before its own end.");
     result.emission = acoustic_emission(result);   // reads moduli, too
     result.evidence = judge(result);
     result.wall_s = keeping.seconds();
@@ -146,20 +148,21 @@ double other_damping(double damping) { return damping > 0.6 ? damping - 0.2 : da
 TestResult run_with_repeats(const TestSetup& setup, const RunControl& control) {
     TestKeeping keeping(control.observer == nullptr ? control.keeper : nullptr);
     TestResult result = run_once(setup, control, keeping);
-    if (!setup.numerics.confirm || result.interrupted) return result;
-    bool interrupted = false;
+    if (!setup.numerics.confirm || result.interrupted || result.stop_reason == kEndedByUser) return result;
+    bool interrupted = false, ended = false;
     const auto peak_change = [&](const TestSetup& changed) -> std::optional<double> {   // none if the repeat shows no strength
         const TestResult repeat = run_once(changed, control, keeping);
         result.wall_s += repeat.wall_s;
         interrupted = repeat.interrupted;
-        if (repeat.interrupted || !(repeat.properties.peak_stress_Pa > 0.0)) return std::nullopt;
+        ended = repeat.stop_reason == kEndedByUser;
+        if (repeat.interrupted || ended || !(repeat.properties.peak_stress_Pa > 0.0)) return std::nullopt;
         return repeat.properties.peak_stress_Pa / result.properties.peak_stress_Pa - 1.0;
     };
     if (const auto change = peak_change(at_a_third(setup))) {
         result.evidence.confirmed = true;
         result.evidence.peak_change_at_third = *change;
     }
-    if (setup.numerics.kind != NumericsKind::dynamic && !interrupted) {
+    if (setup.numerics.kind != NumericsKind::dynamic && !interrupted && !ended) {
         TestSetup damped = setup;
         damped.numerics.damping = other_damping(setup.numerics.damping);
         if (const auto change = peak_change(damped)) {

@@ -46,6 +46,7 @@ public:
 
 class StepDevice;
 class TestObserver;
+class TestWatch;
 
 /// What the caller decides about the running itself; none of it changes a result, but an observer that gives orders, and a device, whose breaking specimens take another,
 /// equally valid, course.
@@ -58,6 +59,7 @@ struct RunControl {
     StateKeeper* keeper = nullptr;                       ///< if it has the state of this test, the test goes on from there
     std::function<std::unique_ptr<StepDevice>()> device; ///< opens what makes the steps (step/step.hpp); may be empty: the processor
     TestObserver* observer = nullptr;                    ///< sees the test while it loads, and may lead it (lab/observer.hpp); there is then no keeper
+    TestWatch* watch = nullptr;                          ///< looks at the test while it runs, and may end it (test_watch.hpp)
 };
 
 /// Everything that defines a test.

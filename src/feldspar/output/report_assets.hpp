@@ -16,6 +16,8 @@ extern const char* const asset_converge_js;  ///< convergence (findings/converge
 extern const char* const asset_study_js;     ///< points of a study (study/study_report.cpp)
 extern const char* const asset_calibration_js;   ///< calibration (calibration/calibration_report.cpp)
 extern const char* const asset_paraview_py;   ///< by which ParaView shows a test, with marks such as {{stem}}
+extern const char* const asset_live_js;      ///< what is going on in a run, above its report (live/live_page.cpp)
+extern const char* const asset_live_css;
 extern const char* const asset_uPlot_iife_min_js;
 extern const char* const asset_uPlot_min_css;
 

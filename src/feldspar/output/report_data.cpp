@@ -12,6 +12,7 @@
 #include "feldspar/base/counted.hpp"
 #include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
+#include "feldspar/lab/failure_pattern.hpp"
 #include "feldspar/lab/quantities.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
@@ -246,6 +247,7 @@ Json test_json(const TestResult& result, std::size_t tests) {
     test["grade"] = std::string(1, result.evidence.grade);
     test["verdict"] = result.evidence.verdict;
     add(test, result, QuantityGroup::repeats);
+    if (const FailureMode mode = failure_mode(result); !mode.name.empty()) test["failure"] = {{"name", mode.name}, {"words", mode.words}};
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
     test["history"] = history_json(result, tests);

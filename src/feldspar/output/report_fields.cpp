@@ -17,18 +17,21 @@
 //   u<n>             int16    all x, then all y, each as the difference from the node before; times `scale` (mm)
 //   damage<n>        uint8    0 ... 255 for 0 ... 1
 //   sigma1_<n>, sigma3_<n>  uint8  principal stresses: 0 ... 255 between the test's limits
+//   fragment<n>      int32    grains: the piece that it belongs to, from 0 on by falling area
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <tuple>
 #include <utility>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/crack_geometry.hpp"
+#include "feldspar/output/fragments.hpp"
 #include "feldspar/output/report_block.hpp"
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -178,6 +181,7 @@ ReportFields fields_of(const TestResult& result, std::size_t test, const std::ve
         block.add("damage" + n, "uint8", damage);
         block.add("sigma1_" + n, "uint8", levels(stresses[i].sigma1_MPa, limits_1));
         block.add("sigma3_" + n, "uint8", levels(stresses[i].sigma3_MPa, limits_3));
+        if (!result.specimen->cells.cells.empty()) block.add("fragment" + n, "int32", fragments(*result.specimen, result.cracks, snapshot.cracks));
         snapshots.push_back({{"label", snapshot.label},
                              {"strain", rounded(snapshot.axial_strain * 1e3)},
                              {"stress", rounded(snapshot.axial_stress_Pa * MPa)},
@@ -203,15 +207,60 @@ bool can_be_drawn(const TestResult& result) {
     });
 }
 
-/// Snapshots to keep: all; or first crack, peak and end; or the end alone.
-std::array<std::vector<std::size_t>, 3> moments_of(const TestResult& result) {
-    std::vector<std::size_t> all, few;
+/// Snapshots to keep: all; or every other one beside those with a name of their own; or first crack, peak and end; or the end alone.
+std::array<std::vector<std::size_t>, 4> moments_of(const TestResult& result) {
+    std::vector<std::size_t> all, some, few;
+    int loads = 0;
     for (std::size_t n = 0; n < result.snapshots.size(); ++n) {
         all.push_back(n);
         const std::string& label = result.snapshots[n].label;
-        if (label == "first-crack" || label == "peak" || label == "end") few.push_back(n);
+        const bool named = label == "first-crack" || label == "peak" || label == "end";
+        if (named) few.push_back(n);
+        if (named || (label.starts_with("load") && loads++ % 2 == 1)) some.push_back(n);
     }
-    return {all, few, {result.snapshots.size() - 1}};
+    return {all, some, few, {result.snapshots.size() - 1}};
+}
+
+/// A test whose fields are to be kept.
+struct Candidate {
+    std::size_t group = 0, result = 0;
+    const char* role = "";   ///< among the packings of its group
+    double weight = 1.0;     ///< of what it may take
+};
+
+/// The tests that say most: of each variant, kind and pressure the packing of the median strength, the weakest and the strongest. Variants are there to be compared: each has its first packing.
+std::vector<Candidate> candidates(std::span<const TestResult> results) {
+    using Group = std::tuple<std::string, MethodId, double>;  // variant, kind, sigma_3
+    std::vector<std::pair<Group, std::vector<std::size_t>>> groups;
+    std::set<std::string> variants;
+    for (std::size_t r = 0; r < results.size(); ++r) {
+        if (!can_be_drawn(results[r])) continue;
+        variants.insert(results[r].variant);
+        const Group group(results[r].variant, results[r].test.kind, results[r].test.sigma3_Pa);
+        auto found = std::ranges::find(groups, group, &std::pair<Group, std::vector<std::size_t>>::first);
+        if (found == groups.end()) found = groups.insert(groups.end(), {group, {}});
+        found->second.push_back(r);
+    }
+    constexpr double of_the_median = 3.0;
+    std::vector<Candidate> list;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        std::vector<std::size_t> tests = groups[g].second;
+        if (variants.size() > 1 || tests.size() == 1) {
+            list.push_back({g, tests.front(), "", of_the_median});
+            continue;
+        }
+        const auto strength = [&](std::size_t r) {
+            const double peak = results[r].properties.peak_stress_Pa;
+            return std::isfinite(peak) ? peak : 0.0;
+        };
+        std::ranges::stable_sort(tests, {}, strength);
+        const std::size_t middle = (tests.size() - 1) / 2;
+        if (tests.size() == 2) list.push_back({g, tests[0], "weakest", of_the_median});
+        else list.push_back({g, tests[middle], "median", of_the_median});
+        if (tests.size() > 2) list.push_back({g, tests.front(), "weakest"});
+        list.push_back({g, tests.back(), "strongest"});
+    }
+    return list;
 }
 
 }  // namespace
@@ -238,31 +287,28 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B) {
-    using Group = std::tuple<std::string, MethodId, double>;  // variant, kind, sigma_3
-    const auto group_of = [](const TestResult& r) { return Group(r.variant, r.test.kind, r.test.sigma3_Pa); };
-    std::set<Group> open;
-    std::set<std::string> variants;
-    for (const TestResult& result : results) {
-        if (!can_be_drawn(result)) continue;
-        open.insert(group_of(result));
-        variants.insert(result.variant);
-    }
-    std::vector<ReportFields> list;
-    for (std::size_t r = 0; r < results.size(); ++r) {
-        if (!can_be_drawn(results[r]) || !open.contains(group_of(results[r]))) continue;
-        // variants are there to be compared: each gets the same share, and passes on what it does not need
-        const std::size_t share = variants.size() > 1 ? budget_B / open.size() : budget_B;
-        open.erase(group_of(results[r]));
-        for (const auto& chosen : moments_of(results[r])) {
+    std::vector<Candidate> tests = candidates(results);
+    std::ranges::stable_sort(tests, std::greater<>(), &Candidate::weight);
+    double weights = 0.0;
+    for (const Candidate& test : tests) weights += test.weight;
+    std::vector<std::pair<std::size_t, ReportFields>> list;   // with the group
+    for (const Candidate& test : tests) {   // each passes on what it does not need
+        const auto share = static_cast<std::size_t>(static_cast<double>(budget_B) * std::min(1.0, test.weight / weights));
+        weights -= test.weight;
+        for (const auto& chosen : moments_of(results[test.result])) {
             if (chosen.empty()) continue;
-            ReportFields fields = fields_of(results[r], r, chosen);
+            ReportFields fields = fields_of(results[test.result], test.result, chosen);
             if (fields.block.size() > share) continue;
             budget_B -= fields.block.size();
-            list.push_back(std::move(fields));
+            fields.meta["role"] = test.role;
+            list.emplace_back(test.group, std::move(fields));
             break;
         }
     }
-    return list;
+    std::ranges::stable_sort(list, {}, [](const auto& one) { return one.first; });
+    std::vector<ReportFields> fields;
+    for (auto& [group, one] : list) fields.push_back(std::move(one));
+    return fields;
 }
 
 }  // namespace feldspar

@@ -12,7 +12,7 @@ namespace feldspar {
 
 namespace {
 
-constexpr std::size_t largest_report_B = 14'000'000;  ///< more is slow to open and to send
+constexpr std::size_t largest_report_B = 9'500'000;  ///< more is slow to open and to send
 
 std::string script_block(const std::string& id, const std::string& text) {
     return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, text);

@@ -14,6 +14,7 @@
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/parallel.hpp"
+#include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/job_place.hpp"
 #include "feldspar/study/notes.hpp"
@@ -136,6 +137,22 @@ std::string reason_of(const std::exception_ptr& error) {
     }
 }
 
+std::vector<LivePlan> live_plans(const PreparedRuns& runs) {
+    std::vector<LivePlan> plans;
+    for (const PlannedRun& run : runs.all()) {
+        const MethodWords& words = method_of(*run.test).words;
+        plans.push_back({label_of(run), title(run.variant->name, *run.test), words.stress, words.strain});
+    }
+    return plans;
+}
+
+LiveResult live_result(const TestResult& result) {
+    std::string words = fmt::format("{:.4g} MPa, grade {}", result.properties.peak_stress_Pa / 1e6, result.evidence.grade);
+    if (!result.properties.peak_reached) words += ", peak not reached";
+    if (result.stop_reason == kEndedByUser || result.interrupted) words += ", " + result.stop_reason;
+    return {LiveState::ended, words};
+}
+
 // Takes what tests leave into the job's directory.
 class DirectorySink final : public RunSink {
 public:
@@ -144,6 +161,7 @@ public:
         : job_(job), runs_(runs), control_(control), tell_(*control.listener),
           directory_(found.unfinished ? RunDirectory::open(*found.unfinished) : RunDirectory::create(control.out, job.name)),
           lock_(found.unfinished ? std::move(*found.lock) : begin_unfinished(directory_, job)) {
+        if (control_.live != nullptr) control_.live->planned(live_plans(runs_));
         directory_.write_text("job.toml", job_.text);
         directory_.write_text("job-resolved.toml", resolved_toml_in_given_units(job_));
         if (!found.unfinished) {
@@ -173,12 +191,14 @@ public:
             if (given) directory_.write_text(packing, cells_as_text(*specimen, CellFormat::tess));
             else directory_.write(packing, [&](const fs::path& file) { write_packing(*specimen, file); });
         }
-        return [this, i, &run, specimen](const RunControl& run_control) {
+        TestWatch* const watch = control_.live != nullptr ? &control_.live->begins(i, specimen) : nullptr;
+        return [this, i, &run, specimen, watch](const RunControl& run_control) {
             const CheckpointOwner owner = owner_of(run);
             TestCheckpoints checkpoints(directory_, kept_as(run, ".state"), owner, control_.checkpoints,
                                         [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
             RunControl own_control = run_control;
             own_control.keeper = &checkpoints;
+            own_control.watch = watch;
             own_control.failed = [&](const TestResult& record) { write_failed(run, record); };
             const TestSetup setup = setup_of(run, specimen);
             own_control.device = opener_for(setup, control_.device, [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
@@ -202,15 +222,20 @@ public:
     }
 
     void progress(std::size_t i, const TestProgress& state) override {
+        if (control_.live != nullptr) control_.live->progress(i, state);
         tell_.progress(number_of(i), static_cast<int>(runs_.count()), label_of(runs_[i]), state);
     }
 
-    void ended(std::size_t i) override { tell_.ended(number_of(i)); }
+    void ended(std::size_t i) override {
+        if (control_.live != nullptr) control_.live->written(i);
+        tell_.ended(number_of(i));
+    }
 
     // Writes what holds all tests, and the archive, of which only one is made at a time.
     void finished(std::size_t i, TestResult ended) override {
         beat();
         tell_.finished(numbered_label(i), ended);
+        if (control_.live != nullptr) control_.live->ended(i, live_result(ended));
         if (ended.history.empty()) return;
         const TestResult& result = add(i, std::move(ended));
         if (control_.keep == Keep::all) write_hdf5(directory_, result, job_, control_.provenance);
@@ -223,12 +248,14 @@ public:
         try {
             std::rethrow_exception(error);
         } catch (const Interrupted&) {
+            if (control_.live != nullptr) control_.live->ended(i, {LiveState::ended, "ended before its first record"});
             return;   // before there was anything to keep of this test
         } catch (const OutputError&) {
             throw;
         } catch (...) {
             reasons_[i] = reason_of(error);
         }
+        if (control_.live != nullptr) control_.live->ended(i, {LiveState::failed, "failed: " + reasons_[i]});
         tell_.warn(fmt::format("{}: failed: {}", numbered_label(i), reasons_[i]));
         if (results_.size() + reasons_.size() < runs_.count()) write_overview(false, false);
     }
@@ -285,6 +312,7 @@ private:
             result.variant = run.variant->name;
             found_.insert(i);
             const TestResult& here = add(i, std::move(result));
+            if (control_.live != nullptr) control_.live->ended(i, live_result(here));
             if (!fs::exists(directory_.path() / ("history-" + test_stem(here) + ".csv"))) write_record(here);   // it was begun with another `keep`
             if (control_.keep == Keep::all && !fs::exists(directory_.path() / (test_stem(here) + ".h5"))) write_hdf5(directory_, here, job_, control_.provenance);
         } catch (const StateError& error) {
@@ -316,6 +344,7 @@ private:
         const Clock::time_point start = Clock::now();
         if (!last && start < next_report_) return;
         write_report(directory_, job_, results_, properties_, control_.provenance, complete, failed);
+        if (control_.live != nullptr) control_.live->report(directory_.path() / "report.html");
         next_report_ = Clock::now() + 20 * (Clock::now() - start);
     }
 

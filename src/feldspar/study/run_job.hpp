@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "feldspar/lab/run_test.hpp"
+#include "feldspar/live/live_board.hpp"
 #include "feldspar/output/checkpoints.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/study/device_use.hpp"
@@ -53,6 +54,7 @@ struct JobControl {
     Provenance provenance;
     std::atomic<bool>* stop = nullptr;       ///< becomes true when the user interrupts, or when nothing more can be written
     JobListener* listener = nullptr;
+    LiveBoard* live = nullptr;               ///< shows the run while it goes on; may be null
 };
 
 /// What came out of a job.

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/live/live_stream.hpp"
 #include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/run_job.hpp"
 #include "feldspar/study/study.hpp"
@@ -57,6 +59,7 @@ protected:
         control.provenance = collect_provenance("test", threads);
         control.stop = &stop_;
         control.listener = &listener_;
+        control.live = live_;
         return run_job(job, control);
     }
     bool there(const std::string& file) const { return fs::exists(folder_ / "results" / file); }
@@ -65,6 +68,7 @@ protected:
     Job job_ = parse_job(small_job, "job.toml");
     std::atomic<bool> stop_{false};
     Listener listener_;
+    LiveBoard* live_ = nullptr;
 };
 
 TEST_F(RunJob, LeavesEveryTestsFilesAndResultsInTheJobsOrder) {
@@ -132,6 +136,26 @@ TEST_F(RunJob, AFailureIsListedAndTheOthersGoOn) {
     EXPECT_FALSE(outcome.failed[0].reason.empty());
     EXPECT_FALSE(outcome.interrupted);
     EXPECT_TRUE(listener_.told("1/4 biaxial at 5000 MPa, seed 1: failed: " + outcome.failed[0].reason));
+}
+
+TEST_F(RunJob, ABoardHearsOfEveryTestAndReport) {
+    LiveBoard board("granite", stop_);
+    live_ = &board;
+    job_.tests[1].kind = methods::biaxial;   // crushed before it is sheared
+    job_.tests[1].sigma3_Pa = 5e9;
+    (void)run(job_, 2);
+    LiveStream page(board);
+    const auto news = nlohmann::json::parse(page.next(std::chrono::milliseconds(0)));
+    EXPECT_EQ(news["run"]["tests"], 4);
+    EXPECT_EQ(news["run"]["ended"], 2);
+    EXPECT_EQ(news["run"]["failed"], 2);
+    EXPECT_EQ(news["run"]["running"], 0);
+    EXPECT_GE(news["run"]["reports"], 1);
+    EXPECT_EQ(board.report_file(), folder_ / "results" / "report.html");
+    ASSERT_EQ(news["tests"].size(), 4u);
+    EXPECT_EQ(news["tests"][0]["label"], "uniaxial-compression, seed 1");
+    EXPECT_NE(news["tests"][0]["words"].get<std::string>().find(" MPa, grade "), std::string::npos);
+    EXPECT_EQ(news["tests"][1]["words"].get<std::string>().rfind("failed: ", 0), 0u);
 }
 
 TEST_F(RunJob, AnInterruptionKeepsWhatHasEnded) {

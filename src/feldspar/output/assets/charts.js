@@ -161,6 +161,19 @@ class XYChart {
     this.rebuild();
   }
 
+  /** The same series with more points: the chart stays as the reader has it, zoomed or under the cursor. */
+  grow(series) {
+    const before = this.series.map((s) => s.label).join("\n"), next = series.filter((s) => s.x.length > 0);
+    if (!this.plot || printing || next.map((s) => s.label).join("\n") !== before) { this.set(series); return; }
+    this.series = next;
+    if (!this.zoomed) {
+      const shown = this.visible();
+      this.ranges = [padded(extent(shown.map((s) => s.x))), padded(extent(shown.filter((s) => !s.right).map((s) => s.y)))];
+      this.rightRange = padded(extent(this.series.filter((s) => s.right).map((s) => s.y)));
+      this.plot.setData([this.ranges[0], ...this.plot.data.slice(1)]);
+    } else this.plot.redraw(false, true);
+  }
+
   rebuild() {
     if (this.plot) this.plot.destroy();
     const shown = this.visible(), left = shown.filter((s) => !s.right), right = this.series.filter((s) => s.right);
@@ -174,7 +187,7 @@ class XYChart {
     }
     this.ranges = [x, y];
     this.host.style.height = o.equal || printing ? this.height() + "px" : "";
-    const r = padded(extent(right.map((s) => s.y)));
+    this.rightRange = padded(extent(right.map((s) => s.y)));
     const ink = theme.get("soft"), line = theme.get("line");
     const write = (t) => (t === null ? "" : String(Number(t.toPrecision(6))).replace("-", "\u2212"));
     // Sizes of fonts in whole pixels: uPlot scales nothing else. An axis is as wide as its longest number.
@@ -191,12 +204,12 @@ class XYChart {
       for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); ++e) for (const f of high / low < 100 ? [1, 2, 5] : [1]) if (f * 10 ** e >= low && f * 10 ** e <= high) list.push(f * 10 ** e);
       return list;
     };
-    const scales = {x: {time: false, range: (u, from, to) => (from === null ? x : [from, to])}, y: {range: () => y, distr: o.yLog ? 3 : 1}};
+    const scales = {x: {time: false, range: (u, from, to) => (from === null ? this.ranges[0] : [from, to])}, y: {range: () => this.ranges[1], distr: o.yLog ? 3 : 1}};
     const dummies = [{}, {show: true, scale: "y", points: {show: false}, paths: () => null}];
     const data = [[x[0], x[1]], [null, null]];
     if (right.length) {
       axes.push({...axis("right", o.right, 1, false), ...(o.whole ? {incrs: [1, 2, 5].flatMap((f) => [0, 1, 2, 3, 4, 5, 6, 7, 8].map((e) => f * 10 ** e)).sort((a, b) => a - b)} : {})});
-      scales.right = {range: () => r};
+      scales.right = {range: () => this.rightRange};
       dummies.push({show: true, scale: "right", points: {show: false}, paths: () => null});
       data.push([null, null]);
     }
