@@ -10,6 +10,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/median.hpp"
+#include "feldspar/base/printable.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/specimen/specimen.hpp"
@@ -56,10 +57,10 @@ const char* name(Keep keep) {
     return "histories";
 }
 
-Keep keep_of(const std::string& word) {
+Keep keep_of(const std::string& word, const fs::path& file) {
     for (const Keep keep : {Keep::numbers, Keep::histories, Keep::all})
         if (word == name(keep)) return keep;
-    throw InputError({}, fmt::format("'{}' is nothing that a run can keep", word), "numbers, histories or all");
+    throw InputError({.file = file.string()}, fmt::format("'{}' is nothing that a run can keep", printable(word, LineEnds::escaped)), "numbers, histories or all");
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -220,11 +221,15 @@ SlurmPlan read_plan(const fs::path& directory) {
         plan.directory = fs::absolute(directory).lexically_normal();
         if (!plan.directory.has_filename()) plan.directory = plan.directory.parent_path();
         plan.study = text.at("study").get<std::string>();
-        plan.keep = keep_of(text.at("keep").get<std::string>());
+        plan.keep = keep_of(text.at("keep").get<std::string>(), file);
         plan.cpus = text.at("cpus").get<int>();
         plan.array_job = text.at("array_job").get<std::string>();
         plan.gather_job = text.at("gather_job").get<std::string>();
         plan.groups = text.at("groups").get<std::vector<std::vector<std::string>>>();
+        for (const auto& group : plan.groups)
+            for (const std::string& id : group)
+                if (id.empty() || !std::all_of(id.begin(), id.end(), [](unsigned char c) { return std::isxdigit(c) != 0; }))   // it names files
+                    throw InputError({.file = file.string()}, fmt::format("'{}' is not the name of a run", printable(id, LineEnds::escaped)), "hexadecimal digits");
         return plan;
     } catch (const json::exception& problem) {
         throw InputError({.file = file.string()}, fmt::format("this is not a plan of a study on Slurm ({})", problem.what()));
