@@ -14,6 +14,7 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <random>
 #include <regex>
 #include <string_view>
 #include <system_error>
@@ -48,7 +49,7 @@ std::string machine() {
 /// Where a file is written before it is renamed to `path`: ".summary.json.4711-2-machine.part". Process, counter and machine keep programs and
 /// threads that write the same file at once apart; the last one to rename its own wins.
 fs::path aside_of(const fs::path& path) {
-    static std::atomic<unsigned> counter{0};
+    static std::atomic<unsigned> counter{std::random_device()()};   // so that nobody can put a link there beforehand
     return path.parent_path() / fmt::format(".{}.{}-{}-{}.part", path.filename().string(), ::getpid(), ++counter, machine());
 }
 
@@ -176,8 +177,19 @@ std::string file_name_of(const std::string& job_name) {
 
 const fs::path results_directory = "results";
 
+/// An empty file that was not there before. Its writers open it by its name: in a directory that others may write to, a link in its place would lead them anywhere.
+void make_new(const fs::path& path) {
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.number() < 0) lost(path, reason(errno));
+    if (!file.close()) {
+        const int error = errno;
+        ::unlink(path.c_str());
+        lost(path, reason(error));
+    }
+}
+
 void write_bytes(const fs::path& path, std::string_view bytes) {
-    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC | O_NOFOLLOW));
     if (file.number() < 0) lost(path, reason(errno));
     while (!bytes.empty()) {
         const ssize_t written = ::write(file.number(), bytes.data(), bytes.size());
@@ -256,6 +268,7 @@ void RunDirectory::write(const std::string& name, const std::function<void(const
     if (path.parent_path() != path_ && ::mkdir(path.parent_path().c_str(), 0777) != 0 && errno != EEXIST) {
         lost(path.parent_path(), reason(errno));
     }
+    make_new(aside);
     try {
         fill(aside);
         flush_to_disk(aside, false);

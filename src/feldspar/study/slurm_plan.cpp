@@ -185,8 +185,20 @@ std::vector<std::vector<std::size_t>> grouped(std::span<const double> seconds, d
 
 fs::path SlurmPlan::element_output(std::size_t element) const { return directory / fmt::format("element-{}.out", element); }
 
+namespace {
+
+// An option stands in its line of the script: what follows a line end would be a command.
+void require_one_line(const SlurmOptions& options) {
+    for (const auto& [option, text] : {std::pair{"--partition", &options.partition}, {"--account", &options.account}, {"--time", &options.time}, {"--sbatch", &options.sbatch}})
+        if (std::any_of(text->begin(), text->end(), [](unsigned char c) { return std::iscntrl(c) != 0; }))
+            throw InputError({.file = {}, .line = 0, .column = 0, .key = option}, fmt::format("'{}' has a control character in it", printable(*text, LineEnds::escaped)), "text in one line");
+}
+
+}  // namespace
+
 SlurmPlan write_plan(const fs::path& results, const Study& study, std::span<const Run* const> runs, const TimeEstimate& estimate,
                      const SlurmOptions& options, const fs::path& program) {
+    require_one_line(options);
     std::vector<double> seconds;
     for (const Run* run : runs) seconds.push_back(estimate.seconds(*run));
     SlurmPlan plan;
@@ -225,6 +237,9 @@ SlurmPlan read_plan(const fs::path& directory) {
         plan.cpus = text.at("cpus").get<int>();
         plan.array_job = text.at("array_job").get<std::string>();
         plan.gather_job = text.at("gather_job").get<std::string>();
+        for (const std::string& number : {plan.array_job, plan.gather_job})
+            if (!std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))   // it goes to Slurm's programs
+                throw InputError({.file = file.string()}, fmt::format("'{}' is not the number of a job", printable(number, LineEnds::escaped)), "digits");
         plan.groups = text.at("groups").get<std::vector<std::vector<std::string>>>();
         for (const auto& group : plan.groups)
             for (const std::string& id : group)
