@@ -1,6 +1,7 @@
 // The run's directory. Every file is written aside, flushed to the disk, and renamed when it is whole.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -14,7 +15,6 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
-#include <random>
 #include <regex>
 #include <string_view>
 #include <system_error>
@@ -46,10 +46,16 @@ std::string machine() {
     return plain;
 }
 
+/// Of the system: nothing that is computed may depend on it.
+unsigned unforeseen_number() {
+    unsigned number = 0;
+    return ::getrandom(&number, sizeof number, GRND_NONBLOCK) == sizeof number ? number / 2 : 0;   // so that counting on does not begin anew
+}
+
 /// Where a file is written before it is renamed to `path`: ".summary.json.4711-2-machine.part". Process, counter and machine keep programs and
 /// threads that write the same file at once apart; the last one to rename its own wins.
 fs::path aside_of(const fs::path& path) {
-    static std::atomic<unsigned> counter{std::random_device()()};   // so that nobody can put a link there beforehand
+    static std::atomic<unsigned> counter{unforeseen_number()};   // so that nobody can put a link there beforehand
     return path.parent_path() / fmt::format(".{}.{}-{}-{}.part", path.filename().string(), ::getpid(), ++counter, machine());
 }
 
@@ -261,16 +267,19 @@ RunDirectory RunDirectory::open(fs::path path) {
     return RunDirectory(std::move(path));
 }
 
-void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const {
-    const fs::path path = path_ / name;
+namespace {
+
+void write_whole(const fs::path& directory, const std::string& name, const std::function<void(const fs::path&)>& fill, bool may_be_empty) {
+    const fs::path path = directory / name;
     const fs::path aside = aside_of(path);
     const HoldFileSizeSignal hold;
-    if (path.parent_path() != path_ && ::mkdir(path.parent_path().c_str(), 0777) != 0 && errno != EEXIST) {
+    if (path.parent_path() != directory && ::mkdir(path.parent_path().c_str(), 0777) != 0 && errno != EEXIST) {
         lost(path.parent_path(), reason(errno));
     }
     make_new(aside);
     try {
         fill(aside);
+        if (!may_be_empty && fs::file_size(aside) == 0) lost(path, "nothing was written");
         flush_to_disk(aside, false);
         if (::rename(aside.c_str(), path.c_str()) != 0) lost(path, reason(errno));
     } catch (const std::system_error& problem) {  // also std::filesystem and stream failures
@@ -283,8 +292,12 @@ void RunDirectory::write(const std::string& name, const std::function<void(const
     flush_to_disk(path.parent_path(), true);
 }
 
+}  // namespace
+
+void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const { write_whole(path_, name, fill, false); }
+
 void RunDirectory::write_text(const std::string& name, const std::string& text) const {
-    write(name, [&](const fs::path& aside) { write_bytes(aside, text); });
+    write_whole(path_, name, [&](const fs::path& aside) { write_bytes(aside, text); }, true);
 }
 
 }  // namespace feldspar
