@@ -31,8 +31,13 @@ void write_whole(const std::string& text, const std::string& path, const std::st
     };
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(path, ignored))) refuse(EEXIST);
-    const std::string aside = (fs::path(path).parent_path() / fmt::format(".feldspar-{}.part", ::getpid())).string();
-    std::FILE* file = std::fopen(aside.c_str(), "w");
+    std::string aside;
+    std::FILE* file = nullptr;
+    for (int attempt = 0; file == nullptr && attempt < 100; ++attempt) {   // never one that is there: in a directory that others may write to it may be a link to anywhere
+        aside = (fs::path(path).parent_path() / fmt::format(".feldspar-{}-{}.part", ::getpid(), attempt)).string();
+        file = std::fopen(aside.c_str(), "wx");
+        if (file == nullptr && errno != EEXIST) break;
+    }
     if (file == nullptr) refuse(errno);
     errno = 0;
     bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;

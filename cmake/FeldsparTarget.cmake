@@ -3,13 +3,19 @@ add_library(feldspar_options INTERFACE)
 target_include_directories(feldspar_options INTERFACE ${CMAKE_SOURCE_DIR}/src)
 set(feldspar_flags
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
-    -Wno-restrict         # GCC 12 sees overlaps in std::string concatenation that are not there (its bug 105651)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 sees overlaps in std::string concatenation that are not there (its bug 105651)
     -ffp-contract=off     # no fused multiply-add that one path has and another has not
     -fno-math-errno)
 target_compile_options(feldspar_options INTERFACE "$<$<NOT:$<COMPILE_LANGUAGE:CUDA>>:${feldspar_flags}>")
 if(FELDSPAR_SANITIZE)
     target_compile_options(feldspar_options INTERFACE "$<$<NOT:$<COMPILE_LANGUAGE:CUDA>>:-fsanitize=${FELDSPAR_SANITIZE};-fno-omit-frame-pointer>")
     target_link_options(feldspar_options INTERFACE -fsanitize=${FELDSPAR_SANITIZE})
+endif()
+if(FELDSPAR_FUZZ)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+        message(FATAL_ERROR "FELDSPAR_FUZZ needs Clang: cmake --preset fuzz")
+    endif()
+    target_compile_options(feldspar_options INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-recover=all -Wno-error)  # GCC's warnings are the measure
 endif()
 
 # feldspar_room(NAME SOURCES ... DEPENDS ...): one room of the house as a static library `feldspar_NAME`. DEPENDS names

@@ -47,7 +47,7 @@ const std::vector<TargetKind> target_kinds{
 
 constexpr double toughest = 300.0;   // N/m: rocks of 200 are to lie inside
 
-double six_digits(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+double six_digits(double value) { return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr); }   // stod refuses what is next to zero
 
 // Of a default range: what the rock's numbers say of a contact's.
 struct RangeRule {

@@ -1,6 +1,7 @@
 #include "feldspar/job/rock_files.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <set>
@@ -46,6 +47,9 @@ double number_of(std::string_view text, const std::filesystem::path& file, int l
     return *value;
 }
 
+// The whole number that a flag or a code of DXF is; nothing that fits is 0.
+int flags_of(double value) { return std::abs(value) < 1e6 ? static_cast<int>(value) : 0; }
+
 double metres(const std::string& unit) { return parse_quantity("1 " + unit, Dimension::length); }
 
 }  // namespace
@@ -59,6 +63,11 @@ std::shared_ptr<const PhaseMap> read_phase_map(const std::string& contents, cons
         fail(file, 0, fmt::format("is a picture of {} x {} pixels", image.width, image.height), "at most 20000 x 20000");
     }
     const bool by_value = std::any_of(phases.begin(), phases.end(), [](const Mineral& phase) { return phase.value >= 0; });
+    constexpr std::size_t densest = 8 * 1032;   // pixels of a bit each in a byte, as deflate packs them at best
+    if (static_cast<std::size_t>(image.width) * image.height / densest > contents.size()) {   // before memory is asked for
+        png_image_free(&image);
+        fail(file, 0, fmt::format("is damaged: {} bytes cannot hold {} x {} pixels", contents.size(), image.width, image.height));
+    }
     image.format = PNG_FORMAT_RGB;
     std::vector<png_byte> pixels(PNG_IMAGE_SIZE(image));
     if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) fail(file, 0, fmt::format("cannot be read as a PNG picture: {}", image.message));
@@ -106,6 +115,7 @@ TraceFile read_csv(const std::string& contents, const std::filesystem::path& fil
     const double scale = unit.empty() ? 1.0 : metres(unit);
     TraceFile traces;
     std::map<std::string, std::size_t, std::less<>> column;
+    std::size_t columns = 0;
     int number = 0, others = 0;
     for (const std::string_view line : lines_of(contents)) {
         ++number;
@@ -117,19 +127,22 @@ TraceFile read_csv(const std::string& contents, const std::filesystem::path& fil
             begin = end + 1;
         }
         if (column.empty()) {
-            for (std::size_t i = 0; i < cells.size(); ++i) column.emplace(cells[i], i);
+            columns = cells.size();
+            for (std::size_t i = 0; i < cells.size(); ++i)
+                if (!column.emplace(cells[i], i).second) fail(file, number, fmt::format("the head has the column '{}' twice", cells[i]), "each column once");
             for (const char* needed : {"x1", "y1", "x2", "y2"})
                 if (!column.contains(needed)) fail(file, number, fmt::format("the head has no column '{}'", needed), "x1,y1,x2,y2 and perhaps set");
             if (!layer.empty() && !column.contains("set")) fail(file, number, "the head has no column 'set', but a layer is asked for", "x1,y1,x2,y2,set");
             continue;
         }
-        if (cells.size() < column.size()) fail(file, number, fmt::format("{} values for {} columns", cells.size(), column.size()));
+        if (cells.size() < columns) fail(file, number, fmt::format("{} values for {} columns", cells.size(), columns));
         if (!layer.empty() && cells[column.find("set")->second] != layer) {
             ++others;
             continue;
         }
         const auto value = [&](const char* name) { return scale * number_of(cells[column.find(name)->second], file, number); };
         const Vec2 from{value("x1"), value("y1")}, to{value("x2"), value("y2")};
+        if (!std::isfinite(from.x) || !std::isfinite(from.y) || !std::isfinite(to.x) || !std::isfinite(to.y)) fail(file, number, "a point lies too far away to be a number of metres");
         if (from == to) fail(file, number, "the trace ends where it begins", "two different points");
         traces.lines_m.push_back({from, to});
     }
@@ -169,6 +182,10 @@ TraceFile read_dxf(const std::string& contents, const std::filesystem::path& fil
         if (close && line.size() > 2) line.push_back(line.front());
         if (line.size() < 2) fail(file, at, "a trace of one point", "two points or more");
         for (Vec2& p : line) p = scale * p;
+        if (std::adjacent_find(line.begin(), line.end(), [](Vec2 a, Vec2 b) { return !(a == b); }) == line.end()) fail(file, at, "the trace ends where it begins", "two different points");
+        line.erase(std::unique(line.begin(), line.end(), [](Vec2 a, Vec2 b) { return a == b; }), line.end());   // drawn twice
+        for (const Vec2 p : line)
+            if (!std::isfinite(p.x) || !std::isfinite(p.y)) fail(file, at, "a point lies too far away to be a number of metres");
         traces.lines_m.push_back(std::move(line));
     };
     const auto require_scale = [&](int at) {
@@ -178,7 +195,7 @@ TraceFile read_dxf(const std::string& contents, const std::filesystem::path& fil
         const Group& group = groups[i];
         if (group.code == 9 && group.value == "$INSUNITS" && unit.empty() && i + 1 < groups.size()) {
             static const std::map<int, double> sizes{{1, 0.0254}, {2, 0.3048}, {4, 1e-3}, {5, 1e-2}, {6, 1.0}, {7, 1e3}};
-            const auto found = sizes.find(static_cast<int>(number_of(groups[i + 1].value, file, groups[i + 1].line)));
+            const auto found = sizes.find(flags_of(number_of(groups[i + 1].value, file, groups[i + 1].line)));
             if (found != sizes.end()) scale = found->second;
         }
         if (group.code == 2 && i > 0 && groups[i - 1].value == "SECTION") in_entities = group.value == "ENTITIES";
@@ -202,7 +219,7 @@ TraceFile read_dxf(const std::string& contents, const std::filesystem::path& fil
                 case 42:
                     if ((group.value == "LWPOLYLINE" || group.value == "VERTEX") && value() != 0.0) fail(file, groups[k].line, "a polyline with an arc", "straight segments");
                     break;
-                case 70: flags = static_cast<int>(value()); break;
+                case 70: flags = flags_of(value()); break;
                 default: break;
             }
         }

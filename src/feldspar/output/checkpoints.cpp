@@ -44,12 +44,14 @@ Checkpoint read_file(const fs::path& file, const CheckpointOwner& owner) {
     const auto no = [](std::string why) { return Checkpoint{{}, std::move(why)}; };
     Trailer trailer;
     if (size < sizeof trailer) return no("it is damaged");
-    std::vector<char> bytes(size);
     std::ifstream stream(file, std::ios::binary);
-    if (!stream.read(bytes.data(), static_cast<std::streamsize>(size))) return no("it cannot be read");
-    std::memcpy(&trailer, bytes.data() + size - sizeof trailer, sizeof trailer);
-    bytes.resize(size - sizeof trailer);
-    if (trailer.mark != kMark || trailer.bytes != bytes.size() || trailer.hash != hash_of_bytes(bytes.data(), bytes.size())) return no("it is damaged");
+    stream.seekg(static_cast<std::streamoff>(size - sizeof trailer));
+    if (!stream.read(reinterpret_cast<char*>(&trailer), sizeof trailer)) return no("it cannot be read");
+    if (trailer.mark != kMark || trailer.bytes != size - sizeof trailer) return no("it is damaged");   // before memory is asked for
+    std::vector<char> bytes(trailer.bytes);
+    stream.seekg(0);
+    if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) return no("it cannot be read");
+    if (trailer.hash != hash_of_bytes(bytes.data(), bytes.size())) return no("it is damaged");
     const std::string wanted = header_of(owner);
     if (bytes.size() >= wanted.size() && std::equal(wanted.begin(), wanted.end(), bytes.begin())) {
         bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(wanted.size()));

@@ -1,6 +1,7 @@
 // The run's directory. Every file is written aside, flushed to the disk, and renamed when it is whole.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -45,10 +46,16 @@ std::string machine() {
     return plain;
 }
 
+/// Of the system: nothing that is computed may depend on it.
+unsigned unforeseen_number() {
+    unsigned number = 0;
+    return ::getrandom(&number, sizeof number, GRND_NONBLOCK) == sizeof number ? number / 2 : 0;   // so that counting on does not begin anew
+}
+
 /// Where a file is written before it is renamed to `path`: ".summary.json.4711-2-machine.part". Process, counter and machine keep programs and
 /// threads that write the same file at once apart; the last one to rename its own wins.
 fs::path aside_of(const fs::path& path) {
-    static std::atomic<unsigned> counter{0};
+    static std::atomic<unsigned> counter{unforeseen_number()};   // so that nobody can put a link there beforehand
     return path.parent_path() / fmt::format(".{}.{}-{}-{}.part", path.filename().string(), ::getpid(), ++counter, machine());
 }
 
@@ -176,8 +183,19 @@ std::string file_name_of(const std::string& job_name) {
 
 const fs::path results_directory = "results";
 
+/// An empty file that was not there before. Its writers open it by its name: in a directory that others may write to, a link in its place would lead them anywhere.
+void make_new(const fs::path& path) {
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.number() < 0) lost(path, reason(errno));
+    if (!file.close()) {
+        const int error = errno;
+        ::unlink(path.c_str());
+        lost(path, reason(error));
+    }
+}
+
 void write_bytes(const fs::path& path, std::string_view bytes) {
-    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    Descriptor file(::open(path.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC | O_NOFOLLOW));
     if (file.number() < 0) lost(path, reason(errno));
     while (!bytes.empty()) {
         const ssize_t written = ::write(file.number(), bytes.data(), bytes.size());
@@ -249,15 +267,19 @@ RunDirectory RunDirectory::open(fs::path path) {
     return RunDirectory(std::move(path));
 }
 
-void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const {
-    const fs::path path = path_ / name;
+namespace {
+
+void write_whole(const fs::path& directory, const std::string& name, const std::function<void(const fs::path&)>& fill, bool may_be_empty) {
+    const fs::path path = directory / name;
     const fs::path aside = aside_of(path);
     const HoldFileSizeSignal hold;
-    if (path.parent_path() != path_ && ::mkdir(path.parent_path().c_str(), 0777) != 0 && errno != EEXIST) {
+    if (path.parent_path() != directory && ::mkdir(path.parent_path().c_str(), 0777) != 0 && errno != EEXIST) {
         lost(path.parent_path(), reason(errno));
     }
+    make_new(aside);
     try {
         fill(aside);
+        if (!may_be_empty && fs::file_size(aside) == 0) lost(path, "nothing was written");
         flush_to_disk(aside, false);
         if (::rename(aside.c_str(), path.c_str()) != 0) lost(path, reason(errno));
     } catch (const std::system_error& problem) {  // also std::filesystem and stream failures
@@ -270,8 +292,12 @@ void RunDirectory::write(const std::string& name, const std::function<void(const
     flush_to_disk(path.parent_path(), true);
 }
 
+}  // namespace
+
+void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const { write_whole(path_, name, fill, false); }
+
 void RunDirectory::write_text(const std::string& name, const std::string& text) const {
-    write(name, [&](const fs::path& aside) { write_bytes(aside, text); });
+    write_whole(path_, name, [&](const fs::path& aside) { write_bytes(aside, text); }, true);
 }
 
 }  // namespace feldspar

@@ -254,7 +254,7 @@ private:
             std::set<std::pair<int, int>> sides;
             for (std::size_t k = 0; k < face.vertices.size(); ++k) sides.insert(std::minmax(face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]));
             for (const long long signed_edge : face.edges) {
-                const long long e = std::abs(signed_edge);
+                const long long e = std::abs(std::max(signed_edge, -most_things - 1));
                 if (e < 1 || e > edges) words_.fail(face.line, fmt::format("face {} names edge {}, which is not there", f + 1, e), fmt::format("edges 1 to {}", edges));
                 const Edge& edge = edges_[e - 1];
                 if (!sides.contains(std::minmax(edge.a, edge.b)))
@@ -340,7 +340,7 @@ private:
                 const long long physicals = words_.count("a number of physical tags");
                 for (long long k = 0; k < physicals; ++k) {
                     const long long physical = words_.whole("a physical tag");
-                    if (dimension == 2 && k == 0) physical_of_surface_[tag] = static_cast<int>(std::clamp<long long>(std::abs(physical), 0, most_things));
+                    if (dimension == 2 && k == 0) physical_of_surface_[tag] = tag_of(physical);
                 }
                 if (dimension == 0) continue;
                 const long long around = words_.count("a number of bounding entities");
@@ -409,7 +409,10 @@ private:
         elements_.push_back(element);
     }
 
-    static int tag_of(long long tag) { return static_cast<int>(std::clamp<long long>(std::abs(tag), 0, 2'000'000'000)); }
+    static int tag_of(long long tag) {
+        tag = std::clamp<long long>(tag, -2'000'000'000, 2'000'000'000);
+        return static_cast<int>(std::abs(tag));
+    }
 
     void read_elements() {
         if (!version4_) {

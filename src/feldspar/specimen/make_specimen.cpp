@@ -31,21 +31,21 @@ constexpr double most_slant_rad = 8.0 * std::numbers::pi / 180.0;   // of contac
 
 void check_numbers(const SpecimenSpec& spec) {
     if (!(spec.porosity >= 0.0 && spec.porosity < 1.0)) {
-        throw InputError({"", 0, 0, "specimen.grains.porosity"}, fmt::format("{:g}", spec.porosity), "from 0 to below 1");
+        throw InputError({"", 0, 0, "specimen.grains.porosity"}, fmt::format("{:g} is not allowed", spec.porosity), "from 0 to below 1");
     }
     if (!(spec.thickness_m > 0.0) || !std::isfinite(spec.thickness_m)) {
-        throw InputError({"", 0, 0, "specimen.thickness"}, fmt::format("{:g} m", spec.thickness_m), "a length greater than zero");
+        throw InputError({"", 0, 0, "specimen.thickness"}, fmt::format("{:g} m is not allowed", spec.thickness_m), "a length greater than zero");
     }
     if (spec.merge_length_m && !(*spec.merge_length_m >= 0.0 && std::isfinite(*spec.merge_length_m))) {
-        throw InputError({"", 0, 0, "specimen.grains.merge_length"}, fmt::format("{:g} m", *spec.merge_length_m), "a length, or 0 for never");
+        throw InputError({"", 0, 0, "specimen.grains.merge_length"}, fmt::format("{:g} m is not allowed", *spec.merge_length_m), "a length, or 0 for never");
     }
     if (spec.triangles_per_grain < 0) {
-        throw InputError({"", 0, 0, "specimen.grains.triangles_per_grain"}, fmt::format("{}", spec.triangles_per_grain),
+        throw InputError({"", 0, 0, "specimen.grains.triangles_per_grain"}, fmt::format("{} is not allowed", spec.triangles_per_grain),
                          "0 for the fixed topology, or a number of triangles");
     }
     const double particles = spec.particles_per_grain;
     if (particles != 0.0 && !(particles >= 7.0 && particles <= 500.0)) {
-        throw InputError({"", 0, 0, "specimen.grains.particles_per_grain"}, fmt::format("{:g}", particles),
+        throw InputError({"", 0, 0, "specimen.grains.particles_per_grain"}, fmt::format("{:g} is not allowed", particles),
                          "0 for grains that are not filled, or from 7 to 500");
     }
 }

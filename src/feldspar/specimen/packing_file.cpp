@@ -25,6 +25,8 @@ class PackingReader {
 public:
     explicit PackingReader(const std::filesystem::path& file) : name_(file.string()), stream_(file) {
         if (!stream_) throw InputError({name_, 0, 0, ""}, "the packing file cannot be opened", "a file saved with save_packing");
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(file, ignored)) throw InputError({name_, 0, 0, ""}, "is no file of a packing", "a file saved with save_packing");   // a device has no end
     }
 
     [[noreturn]] void fail(const std::string& problem, const std::string& allowed) const {
@@ -219,6 +221,7 @@ Packing load_packing(const std::filesystem::path& file, const Outline& outline) 
     packing.overlap_mean = relaxation[0];
     packing.overlap_max = relaxation[1];
     packing.residual = relaxation[2];
+    if (relaxation[3] != std::floor(relaxation[3]) || !(relaxation[3] >= 0.0 && relaxation[3] < 1e9)) reader.fail(fmt::format("'{}' is no number of steps", relaxation[3]), "a whole number, zero or more");
     packing.relaxation_steps = static_cast<int>(relaxation[3]);
     if (reader.next_word() == "minerals") {
         const std::size_t minerals = reader.count("minerals", 1);

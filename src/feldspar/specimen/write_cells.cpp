@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/geometry/polygon.hpp"
 
 namespace feldspar {
@@ -163,7 +164,11 @@ std::string as_msh(const Specimen& specimen) {
     int count = 0;
     for (auto& [label, number] : sides) number = ++count;
     std::string text = fmt::format("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n", sides.size() + n);
-    for (const auto& [label, number] : sides) fmt::format_to(Out(text), "1 {} \"{}\"\n", number, label);
+    for (const auto& [label, number] : sides) {
+        std::string name = printable(label, LineEnds::escaped);
+        std::replace(name.begin(), name.end(), '"', '\'');   // which would end it
+        fmt::format_to(Out(text), "1 {} \"{}\"\n", number, name);
+    }
     for (std::size_t i = 0; i < n; ++i) fmt::format_to(Out(text), "2 {} \"grain-{}\"\n", i + 1, i + 1);
     fmt::format_to(Out(text), "$EndPhysicalNames\n$Entities\n{} {} {} 0\n", vertices, edges.ends.size(), n);
     for (std::size_t v = 0; v < vertices; ++v) fmt::format_to(Out(text), "{} {:.17g} {:.17g} 0 0\n", v + 1, cells.vertices[v].x, cells.vertices[v].y);

@@ -48,7 +48,7 @@ bool is_untouched(const fs::path& directory) {
 }  // namespace
 
 std::optional<FileLock> FileLock::take(const fs::path& file) {
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0) throw OutputError(fmt::format("cannot write '{}': {}", file.string(), std::strerror(errno)));
     FileLock lock(descriptor);
     if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;   // a file system without locks keeps nobody out

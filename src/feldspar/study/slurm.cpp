@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 enum class Place { waiting, running };
 
+constexpr std::size_t most_elements = 10'000'000;   // above Slurm's own limit: whatever answers with more is not Slurm
+
 // Elements in Slurm's queue, by the array's number and theirs; a job that is no array has the element 0.
 using Queue = std::map<std::pair<std::string, std::size_t>, Place>;
 
@@ -294,7 +296,7 @@ std::vector<std::size_t> elements_in(const std::string& text) {
         const auto dash = part.find('-');
         const auto first = whole_number(part.substr(0, dash));
         const auto last = dash == std::string::npos ? first : whole_number(part.substr(dash + 1));
-        if (!first || !last) return {};
+        if (!first || !last || *last >= most_elements) return {};
         for (std::size_t element = *first; element <= *last; ++element) elements.push_back(element);
     }
     return elements;

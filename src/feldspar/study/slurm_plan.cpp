@@ -10,6 +10,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/median.hpp"
+#include "feldspar/base/printable.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/specimen/specimen.hpp"
@@ -56,10 +57,10 @@ const char* name(Keep keep) {
     return "histories";
 }
 
-Keep keep_of(const std::string& word) {
+Keep keep_of(const std::string& word, const fs::path& file) {
     for (const Keep keep : {Keep::numbers, Keep::histories, Keep::all})
         if (word == name(keep)) return keep;
-    throw InputError({}, fmt::format("'{}' is nothing that a run can keep", word), "numbers, histories or all");
+    throw InputError({.file = file.string()}, fmt::format("'{}' is nothing that a run can keep", printable(word, LineEnds::escaped)), "numbers, histories or all");
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -184,8 +185,20 @@ std::vector<std::vector<std::size_t>> grouped(std::span<const double> seconds, d
 
 fs::path SlurmPlan::element_output(std::size_t element) const { return directory / fmt::format("element-{}.out", element); }
 
+namespace {
+
+// An option stands in its line of the script: what follows a line end would be a command.
+void require_one_line(const SlurmOptions& options) {
+    for (const auto& [option, text] : {std::pair{"--partition", &options.partition}, {"--account", &options.account}, {"--time", &options.time}, {"--sbatch", &options.sbatch}})
+        if (std::any_of(text->begin(), text->end(), [](unsigned char c) { return std::iscntrl(c) != 0; }))
+            throw InputError({.file = {}, .line = 0, .column = 0, .key = option}, fmt::format("'{}' has a control character in it", printable(*text, LineEnds::escaped)), "text in one line");
+}
+
+}  // namespace
+
 SlurmPlan write_plan(const fs::path& results, const Study& study, std::span<const Run* const> runs, const TimeEstimate& estimate,
                      const SlurmOptions& options, const fs::path& program) {
+    require_one_line(options);
     std::vector<double> seconds;
     for (const Run* run : runs) seconds.push_back(estimate.seconds(*run));
     SlurmPlan plan;
@@ -220,11 +233,18 @@ SlurmPlan read_plan(const fs::path& directory) {
         plan.directory = fs::absolute(directory).lexically_normal();
         if (!plan.directory.has_filename()) plan.directory = plan.directory.parent_path();
         plan.study = text.at("study").get<std::string>();
-        plan.keep = keep_of(text.at("keep").get<std::string>());
+        plan.keep = keep_of(text.at("keep").get<std::string>(), file);
         plan.cpus = text.at("cpus").get<int>();
         plan.array_job = text.at("array_job").get<std::string>();
         plan.gather_job = text.at("gather_job").get<std::string>();
+        for (const std::string& number : {plan.array_job, plan.gather_job})
+            if (!std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))   // it goes to Slurm's programs
+                throw InputError({.file = file.string()}, fmt::format("'{}' is not the number of a job", printable(number, LineEnds::escaped)), "digits");
         plan.groups = text.at("groups").get<std::vector<std::vector<std::string>>>();
+        for (const auto& group : plan.groups)
+            for (const std::string& id : group)
+                if (id.empty() || !std::all_of(id.begin(), id.end(), [](unsigned char c) { return std::isxdigit(c) != 0; }))   // it names files
+                    throw InputError({.file = file.string()}, fmt::format("'{}' is not the name of a run", printable(id, LineEnds::escaped)), "hexadecimal digits");
         return plan;
     } catch (const json::exception& problem) {
         throw InputError({.file = file.string()}, fmt::format("this is not a plan of a study on Slurm ({})", problem.what()));

@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
+#include <system_error>
 
 #include "feldspar/base/printable.hpp"
 #include "feldspar/base/text_table.hpp"
@@ -33,12 +37,23 @@ std::string mean_text(const MeanInterval& interval, double factor) {
     return std::isnan(half) ? fmt::format("{:.{}f}", mean, digits) : fmt::format("{:.{}f} ± {:.{}f}", mean, digits, half, digits);
 }
 
+// With its unit or without: "-5", "-5 MPa", "+10 %". Behind the number stand no signs that a spreadsheet would reckon with.
+bool is_a_number(std::string_view text) {
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double number = 0.0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (problem != std::errc{}) return false;
+    if (end != text.data() + text.size() && (*end == '/' || *end == '.')) return false;
+    return std::all_of(end, text.data() + text.size(), [](unsigned char c) { return c == ' ' || c == '%' || c == '/' || c == '.' || std::isalnum(c) != 0 || c >= 0x80; });
+}
+
 std::string number_cell(double value) { return std::isfinite(value) ? format_exact(value) : ""; }
 
 }  // namespace
 
 std::string csv_cell(const std::string& given) {
-    const std::string text = printable(given);
+    std::string text = printable(given);
+    if (!text.empty() && std::string_view("=+-@\t").find(text.front()) != std::string_view::npos && !is_a_number(text)) text.insert(text.begin(), '\'');
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
@@ -114,7 +129,7 @@ std::string runs_csv(const Study& study, const Ledger& ledger) {
         const RunRecord* record = found == records.end() ? nullptr : &found->second;
         const auto grade = record == nullptr ? decltype(record->texts.end()){} : record->texts.find("grade");
         text += fmt::format("{},{},{},{},{}", run.seed(), name(run.test().kind), number_cell(run.test().sigma3_Pa),
-                            record == nullptr ? "missing" : name(record->state), record != nullptr && grade != record->texts.end() ? grade->second : "");
+                            record == nullptr ? "missing" : name(record->state), record != nullptr && grade != record->texts.end() ? csv_cell(grade->second) : "");
         for (const std::string& column : number_columns()) {
             const auto number = record == nullptr ? decltype(record->numbers.end()){} : record->numbers.find(column);
             text += "," + (record != nullptr && number != record->numbers.end() ? number_cell(number->second) : std::string{});

@@ -22,7 +22,7 @@ std::string points_csv(const Study& study, std::span<const PointResults> points)
 std::string runs_csv(const Study& study, const Ledger& ledger);
 
 /// "UCS_MPa" and "12.3 GPa" as cells of a CSV: quoted where a comma, a quote or a line end asks for it; control characters as
-/// escapes such as \x1b.
+/// escapes such as \x1b. Text that a spreadsheet would take for a formula ("=1+1", "@a", "-a") gets an apostrophe before it; numbers with their unit do not.
 std::string csv_cell(const std::string& text);
 
 }  // namespace feldspar

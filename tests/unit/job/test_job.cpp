@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -505,6 +506,11 @@ TEST(TraceFiles, OfDxfHaveLinesAndPolylines) {
     EXPECT_THROW(read_traces("x1,y1,x2\n1,2,3\n", "a.csv", "", ""), InputError);
     EXPECT_THROW(read_traces("x1,y1,x2,y2\n1,2,3,four\n", "a.csv", "", ""), InputError);
     EXPECT_THROW(read_traces("", "a.txt", "", ""), InputError);
+    EXPECT_THROW(read_traces("x1,x1,x1,y1,x2,y2\n0,1,2,3\n", "a.csv", "", ""), InputError);   // columns beyond the row
+    EXPECT_THROW(read_traces("x1,y1,x2,y2\n0,0,1e308,0\n", "a.csv", "km", ""), InputError);     // no number of metres
+    const std::string twice = "0\nLWPOLYLINE\n8\nfaults\n70\n1e300\n10\n0\n20\n0\n10\n0\n20\n0\n10\n5\n20\n5\n";
+    EXPECT_EQ(read_traces(head + twice + end, "a.dxf", "", "").lines_m.front(), (std::vector<Vec2>{{0.0, 0.0}, {0.005, 0.005}}));
+    EXPECT_THROW(read_traces(head + "0\nLINE\n10\n1\n20\n2\n11\n1\n21\n2\n" + end, "a.dxf", "", ""), InputError);   // a point
 }
 
 TEST(PhaseMaps, AreReadByColourOrByValue) {
@@ -529,6 +535,16 @@ TEST(PhaseMaps, AreReadByColourOrByValue) {
     minerals[1].value = 2;
     EXPECT_EQ(read_phase_map(png({1, 2, 0, 2}, 2, 2, PNG_FORMAT_GRAY), "map.png", minerals)->phase, (std::vector<std::int8_t>{0, 1, -1, 1}));
     EXPECT_THROW(read_phase_map("no picture", "map.png", minerals), InputError);
+    std::string claims_more = coloured;   // 20,000 x 20,000 pixels in some dozen bytes: refused before 1.2 GB are asked for
+    for (const std::size_t at : {16U, 20U}) claims_more.replace(at, 4, std::string("\0\0\x4e\x20", 4));
+    const std::uint32_t checksum = static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(claims_more.data()) + 12, 17));
+    for (int i = 0; i < 4; ++i) claims_more[29 + static_cast<std::size_t>(i)] = static_cast<char>(checksum >> (24 - 8 * i));
+    try {
+        (void)read_phase_map(claims_more, "map.png", minerals);
+        ADD_FAILURE() << "was read";
+    } catch (const InputError& error) {
+        EXPECT_NE(error.problem().find("cannot hold 20000 x 20000 pixels"), std::string::npos) << error.what();
+    }
 }
 
 TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {

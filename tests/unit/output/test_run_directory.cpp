@@ -7,6 +7,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <set>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/results.hpp"
@@ -202,6 +203,23 @@ TEST(RunDirectory, AFullDiskLeavesNoTruncatedFile) {
     EXPECT_EQ(code, 0);
     EXPECT_EQ(read_text(directory.path() / "history.csv"), "whole");
     EXPECT_EQ(count_entries(directory.path()), 1);
+}
+
+TEST(RunDirectory, WritesThroughNoLink) {
+    const TemporaryFolder scratch;
+    const auto directory = RunDirectory::create(scratch.path() / "run", "job");
+    scratch.write("victim", "precious");
+    fs::create_symlink(scratch.path() / "victim", directory.path() / "summary.json");
+    std::set<std::string> names;
+    for (int i = 0; i < 2; ++i)
+        directory.write("summary.json", [&](const fs::path& aside) {
+            EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(aside))) << "made before anybody writes to it";
+            EXPECT_TRUE(names.insert(aside.string()).second);
+            write_text(aside, "{}");
+        });
+    EXPECT_EQ(read_text(scratch / "victim"), "precious");
+    EXPECT_FALSE(fs::is_symlink(directory.path() / "summary.json"));
+    EXPECT_EQ(read_text(directory.path() / "summary.json"), "{}");
 }
 
 TEST(RunDirectory, SaysThatTheDirectoryIsGone) {

@@ -81,6 +81,10 @@ TEST(CsvCell, IsQuotedWhereItMustBe) {
     EXPECT_EQ(csv_cell("\"a\""), "\"\"\"a\"\"\"");
     EXPECT_EQ(csv_cell("a\nb"), "\"a\nb\"");
     EXPECT_EQ(csv_cell("a\x1b\a"), "a\\x1b\\x07");
+    for (const std::string formula : {"=1+1", "=cmd|' /C calc'!A0", "+A1", "-A1", "-1+2", "-1/A1", "@SUM(A1)", "\t=1", "+", "-5 MPa+A1", "=HYPERLINK(1)"})
+        EXPECT_EQ(csv_cell(formula), "'" + formula);   // a spreadsheet takes none of them for a formula
+    for (const std::string plain : {"-5", "+10 %", "-5 MPa", "-1e-3 m/s", "-0.5 µm", "-5MPa", "a = b", "1-2"}) EXPECT_EQ(csv_cell(plain), plain);
+    EXPECT_EQ(csv_cell("=\"a\",b"), "\"'=\"\"a\"\",b\"");
 }
 
 TEST_F(ExecuteStudy, GivesTheSameBitsSideBySide) {

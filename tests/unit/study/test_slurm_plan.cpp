@@ -161,5 +161,33 @@ TEST_F(SlurmPlanTest, RubbishIsRefused) {
     EXPECT_THROW(read_plan(place_.path()), InputError);
 }
 
+// It is a file that somebody may have sent: its words become names of files and arguments of Slurm's programs.
+TEST_F(SlurmPlanTest, NamesNoFileElsewhereAndNoOptionOfSlurm) {
+    SlurmPlan plan = write_plan(study_.results, study_, runs_, TimeEstimate{}, SlurmOptions{}, "/opt/feldspar");
+    EXPECT_NO_THROW(read_plan(plan.directory));
+    for (const char* id : {"../../../elsewhere", "/etc/passwd", "", "a b"}) {
+        SlurmPlan bad = plan;
+        bad.groups.front().front() = id;
+        write_plan_file(bad);
+        EXPECT_THROW(read_plan(plan.directory), InputError) << id;
+    }
+    for (const char* number : {"--clusters=moon", "12;rm", " 12"}) {
+        SlurmPlan bad = plan;
+        bad.array_job = number;
+        write_plan_file(bad);
+        EXPECT_THROW(read_plan(plan.directory), InputError) << number;
+    }
+}
+
+TEST_F(SlurmPlanTest, ALineEndInAnOptionIsNoCommand) {
+    const std::string bad = "rock\ntouch made";
+    for (const auto& member : {&SlurmOptions::partition, &SlurmOptions::account, &SlurmOptions::time, &SlurmOptions::sbatch}) {
+        SlurmOptions options;
+        options.*member = bad;
+        EXPECT_THROW(write_plan(study_.results, study_, runs_, TimeEstimate{}, options, "/opt/feldspar"), InputError);
+    }
+    EXPECT_FALSE(fs::exists(study_.results / "slurm"));
+}
+
 }  // namespace
 }  // namespace feldspar

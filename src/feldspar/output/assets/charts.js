@@ -108,7 +108,11 @@ function saveAs(blob, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 function fileName(title, ending) { return (title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") || "chart") + ending; }
-function csvCell(text) { return /[",\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text; }
+/** Text that a spreadsheet would take for a formula gets an apostrophe, as in the program's own tables; a number with its unit does not. */
+function csvCell(text) {
+  if (/^[=+\-@\t]/.test(text) && !/^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?([ %a-z\u0080-\uffff][ %/.a-z0-9\u0080-\uffff]*)?$/i.test(text)) text = "'" + text;
+  return /[",\n]/.test(text) ? '"' + text.replaceAll('"', '""') + '"' : text;
+}
 
 /**
  * A chart in `host`. series: [{label, x, y, color (a theme name or a colour), width, dash, mark, size, right, quiet, note}];
