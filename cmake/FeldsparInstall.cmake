@@ -18,8 +18,7 @@ install(FILES packaging/debian-copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} REN
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 # The rooms as static libraries feldspar::base, feldspar::lab, ...: a room brings those that it uses.
-set(rooms base geometry specimen laws model methods fast step lab job output study findings calibration)
-list(TRANSFORM rooms PREPEND feldspar_ OUTPUT_VARIABLE room_targets)
+get_property(room_targets GLOBAL PROPERTY FELDSPAR_ROOMS)
 install(TARGETS ${room_targets} EXPORT FeldsparTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/feldspar COMPONENT library)
 install(DIRECTORY src/feldspar DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inc" PATTERN assets EXCLUDE PATTERN vendor EXCLUDE)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/Feldspar)
@@ -51,6 +50,6 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "The program feldspar, its manual pages,
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libfeldspar-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 # what find_package(Feldspar) asks for (FeldsparConfig.cmake.in)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libfmt-dev, nlohmann-json3-dev, libboost-dev, libeigen3-dev, zlib1g-dev, libpng-dev, libhdf5-dev, libcgal-dev, libudunits2-dev, libsqlite3-dev, libsqlitecpp-dev, libtomlplusplus-dev, libxxhash-dev, libnlopt-dev, libnlopt-cxx-dev, pkg-config")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libfmt-dev, nlohmann-json3-dev, libboost-dev, libeigen3-dev, zlib1g-dev, libpng-dev, libhdf5-dev, libcgal-dev, libudunits2-dev, libsqlite3-dev, libsqlitecpp-dev, libtomlplusplus-dev, libxxhash-dev, libcpp-httplib-dev, libnlopt-dev, libnlopt-cxx-dev, pkg-config")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Headers, static libraries and the CMake package Feldspar, for programs that use the laboratory.")
 include(CPack)

@@ -26,6 +26,7 @@ function(feldspar_room name)
     target_link_libraries(feldspar_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE $<BUILD_INTERFACE:feldspar_options>)
     target_include_directories(feldspar_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
     set_target_properties(feldspar_${name} PROPERTIES EXPORT_NAME ${name})
+    set_property(GLOBAL APPEND PROPERTY FELDSPAR_ROOMS feldspar_${name})
     if(FELDSPAR_WITH_PYTHON)
         # Hidden, so that calls inside the library stay direct: no slower than a program's own code (docs/decisions, Python module).
         set_target_properties(feldspar_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
