@@ -1,6 +1,9 @@
 #include "feldspar/lab/stability.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Dense>
 
@@ -9,34 +12,64 @@
 namespace feldspar {
 namespace {
 
-// K x of the linearised body, from the forces of one step.
-void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& x, Eigen::VectorXd& Kx) {
+// Takes loads and bonds off a body at rest, and puts them back at the end. A copy of the body would be several times as large.
+class Unloaded {
+public:
+    explicit Unloaded(Assembly& body) : body_(body), dead_loads_(body.dead_loads) {
+        exchange();
+        body_.bonds.resize(body_.points.size());
+        for (DeadLoad& load : body_.dead_loads) {   // springs press plates, whose masses allow for them
+            load.pressure_Pa = 0.0;
+            load.springs = false;
+        }
+    }
+    ~Unloaded() {
+        exchange();
+        body_.dead_loads = std::move(dead_loads_);
+        Nodes& nodes = body_.nodes;
+        for (Array<Vec2>* state : {&nodes.displacement, &nodes.velocity, &nodes.force}) std::fill(state->begin(), state->end(), Vec2{});
+    }
+    Unloaded(const Unloaded&) = delete;
+    Unloaded& operator=(const Unloaded&) = delete;
+
+private:
+    void exchange() {
+        std::swap(body_.bonds, bonds_);
+        std::swap(body_.weight, weight_);
+    }
+
+    Assembly& body_;
+    Bonds bonds_;
+    Array<Vec2> weight_;
+    std::vector<DeadLoad> dead_loads_;
+};
+
+// K x of the linearised body for x = factor * q, from the forces of one step, times factor.
+void apply_stiffness(Assembly& assembly, Team& team, const Eigen::VectorXd& factor, const Eigen::VectorXd& q, Eigen::VectorXd& w) {
     constexpr double kAmplitude = 1e-12;   // m: rotations of 1e-8, far from both nonlinearity and rounding
     Nodes& nodes = assembly.nodes;
     StepSettings settings;
     settings.strength = Strength::unlimited;
-    const double scale = kAmplitude / x.lpNorm<Eigen::Infinity>();
+    const double scale = kAmplitude / factor.cwiseProduct(q).lpNorm<Eigen::Infinity>();
     const std::size_t bonds = assembly.points.size();
     assembly.bonds.resize(0);   // keeps the memory: this is done 80 times
     assembly.bonds.resize(bonds);
-    for (int n = 0; n < nodes.count(); ++n) nodes.displacement[n] = nodes.velocity[n] = {scale * x[2 * n], scale * x[2 * n + 1]};
+    for (int n = 0; n < nodes.count(); ++n)
+        nodes.displacement[n] = nodes.velocity[n] = {scale * (factor[2 * n] * q[2 * n]), scale * (factor[2 * n + 1] * q[2 * n + 1])};
     PlatenWork none;
     advance(assembly, team, settings, -1, 1, none);   // contacts feel the velocity, triangles the displacement; where it all goes then is of no interest
     for (int n = 0; n < nodes.count(); ++n) {
-        Kx[2 * n] = -nodes.force[n].x / scale;
-        Kx[2 * n + 1] = -nodes.force[n].y / scale;
+        w[2 * n] = factor[2 * n] * (-nodes.force[n].x / scale);
+        w[2 * n + 1] = factor[2 * n + 1] * (-nodes.force[n].y / scale);
     }
 }
 
 }  // namespace
 
-double largest_omega2(Assembly assembly, Team& team) {
+double largest_omega2(Assembly& assembly, Team& team) {
+    assert(std::all_of(assembly.nodes.displacement.begin(), assembly.nodes.displacement.end(), [](Vec2 u) { return u == Vec2{}; }));
+    const Unloaded unloaded(assembly);
     const int dofs = 2 * assembly.nodes.count(), iterations = 80;
-    for (DeadLoad& load : assembly.dead_loads) {   // springs press plates, whose masses allow for them
-        load.pressure_Pa = 0.0;
-        load.springs = false;
-    }
-    assembly.weight = {};
     Eigen::VectorXd root_inverse_mass(dofs);   // 0 where the motion is imposed
     for (int n = 0; n < assembly.nodes.count(); ++n) {
         root_inverse_mass[2 * n] = std::sqrt(assembly.nodes.inverse_mass[n].x);
@@ -50,9 +83,8 @@ double largest_omega2(Assembly assembly, Team& team) {
     int steps = 0;
     double last_beta = 0.0;
     for (; steps < iterations; ++steps) {
-        const Eigen::VectorXd x = root_inverse_mass.cwiseProduct(q);
-        apply_stiffness(assembly, team, x, w);
-        w = root_inverse_mass.cwiseProduct(w) - last_beta * previous;
+        apply_stiffness(assembly, team, root_inverse_mass, q, w);
+        w -= last_beta * previous;
         alpha[steps] = q.dot(w);
         w -= alpha[steps] * q;
         last_beta = w.norm();
@@ -61,7 +93,7 @@ double largest_omega2(Assembly assembly, Team& team) {
             ++steps;
             break;
         }
-        previous = q;
+        std::swap(previous, q);
         q = w / last_beta;
     }
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;

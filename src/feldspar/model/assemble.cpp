@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
-#include <map>
 #include <numeric>
+#include <unordered_map>
 #include <utility>
 
 #include "feldspar/base/error.hpp"
@@ -70,6 +71,7 @@ void add_nodes(Assembly& assembly, const GrainMesh& mesh) {
     }
     std::vector<Vec2> places(mesh.nodes.size());
     for (std::size_t n = 0; n < places.size(); ++n) places[assembly.node_of_mesh[n]] = mesh.nodes[n];
+    assembly.nodes.reserve(places.size());
     for (const Vec2 X : places) assembly.nodes.add(X, kFree);
 }
 
@@ -88,6 +90,7 @@ void add_flexible_grains(Assembly& assembly, const Specimen& specimen) {
     assembly.bodies.resize(mesh.vertex_count.size());
     add_nodes(assembly, mesh);
     const auto in_assembly = [&](const auto& t) { return SideNodes{assembly.node_of_mesh[t[0]], assembly.node_of_mesh[t[1]], assembly.node_of_mesh[t[2]]}; };
+    assembly.triangles.reserve(mesh.triangles.size());
     for (const auto& t : mesh.triangles) assembly.triangles.push_back(make_triangle(assembly.nodes.reference, in_assembly(t), assembly.thickness_m));
     for (int g = 0; g < std::ssize(assembly.bodies); ++g) {
         Body& body = assembly.bodies[g];
@@ -229,11 +232,13 @@ void lay_out_bonds(Assembly& assembly) {
 }
 
 void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, ContactKind kind) {
-    std::map<std::pair<int, int>, std::pair<int, int>> owner;   // directed vertex pair -> (cell, edge)
+    std::unordered_map<std::uint64_t, std::pair<int, int>> owner;   // directed edge -> (cell, edge of the cell)
+    const auto directed = [](int from, int to) { return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to); };
+    owner.reserve(std::accumulate(cells.cells.begin(), cells.cells.end(), std::size_t{0}, [](std::size_t sum, const Cell& cell) { return sum + cell.vertices.size(); }));
     for (int g = 0; g < std::ssize(cells.cells); ++g) {
         const Cell& cell = cells.cells[g];
         const int nv = static_cast<int>(cell.vertices.size());
-        for (int k = 0; k < nv; ++k) owner[{cell.vertices[k], cell.vertices[(k + 1) % nv]}] = {g, k};
+        for (int k = 0; k < nv; ++k) owner[directed(cell.vertices[k], cell.vertices[(k + 1) % nv])] = {g, k};
     }
     struct Facing {
         int place;       // sum of those of the two grains, in the order of packs or rigid bodies
@@ -251,13 +256,19 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
         for (int k = 0; k < nv; ++k) {
             if (cell.neighbours[k] <= g) continue;
             const int from = cell.vertices[k], to = cell.vertices[(k + 1) % nv];
-            const auto other = owner.find({to, from});
+            const auto other = owner.find(directed(to, from));
             if (other == owner.end()) throw NumericalError("the tessellation is not conforming");
             facing.push_back({place[g] + place[other->second.first], cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
         }
     }
     // From bottom to top, as the packs of grains are: a contiguous share is a band of the specimen (model/bands.hpp).
     std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return std::pair{l.place, l.height} < std::pair{r.place, r.height}; });
+    const std::size_t points_each = kind == ContactKind::lobatto3 ? 3 : 1;
+    assembly.contacts.reserve(facing.size());
+    assembly.origins.reserve(facing.size());
+    assembly.points.reserve(points_each * facing.size());
+    assembly.bonds.reserve(points_each * facing.size());
+    if (!assembly.triangles.empty()) assembly.initial_shapes.reserve(points_each * facing.size());
     for (const Facing& f : facing) add_bonded_contact(assembly, kind, f.ga, f.ka, f.gb, f.kb, cells.cells[f.ga].on_seam(f.ka));
     lay_out_bonds(assembly);
 }
@@ -383,6 +394,11 @@ int Nodes::add(Vec2 place, Vec2 free) {
     return count() - 1;
 }
 
+void Nodes::reserve(std::size_t nodes) {
+    for (auto* array : {&reference, &displacement, &velocity, &force, &inverse_mass, &loading_mode}) array->reserve(nodes);
+    mass.reserve(nodes);
+}
+
 namespace {
 
 // What growing arrays have reserved beyond their ends: up to half of the memory.
@@ -395,6 +411,10 @@ void release_spare_memory(Assembly& a) {
 }
 
 }  // namespace
+
+void Bonds::reserve(std::size_t count) {
+    for (auto* quantity : {&un_m, &us_m, &Fn_N, &Fs_N, &max_un_m, &max_us_m, &damage, &fracture_J, &friction_J}) quantity->reserve(count);
+}
 
 void Bonds::resize(std::size_t count) {
     for (auto* quantity : {&un_m, &us_m, &Fn_N, &Fs_N, &max_un_m, &max_us_m, &damage, &fracture_J, &friction_J}) quantity->resize(count);

@@ -42,6 +42,7 @@ struct Nodes {
     int count() const { return static_cast<int>(reference.size()); }
     Vec2 position(int node) const { return reference[node] + displacement[node]; }
 
+    void reserve(std::size_t nodes);
     /// Adds a node at rest. @param free  1 in a direction that is free, 0 in one that is imposed. @return its number
     int add(Vec2 place, Vec2 free);
 };
@@ -177,6 +178,7 @@ inline void note_break(ContactPoint& point, const BondLawOf<double>& law, BondEv
 struct Bonds {
     Array<double> un_m, us_m, Fn_N, Fs_N, max_un_m, max_us_m, damage, fracture_J, friction_J;
 
+    void reserve(std::size_t count);
     void resize(std::size_t count);
     BondState at(std::size_t i) const {
         return {un_m[i], us_m[i], Fn_N[i], Fs_N[i], max_un_m[i], max_us_m[i], damage[i], fracture_J[i], friction_J[i]};
