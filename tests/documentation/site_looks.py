@@ -53,13 +53,14 @@ def main():
             name = page.relative_to(site).as_posix()
             if pictures and name not in chosen:
                 continue
+            browser.ask("Page.navigate", url=page.as_uri())
+            for _ in range(100):
+                browser.listen(0.1)
+                if browser.evaluate("document.readyState") == "complete" and browser.evaluate("location.href").startswith(page.as_uri()):
+                    break
             for width in (390, 1000):
                 browser.ask("Emulation.setDeviceMetricsOverride", width=width, height=900, deviceScaleFactor=1, mobile=False)
-                browser.ask("Page.navigate", url=page.as_uri())
-                for _ in range(100):
-                    browser.listen(0.1)
-                    if browser.evaluate("document.readyState") == "complete" and browser.evaluate("location.href").startswith(page.as_uri()):
-                        break
+                browser.listen(0.1)
                 wrong += [f"{name}, {width} pixels: {sentence}" for sentence in browser.evaluate(CHECK)]
                 if pictures:
                     pictures.mkdir(parents=True, exist_ok=True)
