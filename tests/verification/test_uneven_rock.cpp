@@ -270,11 +270,14 @@ TestResult dilating_shear(GrainKind grains, double tan_psi, double limit_m, doub
 }
 
 TEST(Joints, ThatDilateRiseByTheTangentOfTheirAngleUntilTheirLimit) {
-    constexpr double kTanPsi = 0.2, kLimit = 1e-4;
+    constexpr double kTanPsi = 0.2;
     for (const GrainKind grains : {GrainKind::rigid, GrainKind::flexible}) {
-        const TestResult r = dilating_shear(grains, kTanPsi, kLimit, 0.0, 0.005);
+        const double kLimit = grains == GrainKind::rigid ? 1e-4 : 5e-5;
+        const TestResult r = dilating_shear(grains, kTanPsi, kLimit, 0.0, 45.0 * kLimit);
         std::vector<double> u, v;   // while it dilates
         double along = 0.0, across = 0.0, highest = 0.0, at_end = 0.0;
+        const auto first = std::find_if(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::loading; });
+        ASSERT_NE(first, r.history.end());
         for (const HistoryRow& row : r.history) {
             if (row.phase != Phase::loading) continue;
             const double slip = row.axial_strain * r.length_m;
@@ -286,23 +289,23 @@ TEST(Joints, ThatDilateRiseByTheTangentOfTheirAngleUntilTheirLimit) {
                 along += row.axial_stress_Pa * r.section_m2;
                 across += row.gauges[1];
             }
-            highest = std::max(highest, row.gauges[0]);
-            at_end = row.gauges[0];
+            at_end = row.gauges[0] - first->gauges[0];   // the normal stress had pushed the plate down before
+            highest = std::max(highest, at_end);
         }
         ASSERT_GT(u.size(), 10U) << name(grains);
         // The joint of rigid grains dilates as its law says. That of flexible grains tilts with their edges, as above.
         const double tolerance = grains == GrainKind::rigid ? 1e-3 : 2e-2;
         EXPECT_NEAR(regression_line(u, v).slope / kTanPsi, 1.0, tolerance) << name(grains);
         EXPECT_NEAR(along / across / 0.5, 1.0, grains == GrainKind::rigid ? 2e-3 : 1e-2) << name(grains);
-        EXPECT_NEAR(highest / (kTanPsi * kLimit), 1.0, grains == GrainKind::rigid ? 1e-2 : 5e-2) << name(grains);
+        EXPECT_NEAR(highest / (kTanPsi * kLimit), 1.0, 5e-2) << name(grains);   // before it slides the specimen is sheared, which lifts the plate a little
         EXPECT_NEAR(at_end / highest, 1.0, 2e-2) << name(grains) << ": beyond the limit it slides on";
         EXPECT_LT(r.energy_residual, 0.01) << name(grains);
     }
 }
 
 TEST(Joints, ThatDilateBehindASpringArePressedHarder) {
-    constexpr double kTanPsi = 0.2, kStiffness = 5e9;   // Pa/m; what is between the spring and the joint gives way 2e-4 of what the spring does
-    const TestResult r = dilating_shear(GrainKind::rigid, kTanPsi, 1e-3, kStiffness, 0.004);
+    constexpr double kTanPsi = 0.2, kStiffness = 1e8;   // Pa/m; the specimen gives way 1e-4 of what the spring does
+    const TestResult r = dilating_shear(GrainKind::rigid, kTanPsi, 1e-3, kStiffness, 0.01);
     std::vector<double> u, stress;
     for (const HistoryRow& row : r.history)
         if (const double slip = row.axial_strain * r.length_m; row.phase == Phase::loading && slip > 4e-5) {
