@@ -123,7 +123,7 @@ py::dict energy(const PyState& s) {
 
 py::array contact_bodies(const PyState& s) {
     const std::vector<Contact>& contacts = s.assembly().contacts;
-    if (contacts.empty()) return py::array_t<std::int32_t>({py::ssize_t{0}, py::ssize_t{2}});
+    if (contacts.empty()) return py::array_t<std::int32_t>(std::vector<py::ssize_t>{0, 2});
     const Contact& first = contacts.front();
     const auto apart = reinterpret_cast<const char*>(&first.b.body) - reinterpret_cast<const char*>(&first.a.body);
     return view(&first.a.body, {static_cast<py::ssize_t>(contacts.size()), 2}, {sizeof(Contact), apart}, s.owner());
@@ -131,7 +131,7 @@ py::array contact_bodies(const PyState& s) {
 
 py::array contact_points(const PyState& s) {
     const std::vector<Contact>& contacts = s.assembly().contacts;
-    if (contacts.empty()) return py::array_t<std::int32_t>({py::ssize_t{0}, py::ssize_t{2}});
+    if (contacts.empty()) return py::array_t<std::int32_t>(std::vector<py::ssize_t>{0, 2});
     const Contact& first = contacts.front();
     const auto apart = reinterpret_cast<const char*>(&first.points) - reinterpret_cast<const char*>(&first.first_point);
     return view(&first.first_point, {static_cast<py::ssize_t>(contacts.size()), 2}, {sizeof(Contact), apart}, s.owner());

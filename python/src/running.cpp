@@ -7,6 +7,7 @@
 #include <set>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/quantity_unit.hpp"
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/study/packings.hpp"

@@ -148,7 +148,7 @@ class Specimens(unittest.TestCase):
             for name in ("cells.tess", "cells.msh", "cells.csv", "packing.txt"):
                 self.specimen.save(os.path.join(folder, name))
                 self.assertGreater(os.path.getsize(os.path.join(folder, name)), 500)
-            again = feldspar.specimen(shape="rectangle", width="18 mm", height="36 mm", grains={"file": os.path.join(folder, "cells.tess")})
+            again = feldspar.specimen(shape="rectangle", width="18 mm", height="36 mm", grains={"file": os.path.join(folder, "cells.tess"), "unit": "1 m"})
             self.assertEqual(len(again), len(self.specimen))
             with self.assertRaises(feldspar.InputError):
                 self.specimen.save(os.path.join(folder, "cells.docx"))
