@@ -1,5 +1,7 @@
 // A card by CUDA: a kernel a stage, the kernels of a block of steps in one graph. Compiled without contraction, so that the bits are those of the emulation.
+#include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <string>
 
 #include <cuda_runtime.h>
@@ -133,6 +135,8 @@ std::string version_text(int version) { return std::to_string(version / 1000) + 
 bool built_for_cards() { return true; }
 
 std::unique_ptr<Backend> cuda_backend(DeviceProvenance& provenance) {
+    static std::once_flag once;   // queues of the card, so that tests do not wait behind each other: read when the first call wakes the driver
+    std::call_once(once, [] { setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0); });
     int driver = 0, count = 0;
     cudaDriverGetVersion(&driver);
     const cudaError_t error = cudaGetDeviceCount(&count);
