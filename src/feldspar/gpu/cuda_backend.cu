@@ -1,6 +1,10 @@
 // A card by CUDA: a kernel a stage, the kernels of a block of steps in one graph. Compiled without contraction, so that the bits are those of the emulation.
+#include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <string>
+#include <string_view>
 
 #include <cuda_runtime.h>
 
@@ -23,7 +27,9 @@ int blocks_of(int size, int threads) { return (threads + size - 1) / size; }
 
 class CudaBackend final : public Backend {
 public:
-    CudaBackend() { require(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "a stream was made"); }
+    CudaBackend(int multiprocessors, bool in_one_kernel) : multiprocessors_(multiprocessors), in_one_kernel_(in_one_kernel) {
+        require(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "a stream was made");
+    }
     ~CudaBackend() override {
         cudaStreamSynchronize(stream_);
         if (graph_ != nullptr) cudaGraphExecDestroy(graph_);
@@ -68,6 +74,7 @@ public:
     }
 
     void run(const DeviceArrays& a, const LaunchSizes& sizes, bool local_damping, int count) override {
+        if (in_one_kernel_ && sizes.grain_threads == kStepsThreads) return local_damping ? run_in_one_kernel<true>(a, sizes, count) : run_in_one_kernel<false>(a, sizes, count);
         if (graph_ == nullptr || count != count_ || local_damping != local_ || !(sizes == sizes_) || std::memcmp(&a, arrays_, sizeof a) != 0) {
             cudaGraph_t graph = nullptr;
             require(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal), "steps were noted");
@@ -94,6 +101,18 @@ public:
 
 private:
     template <bool local>
+    void run_in_one_kernel(DeviceArrays a, const LaunchSizes& sizes, int count) {
+        const auto kernel = a.rigid_count > 0 ? steps_kernel<local, true> : steps_kernel<local, false>;
+        int resident = 0;
+        require(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&resident, kernel, kStepsThreads, 0), "it was asked how much it holds");
+        const int wanted = std::max({sizes.grain_blocks, blocks_of(kStepsThreads, kMostLanes * a.contact_pack_count), blocks_of(kStepsThreads, a.rigid_count), 1});
+        int grain_blocks = sizes.grain_blocks;
+        void* parameters[] = {&a, &grain_blocks, &count};
+        require(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(static_cast<unsigned>(std::min(wanted, resident * multiprocessors_))), dim3(kStepsThreads), parameters, 0, stream_),
+                "steps began");
+    }
+
+    template <bool local>
     void step(const DeviceArrays& a, const LaunchSizes& sizes, int k) {
         const int size = sizes.other_threads;
         const int blocks = blocks_of(size, kMostLanes * a.contact_pack_count) + 1;
@@ -118,6 +137,8 @@ private:
         if (rigid_blocks + plate_blocks > 0) rigid_kernel<local><<<rigid_blocks + plate_blocks, size, 0, stream_>>>(a, k, rigid_blocks);
     }
 
+    int multiprocessors_;
+    bool in_one_kernel_;
     cudaStream_t stream_ = nullptr;
     cudaGraphExec_t graph_ = nullptr;   // of the steps noted last
     alignas(DeviceArrays) char arrays_[sizeof(DeviceArrays)]{};
@@ -133,6 +154,8 @@ std::string version_text(int version) { return std::to_string(version / 1000) + 
 bool built_for_cards() { return true; }
 
 std::unique_ptr<Backend> cuda_backend(DeviceProvenance& provenance) {
+    static std::once_flag once;   // queues of the card, so that tests do not wait behind each other: read when the first call wakes the driver
+    std::call_once(once, [] { setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0); });
     int driver = 0, count = 0;
     cudaDriverGetVersion(&driver);
     const cudaError_t error = cudaGetDeviceCount(&count);
@@ -146,7 +169,9 @@ std::unique_ptr<Backend> cuda_backend(DeviceProvenance& provenance) {
     require(cudaGetDevice(&number), "it was looked for");
     require(cudaGetDeviceProperties(&card, number), "it was asked what it is");
     provenance = {"gpu", card.name, version_text(driver), std::to_string(card.major) + "." + std::to_string(card.minor), "double", static_cast<double>(card.totalGlobalMem)};
-    return std::make_unique<CudaBackend>();
+    // Until it is measured which is better when, the graph is the rule.
+    const char* kernels = std::getenv("FELDSPAR_CARD_KERNELS");
+    return std::make_unique<CudaBackend>(card.multiProcessorCount, kernels != nullptr && std::string_view(kernels) == "one" && card.cooperativeLaunch != 0);
 }
 
 }  // namespace feldspar
