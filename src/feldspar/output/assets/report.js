@@ -530,7 +530,7 @@ function testFacts(tests, updates) {
     const branch = t.post_peak;
     if (branch.brittleness !== null) add("Behind the peak", "modulus " + show(branch.modulus) + " GPa, brittleness k1 " + show(branch.brittleness, 2) + (branch.brittleness < 1 ? " (class II)" : " (class I)"));
     if (branch.fracture !== null) add("Energy behind the peak", show(100 * branch.fracture, 2) + " % fracture, " + show(100 * branch.friction, 2) + " % friction, " + show(100 * branch.damping, 2) + " % damping");
-    if (t.failure) add("Failure", t.failure.name + ". " + t.failure.words + ".");
+    if (t.failure) add("Failure", t.failure.name.replace(/^./, (c) => c.toUpperCase()) + ". " + t.failure.words + ".");
     add("Cracks at the end", t.tensile + " tensile, " + t.shear + " shear");
     if (t.emission) addEmission(t, add);
     if (t.rock) addRock(t, add);
@@ -777,7 +777,7 @@ function writePattern() {
     if (specimen && viewer.field === "grain") for (const m of specimen.meta.minerals || []) crackKey.append(key(m.colour, m.name));
     if (specimen && viewer.field === "fragments") {
       const piece = specimen.parts["fragment" + viewer.snapshot];
-      crackKey.append(h("span", {}, piece ? plural(1 + piece.reduce((most, p) => Math.max(most, p), 0), "piece") + " that hang" + (piece.some((p) => p > 0) ? "" : "s") + " together; the largest has the grains' own colour" : "The pieces of this specimen are not known."));
+      crackKey.append(h("span", {}, !piece ? "The pieces are not known." : piece.some((p) => p > 0) ? plural(1 + piece.reduce((most, p) => Math.max(most, p), 0), "piece") + ", the largest without colour" : "all in one piece"));
     }
     if (specimen && specimen.parts.joint_ends) crackKey.append(key("var(--ink)", "joint before the test, dashed"));
     if (viewer.cracks === "mode") crackKey.append(key("var(--tensile)", "tensile crack"), key("var(--shear)", "shear crack"));
