@@ -148,6 +148,38 @@ USE_EVERYTHING = """(async () => {
 })()"""
 
 
+# What a reader takes out of the page, or brings along: picture and film of the viewer, a measured curve, a rock mass, another packing. `saveAs` is the page's own function that
+# hands files to the reader.
+TAKEN_AND_BROUGHT = """(async () => {
+  const wrong = [], pause = (ms) => new Promise((done) => setTimeout(done, ms)), saved = [], button = (text, inside) => [...document.querySelectorAll(inside + " button")].find((b) => b.textContent === text);
+  window.saveAs = (blob, name) => saved.push([blob, name]);
+  if (button("PNG", ".viewer")) {
+    for (const list of document.querySelectorAll(".viewer select")) { list.selectedIndex = 0; list.dispatchEvent(new Event("change")); }
+    button("PNG", ".viewer").click();
+    button("Film", ".viewer").click();
+    for (let n = 0; n < 150 && saved.length < 2; ++n) await pause(200);
+    if (!saved.some(([blob, name]) => name.endsWith(".png") && blob.size > 5000)) wrong.push("the viewer gives no picture");
+    if (!saved.some(([blob, name]) => name.endsWith(".webm") && blob.size > 20000)) wrong.push("the viewer gives no film: " + saved.map(([blob, name]) => name + " " + blob.size).join(", "));
+  } else wrong.push("there is no viewer");
+  const input = document.querySelector("input[type=file]"), files = new DataTransfer();
+  files.items.add(new File(["# measured\\nAxial strain (%);Axial stress (MPa)\\n0,0;0\\n0,1;20,5\\n0,2;41\\n"], "core-7.csv"));
+  input.files = files.files;
+  input.dispatchEvent(new Event("change"));
+  await pause(500);
+  const curve = [...charts].flatMap((c) => c.series).find((s) => s.label === "measured: core-7.csv");
+  if (!curve || curve.x.join() !== "0,1,2" || curve.y.join() !== "0,20.5,41") wrong.push("a measured curve is not laid over ours: " + JSON.stringify(curve));
+  const mass = rockMass(10, 100, 50, 0);   // by hand from the formulas of 2002
+  if (Math.abs(mass.mb - 1.6767) > 1e-4 || Math.abs(mass.s - 0.003866) > 1e-6 || Math.abs(mass.a - 0.50573) > 1e-5) wrong.push("mb, s, a of GSI 50: " + [mass.mb, mass.s, mass.a]);
+  const seeds = packing.seeds;
+  packing.choose(seeds[seeds.length - 1]);
+  await pause(200);
+  const facts = [...document.querySelectorAll(".numbers dd:first-of-type")].map((e) => e.textContent);
+  if (!facts.length || facts.some((t) => t !== "seed " + seeds[seeds.length - 1])) wrong.push("not the whole page shows packing " + seeds[seeds.length - 1] + ": " + facts);
+  packing.choose(seeds[0]);
+  return wrong;
+})()"""
+
+
 @contextlib.contextmanager
 def opened_browser():
     """A browser with an empty page that tells what happens in it. Ends the program as skipped where no chromium is installed."""
@@ -184,6 +216,7 @@ def main():
         counts = browser.evaluate("[document.querySelectorAll('h2').length, document.querySelectorAll('table').length, document.querySelectorAll('canvas').length]")
         browser.picture(pictures / "report.png")
         used = browser.evaluate(USE_EVERYTHING)
+        brought = browser.evaluate(TAKEN_AND_BROUGHT)
         has_viewer = browser.evaluate("document.querySelector('.viewer') !== null")
         drawn = True
         if has_viewer:
@@ -196,7 +229,7 @@ def main():
         browser.ask("Emulation.setEmulatedMedia", features=[])
         (pictures / "report.pdf").write_bytes(base64.b64decode(browser.ask("Page.printToPDF", printBackground=True)["data"]))
         browser.listen(0.5)
-        found = problems(browser.events, address)
+        found = brought + problems(browser.events, address)
     if counts[0] < 3 or counts[1] < 2 or counts[2] < 1:
         found.append(f"the page looks empty: {counts} headings, tables and canvases")
     if not drawn:

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "feldspar/base/printable.hpp"
+#include "feldspar/output/fragments.hpp"
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/variant_summary.hpp"
@@ -249,13 +250,57 @@ TEST(ReportFields, StayWithinTheBudget) {
     ASSERT_EQ(all.size(), 2U);
     EXPECT_EQ(all[0].meta["snapshots"].size(), 3U);
     const std::size_t one = all[0].block.size();
-    const auto tight = report_fields(results, one - 1);  // the first loses its start; little is left for the second
-    ASSERT_GE(tight.size(), 1U);
+    const auto tight = report_fields(results, 2 * one - 2);  // the first loses its start; so may the second, or has what is left
+    ASSERT_EQ(tight.size(), 2U);
     EXPECT_EQ(tight[0].meta["snapshots"].size(), 2U);
-    std::size_t total = 0;
-    for (const ReportFields& fields : tight) total += fields.block.size();
-    EXPECT_LT(total, one);
+    EXPECT_LE(tight[0].block.size() + tight[1].block.size(), 2 * one - 2);
     EXPECT_TRUE(report_fields(results, 10).empty());
+}
+
+TEST(ReportFields, AreOfTheMedianTheWeakestAndTheStrongestPacking) {
+    std::vector<TestResult> results;
+    for (const double strength_MPa : {5.0, 3.0, 1.0, 4.0, 2.0}) {
+        results.push_back(make_result(methods::uniaxial_compression, static_cast<std::uint64_t>(strength_MPa)));
+        results.back().properties.peak_stress_Pa = 1e6 * strength_MPa;
+    }
+    results.push_back(make_result(methods::brazilian));
+    const auto list = report_fields(results, 1 << 20);
+    ASSERT_EQ(list.size(), 4U);
+    const auto is = [&](std::size_t i, const char* role, std::size_t test) {
+        EXPECT_EQ(list[i].meta["role"], role);
+        EXPECT_EQ(list[i].meta["test"], test);
+    };
+    is(0, "median", 1);
+    is(1, "weakest", 2);
+    is(2, "strongest", 0);
+    is(3, "", 5);   // alone
+    const auto scarce = report_fields(results, 2 * list[0].block.size());   // where there is little room, every kind has its median at least
+    ASSERT_GE(scarce.size(), 2U);
+    EXPECT_EQ(scarce[0].meta["role"], "median");
+    EXPECT_EQ(scarce.back().meta["test"], 5U);
+}
+
+TEST(Fragments, HangTogetherWhileATenthOfTheirEdgeIsWhole) {
+    const TestResult result = make_result();   // 4 x 3 grains
+    const Specimen& specimen = *result.specimen;
+    std::vector<Crack> cracks;
+    const auto cut = [&](int a, int b, double share) {   // of the edge between them
+        Crack crack;
+        crack.grain_a = b;
+        crack.grain_b = a;
+        crack.to = {share * 1e-3, 0.0};
+        cracks.push_back(crack);
+    };
+    EXPECT_EQ(fragments(specimen, cracks, 0), std::vector<int>(12, 0));
+    for (int row = 0; row < 3; ++row) cut(4 * row, 4 * row + 1, row == 1 ? 0.89 : 1.0);   // between the first column and the second
+    EXPECT_EQ(fragments(specimen, cracks, 3), std::vector<int>(12, 0)) << "the middle one holds";
+    cut(4, 5, 0.02);
+    EXPECT_EQ(fragments(specimen, cracks, 4), (std::vector<int>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}));
+    EXPECT_EQ(fragments(specimen, cracks, 3), std::vector<int>(12, 0));
+    cut(10, 11, 1.0);
+    cut(7, 11, 1.0);
+    EXPECT_EQ(fragments(specimen, cracks, 6), (std::vector<int>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2}));
+    EXPECT_EQ(part<std::int32_t>(report_fields(std::vector{result}, 1 << 20)[0], "fragment2"), std::vector<int>(12, 0));
 }
 
 TEST(Base64, MatchesItsDefinition) {

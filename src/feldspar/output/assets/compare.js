@@ -105,8 +105,8 @@ function writeComparedCurves() {
   const chooseKind = (kind) => {
     state.kind = kind;
     const seeds = [...new Set(kinds.get(kind).map((t) => t.seed))];
-    if (!seeds.includes(state.seed)) state.seed = seeds[0];   // not every test runs on every packing
-    seedBox.replaceChildren(picker("Packing (seed)", seeds.map(String), seeds.indexOf(state.seed), (i) => { state.seed = seeds[i]; update(); }) || "");
+    state.seed = seeds.includes(packing.seed) ? packing.seed : seeds[0];   // not every test runs on every packing
+    seedBox.replaceChildren(state.seed === packing.seed ? "" : h("p", {class: "soft small"}, "Not run on packing " + packing.seed + ": packing " + state.seed + " is shown."));
     update();
   };
   const names = [...kinds.keys()];
@@ -116,7 +116,7 @@ function writeComparedCurves() {
     picker("Damage", ["shown", "hidden"], 0, (i) => { state.damage = i === 0; update(); })), curves);
   page.append(h("div", {class: "pick"}, picker("Failure patterns", ["at the end", "at the peak"], 0, (i) => { state.moment = i ? "peak" : "end"; update(); }),
     h("div", {class: "legend"}, h("span", {}, h("b", {style: "border-color:var(--tensile)"}), "tensile crack"), h("span", {}, h("b", {style: "border-color:var(--shear)"}), "shear crack"), h("span", {}, "undeformed"))), patterns);
-  chooseKind(state.kind);
+  packing.follow(() => chooseKind(state.kind));
   redraw.push(update);
   let width = patterns.clientWidth;
   new ResizeObserver(() => {   // the height follows from the drawings themselves

@@ -23,6 +23,25 @@ function groupTests() {
   return groups;
 }
 
+/** The packing that the whole page shows, and who draws again when the reader chooses another. */
+const packing = {
+  seeds: [...new Set(data.tests.map((t) => t.seed))].sort((a, b) => a - b), seed: null, followers: [],
+  /** draw(seed) is called now and whenever another packing is chosen. */
+  follow(draw) { this.followers.push(draw); draw(this.seed); },
+  choose(seed) { this.seed = seed; for (const draw of this.followers) draw(seed); },
+};
+packing.seed = packing.seeds[0] ?? null;
+
+/** A bar that stays in sight, where there are several packings. */
+function writePackingBar() {
+  if (packing.seeds.length < 2) return;
+  const choose = packing.seeds.length <= 12 ? picker("Packing (seed)", packing.seeds.map(String), 0, (i) => packing.choose(packing.seeds[i])) : chooser("Packing (seed)", packing.seeds.map((s) => "seed " + s), (i) => packing.choose(packing.seeds[i]));
+  choose.classList.add("packing");
+  page.append(choose);
+}
+/** Which of these tests are of the packing shown: its number among them, or 0 where it was not tested so. */
+function testOfPacking(tests, seed) { return Math.max(0, tests.findIndex((t) => t.seed === seed)); }
+
 function modelFacts(m) {
   if (data.variants) {
     const each = (key) => [...new Set(data.variants.map((v) => v[key]))].join(", ");
@@ -185,6 +204,7 @@ function stressSeries(tests, chosen) {
   const t = tests[chosen], others = tests.filter((other) => other !== t);
   return [...others.map((o, i) => ({label: i ? "packing " + o.seed : "other packings", x: o.history.strain, y: o.history.stress, color: "context", width: 1.3, quiet: i > 0})),
     {label: "packing " + t.seed, x: t.history.strain, y: t.history.stress, color: "ink", width: 2.2},
+    ...(measured.get(titleOf(t)) || []).map((m) => ({...m, color: "#cc79a7", width: 2.2})),
     {label: "its tensile cracks", x: t.history.strain, y: t.history.tensile, color: "tensile", width: 1.5, right: true, step: true},
     {label: "shear cracks", x: t.history.strain, y: t.history.shear, color: "shear", width: 1.5, right: true, step: true},
     ...readOffSeries(t, t.history.strain, true)];
@@ -359,7 +379,8 @@ function writeTest(host, tests) {
   const strainLabel = strainLabelOf(tests[0]);
   const stressLabel = stressLabelOf(tests[0]);
   const updates = [];
-  host.append(picker("Packing (seed)", tests.map((t) => String(t.seed)), 0, (i) => updates.forEach((update) => update(i))) || "");
+  const elsewhere = h("p", {class: "soft small", hidden: ""});
+  host.append(elsewhere);
   const grid = h("div", {class: "grid"});
   host.append(grid);
   const first = card("Stress and cracks"), second = card("Axial, lateral and volumetric strain, from the gauges"), third = card("Energy balance");
@@ -385,6 +406,70 @@ function writeTest(host, tests) {
   first.classList.toggle("broad", grid.children.length % 2 === 1);   // the others stand in pairs
   grid.append(testFacts(tests, updates));
   writeCycles(host, tests, updates);
+  const redrawCurve = () => a.set(stressSeries(tests, testOfPacking(tests, packing.seed)));
+  first.querySelector(".tools").insertBefore(measuredButton(first, tests[0], redrawCurve), first.querySelector(".tools button"));
+  let shown = 0;
+  packing.follow((seed) => {
+    if (!grid.isConnected) return;   // of a variant that is no longer shown
+    const i = testOfPacking(tests, seed);
+    elsewhere.hidden = tests[i].seed === seed;
+    elsewhere.textContent = "Not run on packing " + seed + ": packing " + tests[i].seed + " is shown.";
+    if (i !== shown) updates.forEach((update) => update(i));
+    shown = i;
+  });
+}
+
+/** Curves that were measured on the rock itself, of a kind of test: [{label, x, y}]. They live as long as the page is open. */
+const measured = new Map();
+
+/** Rows of numbers from a text with commas, semicolons, tabs or blanks between them, and the words above them. With semicolons or tabs a comma may be a decimal point. */
+function readTable(text) {
+  const lines = text.replace(/^\ufeff/, "").split(/\r?\n/).filter((line) => line.trim() && !line.startsWith("#"));
+  const mark = lines.some((l) => l.includes(";")) ? ";" : lines.some((l) => l.includes("\t")) ? "\t" : lines.some((l) => l.includes(",")) ? "," : null;
+  const cells = (line) => (mark ? line.split(mark) : line.trim().split(/\s+/)).map((cell) => cell.trim().replace(/^"(.*)"$/, "$1"));
+  const number = (cell) => (cell === "" ? NaN : Number(mark === "," ? cell : cell.replace(",", ".")));
+  const rows = [], words = [];
+  for (const line of lines) {
+    const row = cells(line), values = row.map(number);
+    if (values.filter(Number.isFinite).length >= 2) rows.push(values);
+    else if (!rows.length) words.push(row);
+  }
+  const columns = Math.max(0, ...rows.map((row) => row.length));
+  return {rows, heads: [...Array(columns).keys()].map((i) => words.map((row) => row[i] || "").filter(Boolean).join(" ") || "column " + (i + 1))};
+}
+const strainUnits = [["1", "without a unit", 1e3], ["%", "%", 10], ["10\u207b\u00b3", "10\u207b\u00b3, mm/m", 1], ["\u00b5", "10\u207b\u2076, \u00b5m/m", 1e-3]];
+const stressUnits = [["MPa", "MPa", 1], ["kPa", "kPa", 1e-3], ["Pa", "Pa", 1e-6], ["GPa", "GPa", 1e3], ["psi", "psi", 6.894757e-3]];
+function guessedUnit(units, head, fallback) {
+  const text = head.toLowerCase(), has = (pattern) => pattern.test(text);
+  if (units === strainUnits) return has(/%|percent/) ? 1 : has(/10\^?-3|10\u207b\u00b3|mm\/m|milli/) ? 2 : has(/micro|\u00b5|\u03bc|10\^?-6/) ? 3 : fallback;
+  return has(/mpa/) ? 0 : has(/kpa/) ? 1 : has(/gpa/) ? 3 : has(/psi/) ? 4 : has(/\bpa\b/) ? 2 : fallback;
+}
+
+/** A button that lays a curve of the reader's own over ours: a file on this machine, which goes nowhere. */
+function measuredButton(host, test, draw) {
+  const key = titleOf(test), form = h("div", {class: "pick measured", hidden: ""}), file = h("input", {type: "file", accept: ".csv,.txt,.tsv,.dat", hidden: "", onchange: () => { if (file.files[0]) file.files[0].text().then((text) => open(file.files[0].name, text)); file.value = ""; }});
+  const choice = (label, entries, chosen) => { const list = h("select", {"aria-label": label}, entries.map((text, i) => h("option", {value: i}, text))); list.selectedIndex = Math.min(chosen, entries.length - 1); return list; };
+  function open(name, text) {
+    const {rows, heads} = readTable(text);
+    form.hidden = false;
+    if (!rows.length) { form.replaceChildren("No two columns of numbers in " + name + "."); return; }
+    const find = (pattern, other) => { const i = heads.findIndex((head) => pattern.test(head.toLowerCase())); return i < 0 ? other : i; };
+    const x = find(/strain|\u03b5|eps|dehnung/, 0), y = find(/stress|\u03c3|sigma|mpa|spannung/, x === 1 ? 0 : 1), small = Math.max(...rows.map((row) => Math.abs(row[x]) || 0)) < 0.1;
+    const strain = choice("Column of the strain", heads, x), stress = choice("Column of the stress", heads, y);
+    const strainUnit = choice("Unit of the strain", strainUnits.map((u) => u[1]), guessedUnit(strainUnits, heads[x], small ? 0 : 1)), stressUnit = choice("Unit of the stress", stressUnits.map((u) => u[1]), guessedUnit(stressUnits, heads[y], 0));
+    const put = () => {
+      const list = rows.map((row) => [row[strain.value] * strainUnits[strainUnit.value][2], row[stress.value] * stressUnits[stressUnit.value][2]]).filter(([a, b]) => Number.isFinite(a) && Number.isFinite(b));
+      const most = (k) => list.reduce((best, row) => (Math.abs(row[k]) > Math.abs(best) ? row[k] : best), 0), sign = methodOf(test.kind).sign;
+      const turn = [most(0) * sign < 0 ? -1 : 1, most(1) * sign < 0 ? -1 : 1];   // compression is positive here, whatever it is in the file
+      measured.set(key, [{label: "measured: " + name, x: list.map((row) => turn[0] * row[0]), y: list.map((row) => turn[1] * row[1])}]);
+      draw();
+    };
+    for (const list of [strain, stress, strainUnit, stressUnit]) list.addEventListener("change", put);
+    form.replaceChildren("Strain", strain, strainUnit, "stress", stress, stressUnit, h("button", {type: "button", onclick: () => { measured.delete(key); form.hidden = true; draw(); }}, "Remove"));
+    put();
+  }
+  host.append(form, file);
+  return h("button", {type: "button", title: "Lay a curve that was measured over these: a table of strain and stress in a file, which stays on this machine", onclick: () => file.click()}, "Measured\u2026");
 }
 
 /** What each cycle of loading and unloading shows, one row a cycle. */
@@ -446,6 +531,7 @@ function testFacts(tests, updates) {
     const branch = t.post_peak;
     if (branch.brittleness !== null) add("Behind the peak", "modulus " + show(branch.modulus) + " GPa, brittleness k1 " + show(branch.brittleness, 2) + (branch.brittleness < 1 ? " (class II)" : " (class I)"));
     if (branch.fracture !== null) add("Energy behind the peak", show(100 * branch.fracture, 2) + " % fracture, " + show(100 * branch.friction, 2) + " % friction, " + show(100 * branch.damping, 2) + " % damping");
+    if (t.failure) add("Failure", t.failure.name.replace(/^./, (c) => c.toUpperCase()) + ". " + t.failure.words + ".");
     add("Cracks at the end", t.tensile + " tensile, " + t.shear + " shear");
     if (t.emission) addEmission(t, add);
     if (t.rock) addRock(t, add);
@@ -493,15 +579,47 @@ function writeEnvelope() {
   const grid = h("div", {class: "grid", style: "align-items:start"}), chart = card("Strength of each test");
   page.append(grid);
   grid.append(chart);
-  new XYChart(chart, {x: "Minor principal stress \u03c3\u2083 (MPa, compression positive)", y: "Major principal stress \u03c3\u2081 (MPa)", height: 380, series: envelopeSeries()});
+  const strengths = new XYChart(chart, {x: "Minor principal stress \u03c3\u2083 (MPa, compression positive)", y: "Major principal stress \u03c3\u2081 (MPa)", height: 380, series: envelopeSeries()});
   writeMohr(grid, data.tests, data.envelope.fits);
   if (!data.envelope.fits.length) return;
+  writeRockMass(grid, strengths);
   const fits = card("Fits, one for each packing");
   fits.classList.add("broad");
   grid.append(fits);
   fits.append(table("evidence", [th("Seed", true), th(["c", h("br"), "MPa"], true), th(["\u03c6", h("br"), "\u00b0"], true), th(["UCS fitted", h("br"), "MPa"], true), th(["UCS measured", h("br"), "MPa"], true), th("mi", true), th(["\u03c3ci H-B", h("br"), "MPa"], true)],
     data.envelope.fits.map((f) => h("tr", {}, td(String(f.seed), true), td(show(f.cohesion), true), td(show(f.friction_angle), true), td(show(f.UCS_fitted), true), td(show(f.UCS_measured), true), td(show(f.mi), true), td(show(f.hoek_brown_UCS), true)))),
     h("p", {class: "soft small"}, "Mohr-Coulomb: \u03c3\u2081 = 2c\u221aN + N\u03c3\u2083 with N = (1 + sin \u03c6)/(1 \u2212 sin \u03c6). Hoek-Brown, intact rock: \u03c3\u2081 = \u03c3\u2083 + \u03c3ci (mi \u03c3\u2083/\u03c3ci + 1)^\u00bd."));
+}
+
+/** The rock mass by Hoek-Brown 2002 from the intact rock of these tests, for a GSI and a disturbance that the reader gives. */
+function rockMass(mi, sci, gsi, d) {
+  const mb = mi * Math.exp((gsi - 100) / (28 - 14 * d)), s = Math.exp((gsi - 100) / (9 - 3 * d)), a = 0.5 + (Math.exp(-gsi / 15) - Math.exp(-20 / 3)) / 6;
+  return {mb, s, a, uniaxial: sci * s ** a, tensile: (s * sci) / mb, global: (sci * (mb + 4 * s - a * (mb - 8 * s)) * (mb / 4 + s) ** (a - 1)) / (2 * (1 + a) * (2 + a)), sigma1: (s3) => s3 + sci * Math.max(0, (mb * s3) / sci + s) ** a};
+}
+function writeRockMass(grid, chart) {
+  const fits = data.envelope.fits, mi = median(fits.map((f) => f.mi)), sci = median(fits.map((f) => f.hoek_brown_UCS));
+  if (!(mi > 0) || !(sci > 0)) return;
+  const box = card("Rock mass, Hoek-Brown 2002"), body = h("dl", {}), input = (label, value, min, max, step) => h("input", {type: "number", "aria-label": label, value, min, max, step});
+  const gsi = input("GSI", 60, 0, 100, 5), d = input("D", 0, 0, 1, 0.1), shown = h("input", {type: "checkbox", "aria-label": "Draw its envelope"});
+  const fill = () => {
+    const g = Math.min(100, Math.max(0, Number(gsi.value) || 0)), k = Math.min(1, Math.max(0, Number(d.value) || 0)), mass = rockMass(mi, sci, g, k), rows = [];
+    const add = (name, value) => rows.push(h("dt", {}, name), h("dd", {}, value));
+    add("mb", show(mass.mb));
+    add("s", show(mass.s));
+    add("a", show(mass.a));
+    add("Uniaxial strength of the mass", show(mass.uniaxial) + " MPa");
+    add("Tensile strength of the mass", show(mass.tensile) + " MPa");
+    add("Global strength of the mass", show(mass.global) + " MPa");
+    body.replaceChildren(...rows);
+    const own = envelopeSeries(), reach = Math.max(...own.flatMap((s) => s.x.filter((v) => v !== null))), x = [...Array(61).keys()].map((i) => -mass.tensile + (i / 60) ** 2 * (reach + mass.tensile));
+    if (shown.checked) own.push({label: "rock mass, GSI " + g + ", D " + k, x, y: x.map(mass.sigma1), color: "#009e73", width: 1.8, dash: true});
+    chart.set(own);
+  };
+  for (const control of [gsi, d, shown]) control.addEventListener("input", fill);
+  box.append(h("div", {class: "pick"}, h("label", {}, "GSI ", gsi), h("label", {}, "D ", d), h("label", {}, shown, " draw its envelope")), body,
+    h("p", {class: "soft small"}, "From the medians mi = " + show(mi) + ", \u03c3ci = " + show(sci) + " MPa of the intact rock: mb = mi exp((GSI \u2212 100)/(28 \u2212 14D)), s = exp((GSI \u2212 100)/(9 \u2212 3D)), a = \u00bd + (exp(\u2212GSI/15) \u2212 exp(\u221220/3))/6 (Hoek, Carranza-Torres and Corkum 2002). GSI and D are the reader's; the tests say nothing of them."));
+  grid.append(box);
+  fill();
 }
 
 /** Half circles of the strengths, medians over the packings, and the line that should touch them. */
@@ -583,10 +701,11 @@ function writeShearEnvelope() {
 function writePattern() {
   if (!data.fields.length) return;
   page.append(h("h2", {}, "Failure pattern"), h("p", {class: "soft"},
-    "One packing of each kind of test. Drag to move, buttons or Ctrl + wheel to zoom, double click to fit. The full fields of every test are in the .h5 files; feldspar export makes files for ParaView of them."));
+    (data.fields.some((f) => f.role) ? "Of each kind of test the packings of the median, the smallest and the largest strength, as far as there is room. " : "One packing of each kind of test. ") +
+    "Drag to move, buttons or Ctrl + wheel to zoom, double click to fit. The full fields of every test are in the .h5 files; feldspar export makes files for ParaView of them."));
   const canvas = h("canvas", {tabindex: "0", role: "img", "aria-label": "Failure pattern"}), readout = h("div", {class: "readout"}), stage = h("div", {class: "stage"}, canvas);
   const left = h("div", {class: "card"}), right = h("div", {}), box = h("div", {class: "viewer"}, left, right);
-  const moment = h("div", {class: "small"}), slider = h("input", {type: "range", min: 0, value: 0, step: 1, "aria-label": "Moment of the test"});
+  const moment = h("div", {class: "small"}), slider = h("input", {type: "range", min: 0, value: 0, step: 0.1, "aria-label": "Moment of the test"});
   const bar = h("canvas", {}), low = h("span", {}), high = h("span", {}), scale = h("div", {class: "scale"}), crackKey = h("div", {class: "legend"});
   const rosette = h("canvas", {}), rosetteCard = h("div", {class: "card rosette"}, h("h4", {}, "Crack rosette"), h("div", {class: "soft small"}, "Direction of the cracks at the moment shown, weighted by length"), h("div", {}, rosette));
   const curveCard = h("div", {class: "card", style: "margin:14px 0"}, h("h4", {}, "Moments on the curve")), settings = h("div", {class: "card"});
@@ -594,21 +713,50 @@ function writePattern() {
   const cache = [];
 
   const viewer = new Viewer(canvas, readout, () => showMoment(), (test) => marksOf(data.tests[test]).filter((m) => m.crack >= 0));
-  const go = (n) => { viewer.snapshot = n; slider.value = n; showMoment(); viewer.draw(); };
+  const last = () => specimen.meta.snapshots.length - 1;
+  const go = (n) => { viewer.goTo(n); slider.value = n; showMoment(); viewer.draw(); };
   slider.addEventListener("input", () => go(Number(slider.value)));
   const play = h("button", {type: "button", onclick: () => {
     if (playing) { clearInterval(playing); playing = null; play.textContent = "Play"; return; }
     play.textContent = "Stop";
-    if (viewer.snapshot >= specimen.meta.snapshots.length - 1) go(0);
+    if (viewer.moment >= last()) go(0);
     playing = setInterval(() => {
-      if (viewer.snapshot >= specimen.meta.snapshots.length - 1) play.click();
-      else go(viewer.snapshot + 1);
-    }, 700);
+      if (viewer.moment >= last()) play.click();
+      else go(Math.min(last(), Math.round(10 * viewer.moment + 1) / 10));
+    }, 80);
   }}, "Play");
+  const words = () => { const s = specimen.state(viewer.moment); return "strain " + show(s.strain) + "\u00b710\u207b\u00b3, stress " + show(s.stress) + " MPa, " + plural(s.cracks, "crack"); };
+  const titleNow = () => { const t = data.tests[specimen.meta.test]; return fullTitle(t) + ", packing " + t.seed; };
+  const picture = h("button", {type: "button", title: "Save the picture", onclick: () => { viewer.paint(); viewer.sheet(titleNow(), words()).toBlob((blob) => saveAs(blob, fileName(titleNow(), ".png"))); }}, "PNG");
+  const film = h("button", {type: "button", title: "Save a film of the test, from its start to its end, some seconds long", onclick: () => record()}, "Film");
+  async function record() {
+    const kind = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"].find((k) => MediaRecorder.isTypeSupported(k)), before = viewer.moment, pause = (ms) => new Promise((done) => setTimeout(done, ms));
+    if (playing) play.click();
+    if (!kind || film.disabled) return;
+    film.disabled = true;
+    film.textContent = "Filming\u2026";
+    const sheet = viewer.sheet(titleNow(), words()), recorder = new MediaRecorder(sheet.captureStream(25), {mimeType: kind, videoBitsPerSecond: 6e6}), parts = [];
+    recorder.ondataavailable = (e) => parts.push(e.data);
+    const stopped = new Promise((done) => { recorder.onstop = done; });
+    recorder.start();
+    for (let n = 0; n <= 10 * last(); ++n) {
+      go(n / 10);
+      viewer.paint();
+      viewer.sheet(titleNow(), words(), sheet);
+      await pause(n === 0 ? 500 : 45);
+    }
+    await pause(700);   // the end stands for a while
+    recorder.stop();
+    await stopped;
+    saveAs(new Blob(parts, {type: kind}), fileName(titleNow(), kind.startsWith("video/mp4") ? ".mp4" : ".webm"));
+    film.disabled = false;
+    film.textContent = "Film";
+    go(before);
+  }
   const choice = (label, entries, set) => [h("label", {}, label), h("select", {"aria-label": label, onchange: (e) => { set(e.target.value); showScale(); viewer.draw(); }}, entries.map(([value, text]) => h("option", {value}, text)))];
   settings.append(h("div", {class: "controls"},
     choice("Colour of the grains", Object.entries(fieldKinds).map(([k, v]) => [k, v.label]), (v) => { viewer.field = v; }),
-    choice("Colour of the cracks", [["mode", "mode: tensile or shear"], ["time", "time: axial strain at the break"], ["plain", "plain"], ["none", "no cracks"]], (v) => { viewer.cracks = v; }),
+    choice("Colour of the cracks", [["mode", "mode: tensile or shear"], ["time", "time: axial strain at the break"], ["opening", "opening"], ["plain", "plain"], ["none", "no cracks"]], (v) => { viewer.cracks = v; }),
     choice("Displacements", [["1", "as they are"], ["0", "undeformed"], ["2", "enlarged"], ["3", "enlarged more"]], (v) => { viewer.enlarge(Number(v)); })),
     scale, crackKey);
 
@@ -623,33 +771,43 @@ function writePattern() {
       ctx.putImageData(image, 0, 0);
       low.textContent = show(from);
       high.textContent = show(to) + " " + kind.unit;
-      scale.append(low, bar, high, kind.around ? h("span", {}, "violet tension, orange compression") : "");
+      scale.append(low, bar, high, kind.around ? h("span", {}, kind.words) : "");
     }
     const key = (color, text) => h("span", {}, h("b", {style: "border-color:" + color}), text);
     crackKey.replaceChildren();
     if (specimen && viewer.field === "grain") for (const m of specimen.meta.minerals || []) crackKey.append(key(m.colour, m.name));
+    if (specimen && viewer.field === "fragments") {
+      const piece = specimen.parts["fragment" + viewer.snapshot];
+      crackKey.append(h("span", {}, !piece ? "The pieces are not known." : piece.some((p) => p > 0) ? plural(1 + piece.reduce((most, p) => Math.max(most, p), 0), "piece") + ", the largest without colour" : "all in one piece"));
+    }
     if (specimen && specimen.parts.joint_ends) crackKey.append(key("var(--ink)", "joint before the test, dashed"));
     if (viewer.cracks === "mode") crackKey.append(key("var(--tensile)", "tensile crack"), key("var(--shear)", "shear crack"));
     if (viewer.cracks === "time") {
-      const [first, last] = viewer.crackTimes(), colors = palette("viridis");
-      crackKey.append(key(css(colors[0]), "first crack, strain " + show(first) + "\u00b710\u207b\u00b3"), key(css(colors[128]), "midway"), key(css(colors[255]), "last crack, " + show(last) + "\u00b710\u207b\u00b3"));
+      const [first, end] = viewer.crackTimes(), colors = palette("viridis");
+      crackKey.append(key(css(colors[0]), "first crack, strain " + show(first) + "\u00b710\u207b\u00b3"), key(css(colors[128]), "midway"), key(css(colors[255]), "last crack, " + show(end) + "\u00b710\u207b\u00b3"));
+    }
+    if (viewer.cracks === "opening" && specimen) {
+      const colors = palette("viridis"), wide = specimen.wideOpening();
+      crackKey.append(key(css(colors[0]), "closed"), key(css(colors[128]), "open by " + show(wide / 2, 2) + " mm"), key(css(colors[255]), show(wide, 2) + " mm or more"));
     }
     if (specimen) for (const m of viewer.marksOf(specimen.meta.test)) crackKey.append(h("span", {}, h("b", {class: m.look[1], style: "background:" + m.look[0]}), m.name));
   }
   function showMoment() {
-    const n = viewer.snapshot, s = specimen.meta.snapshots[n], test = data.tests[specimen.meta.test];
+    const s = specimen.state(viewer.moment), test = data.tests[specimen.meta.test];
     let tensile = 0;
     for (let c = 0; c < s.cracks; ++c) tensile += specimen.parts.crack_mode[c] === 0 ? 1 : 0;
-    moment.replaceChildren(h("strong", {}, s.label.replaceAll("-", " ")), " (" + (n + 1) + " of " + specimen.meta.snapshots.length + ")  \u00b7  strain " + show(s.strain) + "\u00b710\u207b\u00b3  \u00b7  stress " + show(s.stress) + " MPa  \u00b7  " +
+    moment.replaceChildren(h("strong", {}, s.label.replaceAll("-", " ")), s.share > 0 ? "" : " (" + (s.n + 1) + " of " + specimen.meta.snapshots.length + ")", "  \u00b7  strain " + show(s.strain) + "\u00b710\u207b\u00b3  \u00b7  stress " + show(s.stress) + " MPa  \u00b7  " +
       tensile + " tensile, " + (s.cracks - tensile) + " shear cracks");
-    drawRosette(rosette, specimen, n);
+    if (viewer.field === "fragments") showScale();
+    drawRosette(rosette, specimen, viewer.moment);
     const all = specimen.meta.snapshots;
     const series = [{label: "stress", x: test.history.strain, y: test.history.stress, color: "context", width: 1.8},
       {label: "moments kept", x: all.map((k) => k.strain), y: all.map((k) => k.stress), color: "soft", mark: "dot", size: 3},
       {label: "shown", x: [s.strain], y: [s.stress], color: "shear", mark: "ring", size: 5},
       ...markSeries(test).map((m) => ({...m, size: m.size - 1}))];
     const x = strainLabelOf(test, true);
-    if (curve) { curve.options.x = x; curve.set(series); }
+    if (curve && curve.options.x === x) curve.grow(series);
+    else if (curve) { curve.options.x = x; curve.set(series); }
     else curve = new XYChart(curveCard, {x, y: "Stress (MPa)", height: 190, series});
   }
   /** The factors that suit this specimen: its farthest node moves by 6 and by 20 % of its size. */
@@ -673,16 +831,26 @@ function writePattern() {
     showScale();
   }
 
-  const names = data.fields.map((f) => { const t = data.tests[f.test]; return fullTitle(t).replace(" compression at \u03c3\u2083 =", ",") + " \u00b7 seed " + t.seed; });
-  const choose = data.variants ? chooser("", names, open) : picker("", names, 0, open);
-  page.append(choose || h("p", {class: "small"}, names[0]), box);
+  // kinds of tests, and of each the packings that are here
+  const groups = new Map(), roles = h("div", {});
+  data.fields.forEach((f, i) => { const name = fullTitle(data.tests[f.test]); if (!groups.has(name)) groups.set(name, []); groups.get(name).push(i); });
+  let kind = [...groups.keys()][0];
+  const seedOf = (i) => data.tests[data.fields[i].test].seed;
+  function openKind() {
+    const list = groups.get(kind), own = list.findIndex((i) => seedOf(i) === packing.seed), chosen = own >= 0 ? own : 0;
+    roles.replaceChildren(picker("Packing", list.map((i) => (data.fields[i].role ? data.fields[i].role + ": " : "") + "seed " + seedOf(i)), chosen, (n) => open(list[n])) || h("p", {class: "soft small"}, "packing " + seedOf(list[0])));
+    open(list[chosen]);
+  }
+  const kinds = [...groups.keys()], shortName = (name) => name.replace(" compression at \u03c3\u2083 =", ",");
+  page.append(chooser("Test", kinds.map(shortName), (i) => { kind = kinds[i]; openKind(); }) || h("p", {class: "small"}, shortName(kind)), roles, box);
   const zoom = h("div", {class: "zoom"}, h("button", {type: "button", "aria-label": "Zoom in", onclick: () => viewer.zoom(1.5)}, "+"),
     h("button", {type: "button", "aria-label": "Zoom out", onclick: () => viewer.zoom(1 / 1.5)}, "\u2212"), h("button", {type: "button", onclick: () => viewer.reset()}, "Fit"));
-  left.append(moment, h("div", {class: "slider"}, play, slider, zoom), stage, readout);
+  left.append(moment, h("div", {class: "slider"}, play, slider, zoom), stage, h("div", {class: "tools"}, h("span", {class: "at readout"}), picture, typeof MediaRecorder === "undefined" || !canvas.captureStream ? "" : film));
+  left.querySelector(".at").replaceWith(readout);
   right.append(settings, curveCard, rosetteCard);
-  redraw.push(() => { if (specimen) { viewer.resize(); viewer.draw(); drawRosette(rosette, specimen, viewer.snapshot); } });
+  redraw.push(() => { if (specimen) { viewer.resize(); viewer.draw(); drawRosette(rosette, specimen, viewer.moment); } });
   if (typeof DecompressionStream === "undefined") left.replaceChildren(h("p", {}, "This view needs a browser of 2023 or later. The same fields are in the .h5 files; feldspar export makes files for ParaView of them."));
-  else open(0);
+  else packing.follow((seed) => { if (!specimen && current === 0 || groups.get(kind).some((i) => seedOf(i) === seed)) openKind(); });
 }
 
 function writeEvidence() {
@@ -747,6 +915,7 @@ function writeProvenance() {
 
 setTheme();
 writeHeader();
+writePackingBar();
 if (data.variants) writeComparison();
 else writeProperties();
 writeTests();

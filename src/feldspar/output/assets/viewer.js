@@ -73,9 +73,25 @@ class Specimen {
     return this.moves[n];
   }
 
-  /** Positions at snapshot n with displacements times `magnify`, mm: x, y of each node. */
-  positions(n, magnify) {
-    const u = this.displacement(n), nodes = u.length / 2, p = new Float32Array(2 * nodes);
+  /** The same at a moment that may lie between two snapshots: between their displacements in proportion. */
+  displacementAt(moment) {
+    const n = Math.floor(moment), share = moment - n;
+    if (!(share > 0) || n + 1 >= this.meta.snapshots.length) return this.displacement(Math.min(n, this.meta.snapshots.length - 1));
+    const from = this.displacement(n), to = this.displacement(n + 1), u = new Float32Array(from.length);
+    for (let i = 0; i < u.length; ++i) u[i] = from[i] + share * (to[i] - from[i]);
+    return u;
+  }
+
+  /** Cracks, strain and stress at such a moment. */
+  state(moment) {
+    const n = Math.floor(moment), share = moment - n, all = this.meta.snapshots, a = all[n], b = all[Math.min(n + 1, all.length - 1)];
+    const mix = (key) => a[key] + share * (b[key] - a[key]);
+    return {n, share, cracks: Math.round(mix("cracks")), strain: mix("strain"), stress: mix("stress"), label: share > 0 ? "between " + a.label + " and " + b.label : a.label};
+  }
+
+  /** Positions at a moment with displacements times `magnify`, mm: x, y of each node. */
+  positions(moment, magnify) {
+    const u = this.displacementAt(moment), nodes = u.length / 2, p = new Float32Array(2 * nodes);
     for (let i = 0; i < nodes; ++i) {
       p[2 * i] = this.parts.nodes[2 * i] + magnify * u[i];
       p[2 * i + 1] = this.parts.nodes[2 * i + 1] + magnify * u[nodes + i];
@@ -111,6 +127,91 @@ class Specimen {
       }
     }
     return [x0, x1, y0, y1];
+  }
+
+  /** A field that follows from what is stored, a value a triangle at snapshot n. */
+  derived(field, n) {
+    this.fields ||= {};
+    if (this.fields[field + n]) return this.fields[field + n];
+    const count = this.grain.length, values = new Float32Array(count);
+    if (field === "mean" || field === "deviatoric") {
+      const [low1, high1] = this.meta.sigma1, [low3, high3] = this.meta.sigma3, one = this.parts["sigma1_" + n], three = this.parts["sigma3_" + n];
+      for (let t = 0; t < count; ++t) {
+        const s1 = low1 + (one[t] / 255) * (high1 - low1), s3 = low3 + (three[t] / 255) * (high3 - low3);
+        values[t] = field === "mean" ? 0.5 * (s1 + s3) : s1 - s3;
+      }
+    } else if (field === "displacement") {
+      const u = this.displacement(n), nodes = u.length / 2;
+      for (let t = 0; t < count; ++t) {
+        let x = 0, y = 0;
+        for (let k = 0; k < 3; ++k) { x += u[this.corners[3 * t + k]] / 3; y += u[nodes + this.corners[3 * t + k]] / 3; }
+        values[t] = Math.hypot(x, y);
+      }
+    } else if (field === "rotation") {
+      const turns = this.rotations(n);
+      for (let t = 0; t < count; ++t) values[t] = turns[this.grain[t]];
+    }
+    return (this.fields[field + n] = values);
+  }
+
+  /** Rotation of each grain at snapshot n, 10^-3 rad, anticlockwise: that of the rigid motion which fits its corners best. */
+  rotations(n) {
+    const u = this.displacement(n), nodes = u.length / 2, {node_begin: begin, vertex_count: corners, nodes: at} = this.parts, turns = new Float32Array(corners.length);
+    for (let g = 0; g < corners.length; ++g) {
+      let x = 0, y = 0, ux = 0, uy = 0, turn = 0, size = 0;
+      for (let i = begin[g]; i < begin[g] + corners[g]; ++i) { x += at[2 * i] / corners[g]; y += at[2 * i + 1] / corners[g]; ux += u[i] / corners[g]; uy += u[nodes + i] / corners[g]; }
+      for (let i = begin[g]; i < begin[g] + corners[g]; ++i) {
+        const dx = at[2 * i] - x, dy = at[2 * i + 1] - y;
+        turn += dx * (u[nodes + i] - uy) - dy * (u[i] - ux);
+        size += dx * dx + dy * dy;
+      }
+      turns[g] = size > 0 ? (1e3 * turn) / size : 0;
+    }
+    return turns;
+  }
+
+  /** The range of such a field over all snapshots, without its outermost hundredths. */
+  range(field) {
+    this.ranges ||= {};
+    if (!this.ranges[field]) {
+      const all = [];
+      for (let n = 0; n < this.meta.snapshots.length; ++n) { const v = this.derived(field, n); for (let t = 0; t < v.length; t += 3) all.push(v[t]); }
+      const list = Float32Array.from(all).sort();
+      this.ranges[field] = [list[Math.floor(0.01 * (list.length - 1))], list[Math.ceil(0.99 * (list.length - 1))]];
+    }
+    return this.ranges[field];
+  }
+
+  /** How far crack c is open at a moment, mm: of its faces, across it. Not known for a few cracks: NaN. */
+  opening(c, u) {
+    const {crack_ends: ends, crack_nodes: faces, nodes, node_begin: begin, vertex_count: corners} = this.parts, count = u.length / 2;
+    const [a0, a1, b0, b1] = [0, 1, 2, 3].map((k) => faces[4 * c + k]);
+    if (a0 < 0 || b0 < 0) return NaN;
+    if (!this.nodeGrain) {
+      this.nodeGrain = new Int32Array(count);
+      for (let g = 0; g + 1 < begin.length; ++g) this.nodeGrain.fill(g, begin[g], begin[g + 1]);
+    }
+    const middle = (g, k) => { let sum = 0; for (let i = begin[g]; i < begin[g] + corners[g]; ++i) sum += nodes[2 * i + k] / corners[g]; return sum; };
+    const ga = this.nodeGrain[a0], gb = this.nodeGrain[b0], dx = ends[4 * c + 2] - ends[4 * c], dy = ends[4 * c + 3] - ends[4 * c + 1], length = Math.hypot(dx, dy) || 1;
+    let nx = -dy / length, ny = dx / length;
+    if (nx * (middle(gb, 0) - middle(ga, 0)) + ny * (middle(gb, 1) - middle(ga, 1)) < 0) { nx = -nx; ny = -ny; }
+    const x = (ends[4 * c] + ends[4 * c + 2]) / 2, y = (ends[4 * c + 1] + ends[4 * c + 3]) / 2;
+    const moved = (p, q) => {   // of the place on a face
+      const ex = nodes[2 * q] - nodes[2 * p], ey = nodes[2 * q + 1] - nodes[2 * p + 1], t = Math.min(1, Math.max(0, ((x - nodes[2 * p]) * ex + (y - nodes[2 * p + 1]) * ey) / (ex * ex + ey * ey || 1)));
+      return [u[p] + t * (u[q] - u[p]), u[count + p] + t * (u[count + q] - u[count + p])];
+    };
+    const [ax, ay] = moved(a0, a1), [bx, by] = moved(b0, b1);
+    return (bx - ax) * nx + (by - ay) * ny;
+  }
+  /** The opening that few cracks exceed at the end, mm. */
+  wideOpening() {
+    if (this.wide === undefined) {
+      const last = this.meta.snapshots.length - 1, u = this.displacement(last), list = [];
+      for (let c = 0; c < this.meta.snapshots[last].cracks; ++c) { const w = this.opening(c, u); if (w > 0) list.push(w); }
+      list.sort((a, b) => a - b);
+      this.wide = list.length ? list[Math.floor(0.9 * (list.length - 1))] : 0;
+    }
+    return this.wide;
   }
 
   /** Ends of crack c, midway between its faces, mm. */
@@ -162,13 +263,20 @@ const fieldKinds = {
   grain: {label: "grains", scale: null},
   damage: {label: "damage of the grain edges", scale: "earth", unit: ""},
   sigma1: {label: "major principal stress \u03c3\u2081", scale: "cividis", unit: "MPa"},
-  sigma3: {label: "minor principal stress \u03c3\u2083", scale: "puor", unit: "MPa", around: true},
+  sigma3: {label: "minor principal stress \u03c3\u2083", scale: "puor", unit: "MPa", around: true, words: "violet tension, orange compression"},
+  mean: {label: "mean stress (\u03c3\u2081 + \u03c3\u2083)/2", scale: "puor", unit: "MPa", around: true, derived: true, words: "violet tension, orange compression"},
+  deviatoric: {label: "deviatoric stress \u03c3\u2081 \u2212 \u03c3\u2083", scale: "cividis", unit: "MPa", derived: true},
+  displacement: {label: "displacement", scale: "viridis", unit: "mm", derived: true},
+  rotation: {label: "rotation of the grains", scale: "puor", unit: "10\u207b\u00b3 rad", around: true, derived: true, words: "violet clockwise, orange anticlockwise"},
+  fragments: {label: "fragments", scale: null},
 };
+/** Colours of the pieces behind the largest, which keeps the grains' own. */
+const pieceColours = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
 
 class Viewer {
   /** onSnapshot(n) is called when another moment is shown; marksOf(test) are cracks to point at: {name, crack, look: [colour, mark, size]}. */
   constructor(canvas, readout, onSnapshot, marksOf) {
-    Object.assign(this, {canvas, readout, onSnapshot, marksOf, field: "grain", cracks: "mode", magnify: 1, snapshot: 0, specimen: null, ids: null});
+    Object.assign(this, {canvas, readout, onSnapshot, marksOf, field: "grain", cracks: "mode", magnify: 1, snapshot: 0, moment: 0, specimen: null, ids: null});
     canvas.addEventListener("pointerdown", (e) => { this.drag = [e.offsetX, e.offsetY]; canvas.setPointerCapture(e.pointerId); });
     canvas.addEventListener("pointerup", () => { this.drag = null; });
     canvas.addEventListener("pointermove", (e) => this.move(e));
@@ -184,10 +292,15 @@ class Viewer {
 
   show(specimen) {
     this.specimen = specimen;
-    this.snapshot = Math.max(0, specimen.meta.snapshots.length - 1);
+    this.moment = this.snapshot = Math.max(0, specimen.meta.snapshots.length - 1);
     this.resize();
     this.reset();
     this.onSnapshot(this.snapshot);
+  }
+  /** Shows a moment, which may lie between two snapshots: cracks and displacements are then between theirs, the colours those of the one before. */
+  goTo(moment) {
+    this.moment = moment;
+    this.snapshot = Math.floor(moment);
   }
 
   /** Displacements times so much; the specimen stays in view. */
@@ -247,18 +360,19 @@ class Viewer {
     }
     const t = this.ids ? this.ids[Math.floor(e.offsetY * this.dpr) * this.canvas.width + Math.floor(e.offsetX * this.dpr)] : -1;
     if (t === undefined || t < 0) { this.readout.textContent = ""; return; }
-    const s = this.specimen, n = this.snapshot;
+    const s = this.specimen, n = this.snapshot, kind = fieldKinds[this.field], piece = s.parts["fragment" + n];
     const value = (field) => { const [low, high] = s.meta[field]; return low + (s.parts[field + "_" + n][t] / 255) * (high - low); };
     this.readout.textContent = "grain " + s.grain[t] + (s.meta.minerals ? ", " + s.meta.minerals[s.parts.phase[s.grain[t]]].name : "") + "  \u00b7  \u03c3\u2081 \u2248 " + show(value("sigma1")) + " MPa  \u00b7  \u03c3\u2083 \u2248 " +
-      show(value("sigma3")) + " MPa  \u00b7  damage " + show(s.parts["damage" + n][t] / 255, 2);
+      show(value("sigma3")) + " MPa  \u00b7  damage " + show(s.parts["damage" + n][t] / 255, 2) + (kind.derived ? "  \u00b7  " + kind.label.replace(/ [(\u03c3].*/, "") + " " + show(s.derived(this.field, n)[t]) + " " + kind.unit : "") +
+      (this.field === "fragments" && piece ? "  \u00b7  piece " + (piece[s.grain[t]] + 1) : "");
   }
 
   /** Limits of the field's colours: around zero for a field whose sign matters. */
   limits() {
     if (this.field === "damage") return [0, 1];
-    const [low, high] = this.specimen.meta[this.field];
+    const [low, high] = fieldKinds[this.field].derived ? this.specimen.range(this.field) : this.specimen.meta[this.field];
     if (!fieldKinds[this.field].around) return [low, high];
-    const reach = Math.max(Math.abs(low), Math.min(Math.abs(high), 3 * Math.abs(low))) || 1;
+    const reach = (this.field === "rotation" ? Math.max(Math.abs(low), Math.abs(high)) : Math.max(Math.abs(low), Math.min(Math.abs(high), 3 * Math.abs(low)))) || 1;
     return [-reach, reach];
   }
 
@@ -271,8 +385,8 @@ class Viewer {
   }
 
   paint() {
-    const {canvas, specimen: s, snapshot: n} = this, ctx = canvas.getContext("2d"), width = canvas.width, height = canvas.height;
-    const p = s.positions(n, this.magnify), count = p.length / 2, px = new Float32Array(count), py = new Float32Array(count);
+    const {canvas, specimen: s} = this, ctx = canvas.getContext("2d"), width = canvas.width, height = canvas.height;
+    const p = s.positions(this.moment, this.magnify), count = p.length / 2, px = new Float32Array(count), py = new Float32Array(count);
     for (let i = 0; i < count; ++i) {
       px[i] = width / 2 + (p[2 * i] - this.cx) * this.scale;
       py[i] = height / 2 - (p[2 * i + 1] - this.cy) * this.scale;
@@ -292,10 +406,12 @@ class Viewer {
 
   triangleColors() {
     const s = this.specimen, n = this.snapshot, count = s.grain.length, colors = new Uint32Array(count);
-    if (this.field === "grain") {
+    if (this.field === "grain" || this.field === "fragments") {
+      const piece = this.field === "fragments" ? s.parts["fragment" + n] : null, pieces = pieceColours.map(rgb);
       const minerals = (s.meta.minerals || []).map((m) => rgb(m.colour)), plain = rgb(theme.get("grain"));
       for (let t = 0; t < count; ++t) {
-        const [r, g, b] = minerals.length ? minerals[s.parts.phase[s.grain[t]]] : plain;
+        const number = piece ? piece[s.grain[t]] : 0;
+        const [r, g, b] = number > 0 ? pieces[(number - 1) % pieces.length] : minerals.length && !piece ? minerals[s.parts.phase[s.grain[t]]] : plain;
         const unit = s.parts.crystal ? s.parts.crystal[s.grain[t]] : s.grain[t];
         const shade = 1 - (s.parts.crystal ? 0.15 : 0.075) * (((unit * 2654435761) >>> 0) / 4294967296);   // neighbours differ a little
         colors[t] = (255 << 24) | (Math.round(b * shade) << 16) | (Math.round(g * shade) << 8) | Math.round(r * shade);
@@ -303,10 +419,10 @@ class Viewer {
       return colors;
     }
     const table = palette(fieldKinds[this.field].scale);
-    const levels = s.parts[this.field + (this.field === "damage" ? "" : "_") + n];
-    const [low, high] = this.field === "damage" ? [0, 1] : s.meta[this.field], [from, to] = this.limits();
+    const derived = fieldKinds[this.field].derived ? s.derived(this.field, n) : null, levels = s.parts[this.field + (this.field === "damage" ? "" : "_") + n];
+    const [low, high] = this.field === "damage" || derived ? [0, 1] : s.meta[this.field], [from, to] = this.limits();
     for (let t = 0; t < count; ++t) {
-      const value = low + (levels[t] / 255) * (high - low);
+      const value = derived ? derived[t] : low + (levels[t] / 255) * (high - low);
       colors[t] = table[Math.min(255, Math.max(0, Math.round((255 * (value - from)) / (to - from || 1))))];
     }
     return colors;
@@ -345,13 +461,15 @@ class Viewer {
 
   paintCracks(ctx, positions) {
     if (this.cracks === "none") return;
-    const s = this.specimen, {crack_mode: mode, crack_strain: strain} = s.parts, count = s.meta.snapshots[this.snapshot].cracks;
+    const s = this.specimen, {crack_mode: mode, crack_strain: strain} = s.parts, count = s.state(this.moment).cracks;
+    const u = this.cracks === "opening" ? s.displacementAt(this.moment) : null, wide = u ? s.wideOpening() || 1 : 1;
     const groups = new Map();   // colour -> lines
     const table = palette("viridis"), [first, last] = this.crackTimes();
     for (let c = 0; c < count; ++c) {
       let color = theme.get("ink");
       if (this.cracks === "mode") color = mode[c] ? "shear" : "tensile";
       else if (this.cracks === "time") color = css(table[Math.round((15 * (strain[c] - first)) / (last - first || 1)) * 17]);
+      else if (u) { const w = s.opening(c, u); color = Number.isFinite(w) ? css(table[Math.round(15 * Math.min(1, Math.max(0, w / wide))) * 17]) : theme.get("context"); }
       if (!groups.has(color)) groups.set(color, []);
       groups.get(color).push(s.crack(c, positions));
     }
@@ -379,7 +497,7 @@ class Viewer {
 
   /** Points at cracks with a name, once they are there. */
   paintMarks(ctx, positions) {
-    const s = this.specimen, count = s.meta.snapshots[this.snapshot].cracks;
+    const s = this.specimen, count = s.state(this.moment).cracks;
     for (const {crack, look: [color, mark, size]} of this.marksOf(s.meta.test)) {
       if (crack >= count) continue;
       const [x0, y0, x1, y1] = s.crack(crack, positions);
@@ -387,6 +505,23 @@ class Viewer {
       drawMark(ctx, mark, x, y, (size + 3.5) * this.dpr, theme.get("halo"));
       drawMark(ctx, mark, x, y, (size + 1.5) * this.dpr, color);
     }
+  }
+
+  /** What is shown on a sheet with two lines of words above it. `canvas`: drawn over, or new. */
+  sheet(title, words, canvas = h("canvas", {})) {
+    const {width, height} = this.canvas, k = this.dpr, head = 48 * k;
+    if (canvas.width !== width || canvas.height !== height + head) { canvas.width = width; canvas.height = height + head; }
+    const ctx = canvas.getContext("2d");
+    ctx.fillStyle = theme.get("card");
+    ctx.fillRect(0, 0, canvas.width, canvas.height);
+    ctx.fillStyle = theme.get("ink");
+    ctx.font = "600 " + 14 * k + "px system-ui, sans-serif";
+    ctx.fillText(fitted(ctx, title, width - 20 * k), 10 * k, 19 * k);
+    ctx.fillStyle = theme.get("soft");
+    ctx.font = 12 * k + "px system-ui, sans-serif";
+    ctx.fillText(fitted(ctx, words, width - 20 * k), 10 * k, 38 * k);
+    ctx.drawImage(this.canvas, 0, head);
+    return canvas;
   }
 
   crackTimes() {
@@ -413,11 +548,11 @@ class Viewer {
   }
 }
 
-/** Directions of the cracks that exist at snapshot n, weighted by length, from the loading axis; both halves alike. */
-function drawRosette(canvas, specimen, n) {
+/** Directions of the cracks that exist at a moment, weighted by length, from the loading axis; both halves alike. */
+function drawRosette(canvas, specimen, moment) {
   const bins = 18, length = [new Float64Array(bins), new Float64Array(bins)];
   const {crack_ends: ends, crack_mode: mode} = specimen.parts;
-  for (let c = 0; c < specimen.meta.snapshots[n].cracks; ++c) {
+  for (let c = 0; c < specimen.state(moment).cracks; ++c) {
     const dx = ends[4 * c + 2] - ends[4 * c], dy = ends[4 * c + 3] - ends[4 * c + 1];
     const angle = (Math.atan2(dx, dy) + 2 * Math.PI) % Math.PI;   // clockwise from the loading axis, 0 ... pi
     length[mode[c]][Math.min(bins - 1, Math.floor((angle / Math.PI) * bins))] += Math.hypot(dx, dy);
