@@ -19,7 +19,7 @@ const std::vector<std::string> rooms{"base", "geometry", "specimen", "laws", "mo
 
 /// What the user asks, as plain data. Every room speaks this language, so it may be included from any floor; in turn it may
 /// include nothing of the house but itself and base (SharedVocabularyIncludesNothing).
-const std::set<std::string> vocabulary{"feldspar/model/spec.hpp", "feldspar/model/fixture_spec.hpp", "feldspar/model/gauge_spec.hpp", "feldspar/model/heterogeneity_spec.hpp", "feldspar/model/stage_spec.hpp"};
+const std::set<std::string> vocabulary{"feldspar/model/spec.hpp", "feldspar/model/fixture_spec.hpp", "feldspar/model/gauge_spec.hpp", "feldspar/model/stage_spec.hpp"};
 
 const std::set<std::string> made_at_build_time{"feldspar_commit.hpp"};
 

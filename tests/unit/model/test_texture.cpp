@@ -14,6 +14,7 @@
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/joints.hpp"
 #include "feldspar/model/texture.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 #include "fixtures.hpp"
 
 namespace feldspar {
@@ -190,6 +191,33 @@ TEST(Minerals, ComeFromAListOrAMap) {
     map.phase.resize(60 * 100);
     rock.minerals.map = std::make_shared<PhaseMap>(map);
     EXPECT_THROW(texture(rock), InputError);   // another shape than the specimen
+}
+
+// Where minerals have sizes of their own the packing says which cell is of which, and the summary what they came to.
+TEST(Minerals, WithSizesOfTheirOwnAreThoseOfThePacking) {
+    SpecimenSpec spec = fixtures::rectangle(0.04, 0.06);
+    GrainSizeSpec fine = spec.grain_sizes, coarse = spec.grain_sizes;
+    fine.minimum_m = 0.0015;
+    fine.maximum_m = 0.002;
+    coarse.minimum_m = 0.003;
+    coarse.maximum_m = 0.005;
+    spec.phase_sizes = {{"fine", 0.4, fine}, {"coarse", 0.6, coarse}};
+    spec.grain_sizes = mixture_of(spec.phase_sizes, spec.porosity);
+    const auto specimen = fixtures::make(spec);
+    Heterogeneity rock;
+    rock.minerals.phases = {{"fine", 0.4, fixtures::granite()}, {"coarse", 0.6, {60e9, 0.1, 2700.0}}};
+    const Texture t = texture(rock, *specimen);
+    EXPECT_EQ(t.phases(), specimen->packing.phases);
+    const TextureSummary summary = t.summary();
+    ASSERT_EQ(summary.disc_sizes.size(), 2U);
+    EXPECT_GE(summary.disc_sizes[0].minimum_m, 0.0015);
+    EXPECT_LE(summary.disc_sizes[0].maximum_m, 0.002);
+    EXPECT_GE(summary.disc_sizes[1].minimum_m, 0.003);
+    EXPECT_GT(summary.sizes[1].mean_m, summary.disc_sizes[1].mean_m) << "cells fill the pores too";
+    EXPECT_NEAR(summary.area_shares[0], 0.4, 0.01);
+    EXPECT_EQ(t.grain(0).E_Pa, specimen->packing.phases[0] == 0 ? fixtures::granite().E_Pa : 60e9);
+    rock.minerals.phases.pop_back();
+    EXPECT_THROW(texture(rock, *specimen), InputError) << "the packing has two minerals";
 }
 
 TEST(Minerals, UnlikeContactsFollowTheRule) {
