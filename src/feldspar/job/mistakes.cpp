@@ -19,7 +19,7 @@ InputErrors::InputErrors(std::vector<InputError> all) : InputError(all.front()),
         if (i > 0) text_ += "\n";
         text_ += all_[i].what();
     }
-    if (all_.size() > most_told) text_ += "\nand " + std::to_string(all_.size() - most_told) + " more";
+    if (all_.size() > most_told) text_ += std::string("\nand ") + (all_.size() >= most_kept ? "at least " : "") + std::to_string(all_.size() - most_told) + " more";
 }
 
 std::vector<InputError> each_mistake(const InputError& error) {
@@ -33,6 +33,7 @@ void Mistakes::add(const InputError& error, const std::string& spoils) {
         const bool known = std::any_of(found_.begin(), found_.end(), [&](const InputError& other) { return std::string_view(other.what()) == one.what(); });
         if (!known) found_.push_back(one);
     }
+    if (found_.size() >= InputErrors::most_kept) throw_if_any();
 }
 
 bool Mistakes::sound(std::string_view key) const {

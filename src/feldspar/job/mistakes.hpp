@@ -21,6 +21,7 @@ public:
     const char* what() const noexcept override { return text_.c_str(); }
 
     static constexpr std::size_t most_told = 20;
+    static constexpr std::size_t most_kept = 1000;   ///< with so many reading ends: a file of another kind has one in every line
 
 private:
     std::vector<InputError> all_;
@@ -38,6 +39,7 @@ public:
 
     /// Takes an error, which may be of several mistakes. What is known already is not taken again.
     /// @param spoils  dotted key whose value is not known because of it; empty for none
+    /// @throws InputErrors of all, if there are InputErrors::most_kept
     void add(const InputError& error, const std::string& spoils);
 
     /// The value of this key is not known, which needs no message of its own.

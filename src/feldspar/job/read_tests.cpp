@@ -302,10 +302,11 @@ void check_one_specimen(const JobTable& table, const SpecimenSpec& of_job, const
 std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_view key) {
     const auto [lowest, highest] = whole_numbers(job_key("run", "seeds"));
     std::vector<std::uint64_t> seeds;
+    std::set<std::uint64_t> seen;
     for (const toml::node& node : table.array(key))
         table.check({}, [&] {
             const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, lowest, highest));
-            if (std::find(seeds.begin(), seeds.end(), seed) != seeds.end())
+            if (!seen.insert(seed).second)
                 table.fail_at(node, key, "the seed " + std::to_string(seed) + " is given twice", "each seed once");
             seeds.push_back(seed);
         });

@@ -98,6 +98,17 @@ TEST(Mistakes, AreToldUpToTwentyAndTheRestCounted) {
     EXPECT_EQ(mistakes_of(edited("[specimen]\n", text)).size(), 27u);
 }
 
+// A file of another kind, with a mistake in every line, is refused as quickly as a job, whatever its size.
+TEST(Mistakes, ByTheThousandEndTheReading) {
+    std::string text;
+    for (int i = 0; i < 100'000; ++i) text += "k" + std::to_string(i) + " = 1\n";
+    EXPECT_TRUE(message_of(text).ends_with("\nand at least 980 more"));
+    EXPECT_EQ(mistakes_of(text).size(), InputErrors::most_kept);
+    text = "[specimen]\nshape = \"rectangle\"\n";
+    for (int i = 0; i < 20'000; ++i) text += "[[test]]\nkind = \"\"\n";
+    EXPECT_EQ(mistakes_of(text).size(), InputErrors::most_kept);
+}
+
 TEST(Mistakes, ASyntaxErrorStaysAlone) {
     const std::string text = edited("width = \"80 mm\"", "width = 80 mm", edited("porosity = 0.10", "porosity = 1.1"));
     ASSERT_EQ(mistakes_of(text).size(), 1u);
