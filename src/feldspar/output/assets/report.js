@@ -447,7 +447,7 @@ function guessedUnit(units, head, fallback) {
 
 /** A button that lays a curve of the reader's own over ours: a file on this machine, which goes nowhere. */
 function measuredButton(host, test, draw) {
-  const key = titleOf(test), form = h("div", {class: "pick measured", hidden: ""}), file = h("input", {type: "file", accept: ".csv,.txt,.tsv,.dat", hidden: "", onchange: () => { if (file.files[0]) file.files[0].text().then((text) => open(file.files[0].name, text)); file.value = ""; }});
+  const key = titleOf(test), form = h("div", {class: "pick measured", hidden: ""}), file = h("input", {type: "file", accept: ".csv,.txt,.tsv,.dat", hidden: "", onchange: () => { const chosen = file.files[0]; if (chosen) chosen.text().then((text) => { open(chosen.name, text); file.value = ""; }); }});
   const choice = (label, entries, chosen) => { const list = h("select", {"aria-label": label}, entries.map((text, i) => h("option", {value: i}, text))); list.selectedIndex = Math.min(chosen, entries.length - 1); return list; };
   function open(name, text) {
     const {rows, heads} = readTable(text);
