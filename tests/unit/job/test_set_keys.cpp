@@ -81,6 +81,7 @@ TEST(SetKeys, WrongOnesAreRefusedByName) {
     const std::vector<std::pair<std::string, std::vector<std::string>>> cases{
         {"material.contact.tau=30GJ", {"--set 'material.contact.tau=30GJ'", "a stress"}},
         {"material.contact.tua=30MPa", {"--set 'material.contact.tua=30MPa'", "unknown key", "did you mean 'tau'?"}},
+        {"test.plate_mu=2.", {"--set 'test.plate_mu=2.'", "plain number"}},
         {"material.contact.mu=-1", {"--set 'material.contact.mu=-1'", "not allowed"}},
         {"meterial.contact.mu=1", {"--set 'meterial.contact.mu=1'", "did you mean 'material'?"}},
         {"model.plane=sideways", {"--set 'model.plane=sideways'", "stress, strain"}},
