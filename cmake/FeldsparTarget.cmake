@@ -18,6 +18,7 @@ function(feldspar_room name)
     add_library(feldspar_${name} STATIC ${ROOM_SOURCES})
     target_link_libraries(feldspar_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE $<BUILD_INTERFACE:feldspar_options>)
     target_include_directories(feldspar_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    target_compile_features(feldspar_${name} PUBLIC cxx_std_20)
     set_target_properties(feldspar_${name} PROPERTIES EXPORT_NAME ${name})
 endfunction()
 
