@@ -60,10 +60,16 @@ std::vector<std::string> unexpected(const CLI::App& app, const CLI::App& command
 
 bool told(const CLI::Option& option) { return !option.get_group().empty() && option.get_name() != "--help" && option.get_name().find("--help") == std::string::npos; }
 
+std::string value_name(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    return type.substr(0, type.find(':'));   // without what its check says of it
+}
+
 std::string written(const CLI::Option& option) {
     const bool positional = option.get_positional();
-    std::string text = positional ? option.get_type_name() : option.get_name();
-    if (!positional && !option.get_type_name().empty() && option.get_items_expected_max() > 0) text += " " + option.get_type_name();
+    const std::string type = value_name(option);
+    std::string text = positional ? type : option.get_name();
+    if (!positional && !type.empty() && option.get_items_expected_max() > 0) text += " " + type;
     return text;
 }
 

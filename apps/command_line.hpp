@@ -67,6 +67,9 @@ private:
 /// Whether an option is for users, and no `--help`.
 bool told(const CLI::Option& option);
 
+/// What its value is called: "DIR".
+std::string value_name(const CLI::Option& option);
+
 /// "--out DIR", "-h,--help": an option, or the name of a positional one.
 std::string written(const CLI::Option& option);
 

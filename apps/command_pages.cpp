@@ -33,7 +33,7 @@ enum class Kind { none, words, toml, directory, file };
 
 Kind kind_of(const CommandLine& line, const CLI::Option& option) {
     if (!line.choices(&option).empty()) return Kind::words;
-    const std::string type = option.get_type_name();
+    const std::string type = value_name(option);
     if (type.ends_with(".toml")) return Kind::toml;
     if (type == "DIR" || type == "RUN" || type == "FOLDER") return Kind::directory;
     return type == "FILE" ? Kind::file : Kind::none;
@@ -146,11 +146,11 @@ std::string zsh(const CommandLine& line) {
         for (const CLI::Option* option : options_of(*page.app))
             for (const std::string& name : option->get_lnames()) {
                 text += fmt::format(" \\\n        '*--{}[{}]", name, zsh_text(option->get_description()));
-                if (takes_value(*option)) text += fmt::format(":{}:{}", zsh_text(option->get_type_name()), zsh_values(line, *option));
+                if (takes_value(*option)) text += fmt::format(":{}:{}", zsh_text(value_name(*option)), zsh_values(line, *option));
                 text += "'";
             }
         if (page.inside.empty())
-            for (const CLI::Option* option : positionals_of(*page.app)) text += fmt::format(" \\\n        ':{}:{}'", zsh_text(option->get_type_name()), zsh_values(line, *option));
+            for (const CLI::Option* option : positionals_of(*page.app)) text += fmt::format(" \\\n        ':{}:{}'", zsh_text(value_name(*option)), zsh_values(line, *option));
         else
             text += " \\\n        '1: :->command' \\\n        '*:: :->rest'";
         text += "\n";
@@ -235,10 +235,10 @@ std::string manual_page(const CommandLine& line, const std::string& name) {
     std::string text = fmt::format(".TH {} 1 \"\" \"feldspar {}\" \"User commands\"\n.SH NAME\n{} \\- {}", head, collect_provenance("", 1).version, replaced(page_name(name), "-", "\\-"), roff(page.app->get_description()));
     text += fmt::format(".SH SYNOPSIS\n.B {}\n", replaced(command, "-", "\\-"));
     if (!options.empty()) text += "[\\fIoptions\\fR]\n";
-    for (const CLI::Option* option : positionals) text += fmt::format("{}\\fI{}\\fR{}\n", option->get_required() ? "" : "[", option->get_type_name(), option->get_required() ? "" : "]");
+    for (const CLI::Option* option : positionals) text += fmt::format("{}\\fI{}\\fR{}\n", option->get_required() ? "" : "[", value_name(*option), option->get_required() ? "" : "]");
     if (!page.inside.empty()) text += positionals.empty() ? "\\fIcommand\\fR ...\n" : fmt::format(".br\n.B {}\n\\fIcommand\\fR ...\n", replaced(command, "-", "\\-"));
     if (!positionals.empty()) text += ".SH ARGUMENTS\n";
-    for (const CLI::Option* option : positionals) text += fmt::format(".TP\n\\fI{}\\fR\n{}", option->get_type_name(), roff(option->get_description()));
+    for (const CLI::Option* option : positionals) text += fmt::format(".TP\n\\fI{}\\fR\n{}", value_name(*option), roff(option->get_description()));
     if (!page.inside.empty()) text += ".SH COMMANDS\n";
     for (const CLI::App* inside : page.inside) text += fmt::format(".TP\n.B {}\n{}", replaced(inside->get_name(), "-", "\\-"), roff(inside->get_description()));
     text += ".SH OPTIONS\n";

@@ -16,7 +16,7 @@ SKIPPED = 77
 GRAIN_ARRAYS = ("damage", "stress_xx_MPa", "stress_yy_MPa", "stress_xy_MPa", "sigma_1_MPa", "sigma_3_MPa", "mean_stress_MPa", "grain")
 CRACK_ARRAYS = ("mode", "time", "step", "opening_m", "energy_J")
 CONTACT_ARRAYS = ("damage", "normal_force_N", "shear_force_N", "grain_a", "grain_b")
-BLOCKS = ("grains", "grain-edges", "contacts", "cracks", "events")
+BLOCKS = ("grains", "grain_edges", "contacts", "cracks", "events")
 
 
 def start_paraview():
@@ -29,7 +29,7 @@ def start_paraview():
         if not shutil.which("xvfb-run"):
             print("skipped: no display and no xvfb-run")
             sys.exit(SKIPPED)
-        command = ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", *command]
+        command = ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset", *command]
     sys.exit(subprocess.run(command, check=False).returncode)
 
 
@@ -67,7 +67,7 @@ def check(pvd):
     for time in times:
         reader.UpdatePipeline(time)
         parts = blocks(reader)
-        if any(name not in parts for name in ("grains", "grain-edges", "contacts")):
+        if any(name not in parts for name in ("grains", "grain_edges", "contacts")):
             found.append(f"{pvd.name}: only the blocks {sorted(parts)} at {time}")
             continue
 
@@ -85,7 +85,7 @@ def check(pvd):
             damage = parts["contacts"].GetCellData().GetArray("damage").GetRange()
             if damage[0] < 0 or damage[1] >= 1:
                 found.append(f"{pvd.name}: damage of contacts that are not broken: {damage}")
-        for block in ("grains", "grain-edges", "contacts"):
+        for block in ("grains", "grain_edges", "contacts"):
             if not parts[block].GetPointData().GetArray("displacement_m"):
                 found.append(f"{pvd.name}: {block} without displacement at {time}")
         lines = parts["cracks"].GetNumberOfCells() if "cracks" in parts else 0

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "feldspar/methods/method.hpp"
@@ -61,32 +62,17 @@ toml::table parse_setting(const std::string& setting) {
     }
 }
 
-void lay(toml::table& under, const toml::table& over, const std::string& setting, const std::string& path) {
-    for (const auto& [key, value] : over) {
+// Values are moved: a copy would forget that it comes from a setting.
+void lay(toml::table& under, toml::table&& over, const std::string& setting, const std::string& path) {
+    for (auto&& [key, value] : over) {
         toml::node* there = under.get(key.str());
         const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
         if (value.is_table() && !value.as_table()->is_inline() && there != nullptr) {
             if (!there->is_table()) refuse(setting, "'" + full + "' is not a table in the job, so it has no keys");
-            lay(*there->as_table(), *value.as_table(), setting, full);
+            lay(*there->as_table(), std::move(*value.as_table()), setting, full);
         } else {
-            under.insert_or_assign(key, value);
+            under.insert_or_assign(key, std::move(value));
         }
-    }
-}
-
-// The keys of `over` in each table of a list; those in a table that is named as some of them, in these. @param of_name  the tables that a word names, by their numbers; nothing if it names none
-template <class OfName>
-void lay_over_list(toml::array& list, const toml::table& over, const std::string& setting, const std::string& path, const OfName& of_name) {
-    for (const auto& [key, value] : over) {
-        const std::vector<std::size_t> some = value.is_table() ? of_name(key.str()) : std::vector<std::size_t>{};
-        if (!some.empty()) {
-            for (const std::size_t i : some) lay(*list.get(i)->as_table(), *value.as_table(), setting, path + "." + std::string(key.str()));
-            continue;
-        }
-        toml::table one;
-        one.insert_or_assign(key, value);
-        for (toml::node& table : list)
-            if (table.is_table()) lay(*table.as_table(), one, setting, path);
     }
 }
 
@@ -97,32 +83,46 @@ std::vector<std::size_t> tables_with(const toml::array& list, std::string_view k
     return found;
 }
 
+// The tables of a list that a word of a setting names; none if it is one of their keys.
+std::vector<std::size_t> named_tables(const toml::array& list, std::string_view list_name, std::string_view word, const std::string& setting) {
+    if (list_name != "test") return tables_with(list, "name", word);
+    const auto method = find_method_called(word);
+    if (!method) return {};
+    std::vector<std::size_t> found = tables_with(list, "kind", name(*method));
+    if (found.empty()) refuse(setting, "the job has no test '" + std::string(name(*method)) + "'");
+    return found;
+}
+
+// A key of each table of a list, or of those that the setting names.
+void set_in_list(toml::array& list, const std::string& list_name, const std::string& setting) {
+    const toml::table tree = parse_setting(setting);
+    const auto& [first, value] = *tree.begin()->second.as_table()->begin();
+    const std::string word(first.str());
+    std::vector<std::size_t> chosen;
+    if (value.is_table()) chosen = named_tables(list, list_name, word, setting);
+    const bool named = !chosen.empty();
+    for (std::size_t i = 0; !named && i < list.size(); ++i) chosen.push_back(i);
+    for (const std::size_t i : chosen) {
+        toml::table again = parse_setting(setting);   // to be moved from
+        toml::table& inside = *again.begin()->second.as_table();
+        toml::table* table = list.get(i)->as_table();
+        if (table != nullptr) lay(*table, std::move(named ? *inside.get(word)->as_table() : inside), setting, named ? list_name + "." + word : list_name);
+    }
+}
+
 }  // namespace
 
 bool is_setting(const toml::source_region& region) { return region.path && region.path->starts_with(kOption); }
 
 void set_keys(toml::table& job, std::span<const std::string> settings) {
     for (const std::string& setting : settings) {
-        const toml::table tree = parse_setting(setting);
-        for (const auto& [key, value] : tree) {
-            toml::node* there = job.get(key.str());
-            toml::array* list = there != nullptr ? there->as_array() : nullptr;
-            if (list == nullptr || !value.is_table()) {
-                toml::table one;
-                one.insert_or_assign(key, value);
-                lay(job, one, setting, {});
-            } else if (key.str() == "test") {
-                lay_over_list(*list, *value.as_table(), setting, "test", [&](std::string_view word) {
-                    const auto method = find_method_called(word);
-                    if (!method) return std::vector<std::size_t>{};
-                    std::vector<std::size_t> found = tables_with(*list, "kind", name(*method));
-                    if (found.empty()) refuse(setting, "the job has no test '" + std::string(name(*method)) + "'");
-                    return found;
-                });
-            } else {
-                lay_over_list(*list, *value.as_table(), setting, std::string(key.str()), [&](std::string_view word) { return tables_with(*list, "name", word); });
-            }
-        }
+        toml::table tree = parse_setting(setting);
+        const std::string key(tree.begin()->first.str());
+        const toml::node& value = tree.begin()->second;
+        toml::node* there = job.get(key);
+        toml::array* list = there != nullptr ? there->as_array() : nullptr;
+        if (list != nullptr && value.is_table() && !value.as_table()->is_inline()) set_in_list(*list, key, setting);
+        else lay(job, std::move(tree), setting, {});
     }
 }
 

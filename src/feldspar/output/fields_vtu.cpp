@@ -267,7 +267,7 @@ struct Block {
     std::string (Blocks::*file)(const Snapshot&, const std::string&) const;
 };
 
-constexpr std::array blocks_in_order{Block{"grains", &Blocks::grains}, Block{"grain-edges", &Blocks::grain_outlines}, Block{"contacts", &Blocks::contacts}, Block{"cracks", &Blocks::cracks},
+constexpr std::array blocks_in_order{Block{"grains", &Blocks::grains}, Block{"grain_edges", &Blocks::grain_outlines}, Block{"contacts", &Blocks::contacts}, Block{"cracks", &Blocks::cracks},
                                      Block{"events", &Blocks::events}};
 
 /// The script by which ParaView shows a test.
@@ -345,7 +345,7 @@ void write_paraview(const RunDirectory& directory, const TestFields& fields, int
         directory.write_text(stem + "/" + file("snapshot", n, "vtm"), list + "</vtkMultiBlockDataSet>\n</VTKFile>\n");
     });
     std::string collection = fmt::format(
-        "<?xml version=\"1.0\"?>\n<!-- feldspar fields for ParaView 2; {}. Blocks: grains, grain-edges, contacts (not broken; force > 0: compression), cracks (mode 0 tensile, 1 shear; "
+        "<?xml version=\"1.0\"?>\n<!-- feldspar fields for ParaView 2; {}. Blocks: grains, grain_edges, contacts (not broken; force > 0: compression), cracks (mode 0 tensile, 1 shear; "
         "time = magnitude of the axial strain at the break), events (acoustic). timestep = {}. -->\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
         sign_convention, time.meaning);

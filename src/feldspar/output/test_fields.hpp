@@ -34,7 +34,7 @@ TestFields fields_of(const TestResult& result);
 /// Reads what write_hdf5() has written. May be called on any thread. @throws InputError if the file cannot be read, is no archive of a test, or one of a later version
 TestFields read_archive(const std::filesystem::path& file);
 
-/// Files for ParaView in a directory: `<stem>.pvd`, which lists a time for each snapshot, `<stem>/snapshot-<n>.vtm`, which names its blocks (grains, grain-edges, contacts, cracks, events), their grids
+/// Files for ParaView in a directory: `<stem>.pvd`, which lists a time for each snapshot, `<stem>/snapshot-<n>.vtm`, which names its blocks (grains, grain_edges, contacts, cracks, events), their grids
 /// `<stem>/<block>-<n>.vtu`, and `<stem>.py`, by which ParaView opens them coloured. Positions are undeformed; `displacement_m` moves them. Files of an earlier export are replaced.
 /// @param threads  snapshots that are compressed side by side. @throws OutputError
 void write_paraview(const RunDirectory& directory, const TestFields& fields, int threads = 1);

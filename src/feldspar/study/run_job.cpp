@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kBytesOfAGrain = 350.0;   // at each snapshot of an archive
+constexpr double kBytesOfAGrain = 400.0;   // at each snapshot of an archive
 
 // Bytes that the job will leave, roughly: fields at the snapshots, histories and the report.
 double expected_bytes(const std::vector<PlannedRun>& runs, Keep keep) {

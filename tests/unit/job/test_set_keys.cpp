@@ -1,6 +1,7 @@
 // Keys of a job that are set beside its file, and the user's units in a job that is written out.
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,10 +52,10 @@ TEST(SetKeys, InsideAnInlineTable) {
 
 TEST(SetKeys, OfAllTestsOrOfAKind) {
     const std::string text = with_tests("[[test]]\nkind = \"brazilian\"\n");
-    const auto mu = [](const Job& job, MethodId kind) {
+    const auto mu = [](const Job& job, MethodId kind) -> std::optional<double> {
         for (const TestSpec& test : job.tests)
             if (test.kind == kind) return test.plate_mu;
-        return -1.0;
+        return std::nullopt;
     };
     const std::vector<std::string> all{"test.plate_mu=0.25"}, one{"test.brazilian.plate_mu=0.15"}, short_name{"test.BTS.plate_mu=0.15"};
     const Job of_all = parse_job(text, "rock.toml", all);
@@ -81,6 +82,7 @@ TEST(SetKeys, WrongOnesAreRefusedByName) {
     const std::vector<std::pair<std::string, std::vector<std::string>>> cases{
         {"material.contact.tau=30GJ", {"--set 'material.contact.tau=30GJ'", "a stress"}},
         {"material.contact.tua=30MPa", {"--set 'material.contact.tua=30MPa'", "unknown key", "did you mean 'tau'?"}},
+        {"test.plate_mu=2.", {"--set 'test.plate_mu=2.'", "plain number"}},
         {"material.contact.mu=-1", {"--set 'material.contact.mu=-1'", "not allowed"}},
         {"meterial.contact.mu=1", {"--set 'meterial.contact.mu=1'", "did you mean 'material'?"}},
         {"model.plane=sideways", {"--set 'model.plane=sideways'", "stress, strain"}},

@@ -271,7 +271,7 @@ TEST_F(Fields, ContactsThatAreNotBrokenHaveDamageAndForce) {
 
 TEST_F(Fields, EdgesOfGrainsAreThoseOfTheirCells) {
     write_paraview(directory, fields_of(result));
-    const std::string edges = read_text(directory.path() / "uniaxial-compression-s3/grain-edges-000.vtu");
+    const std::string edges = read_text(directory.path() / "uniaxial-compression-s3/grain_edges-000.vtu");
     const auto ends = vtu_array<std::int32_t>(edges, "connectivity");
     ASSERT_EQ(ends.size(), 2 * 4 * result.specimen->cells.cells.size());
     for (const std::int32_t node : ends) EXPECT_NE(node % 5, 4) << "the node in the middle";   // each grain has four corners, then that
@@ -294,7 +294,7 @@ TEST_F(Fields, CollectionNamesEveryBlockAtGrowingTimes) {
             names.push_back(value_of(list, "name", block));
             EXPECT_TRUE(std::filesystem::exists(file.parent_path() / value_of(list, "file", block))) << list;
         }
-        EXPECT_EQ(names, (std::vector<std::string>{"grains", "grain-edges", "contacts", "cracks", "events"}));
+        EXPECT_EQ(names, (std::vector<std::string>{"grains", "grain_edges", "contacts", "cracks", "events"}));
     }
     EXPECT_EQ(entries, 3);
     EXPECT_EQ(blocks, 15);
@@ -309,7 +309,7 @@ TEST_F(Fields, WhatAnEarlierExportLeftBeyondIsRemoved) {
     write_paraview(directory, fields_of(result));
     const auto folder = directory.path() / "uniaxial-compression-s3";
     EXPECT_TRUE(std::filesystem::exists(folder / "grains-001.vtu"));
-    for (const char* file : {"grains-002.vtu", "grain-edges-002.vtu", "contacts-002.vtu", "cracks-002.vtu", "events-002.vtu", "snapshot-002.vtm"}) EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
+    for (const char* file : {"grains-002.vtu", "grain_edges-002.vtu", "contacts-002.vtu", "cracks-002.vtu", "events-002.vtu", "snapshot-002.vtm"}) EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
 }
 
 TEST_F(Fields, TimesThatDoNotGrowBecomeNumbers) {

@@ -57,6 +57,13 @@ def coloured(source, view, field, preset, limits, title, width=None):
     return shown, table, bar
 
 
+def place(bar, height):
+    bar.WindowLocation = "Any Location"
+    bar.Position = [0.84, height]
+    bar.ScalarBarLength = 0.28
+    bar.RangeLabelFormat = bar.LabelFormat = "%-#6.4g"
+
+
 def show():
     reader = pv.PVDReader(registrationName=STEM, FileName=os.path.join(FOLDER, STEM + ".pvd"))
     times = list(reader.TimestepValues) if hasattr(reader.TimestepValues, "__len__") else [reader.TimestepValues]
@@ -79,14 +86,15 @@ def show():
         warped.UpdatePipeline(time)
         return warped
 
-    grains, edges, contacts, cracks, events = (block(name) for name in ("grains", "grain-edges", "contacts", "cracks", "events"))
-    _, _, bar = coloured(grains, view, FIELD, "Viridis (matplotlib)", middle_range(grains, FIELD), FIELD_TITLE)
-    bar.WindowLocation = "Any Location"
-    bar.Position = [0.86, 0.56]
+    grains, edges, contacts, cracks, events = (block(name) for name in ("grains", "grain_edges", "contacts", "cracks", "events"))
+    triangles, _, bar = coloured(grains, view, FIELD, "Viridis (matplotlib)", middle_range(grains, FIELD), FIELD_TITLE)
+    place(bar, 0.5)
+    box = grains.GetDataInformation().GetBounds()
+    triangles.Position = [0.0, 0.0, -1e-3 * (box[3] - box[2])]   # behind the lines that lie in their plane
     outline = pv.Show(edges, view)
-    pv.ColorBy(outline, None)
+    outline.ColorArrayName = [None, ""]
     outline.AmbientColor = outline.DiffuseColor = [0.25, 0.25, 0.25]
-    outline.LineWidth = 0.5
+    outline.LineWidth = 1.0
     if len(values(contacts, "damage")):
         lines, _, _ = coloured(contacts, view, "normal_force_N", "Cool to Warm", middle_range(contacts, "normal_force_N", symmetric=True), "contact force, N (> 0: compression)", 2.0)
         pv.Hide(contacts, view)   # one click away: the eye beside "contacts moved"
@@ -96,8 +104,7 @@ def show():
         table.InterpretValuesAsCategories = 1
         table.Annotations = ["0", "tensile", "1", "shear"]
         table.IndexedColors = [0.85, 0.10, 0.10, 1.0, 0.60, 0.0]
-        bar.WindowLocation = "Any Location"
-        bar.Position = [0.86, 0.38]
+        place(bar, 0.15)
     if len(values(events, "magnitude")):
         points, _, _ = coloured(events, view, "magnitude", "Plasma (matplotlib)", middle_range(events, "magnitude"), "magnitude of events")
         points.PointSize = 8.0
@@ -118,7 +125,7 @@ def main(arguments):
     if len(arguments) > 1:
         wanted = float(arguments[1])
         view.ViewTime = min(times, key=lambda one: abs(one - wanted))
-    view.ViewSize = [1000, 1200]
+    view.ViewSize = [1400, 1200]
     pv.ResetCamera(view)
     pv.Render(view)
     pv.SaveScreenshot(arguments[0], view)
