@@ -96,7 +96,7 @@ public:
         root.require({"specimen"});
         const bool filled = static_cast<bool>(tree_["specimen"]["grains"]["particles_per_grain"]);
         SpecimenSpec specimen;
-        if (root.has("specimen")) specimen = read_specimen(root, job_.file.parent_path(), filled);
+        if (root.has("specimen")) specimen = read_specimen(root, job_.file.parent_path(), filled, {});
         finish();
         return specimen;
     }
