@@ -17,7 +17,7 @@
 #include "feldspar/laws/bond.hpp"
 
 namespace feldspar {
-
+/// How the faces of a joint climb over each other.
 struct Dilation {
     double tan_psi = 0.0;   ///< 0 ... mu
     double slip_m = 0.0;    ///< L
