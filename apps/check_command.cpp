@@ -135,10 +135,9 @@ private:
         const int at_once = std::min(sharing_.most_at_once(bodies), static_cast<int>(planned_runs(job_).size()));
         control_.threads = share_for_next(threads_, at_once, sharing_.useful_threads(bodies));
         const TestSetup setup = setup_of(run, specimen);
-        if (device_.open) {
-            (void)opener_for(setup, device_, [&](const std::string& line) { text_ += fmt::format("  {} {}\n", label_of(run), line); });
-            text_ += fmt::format("  memory of the card    {}\n", memory_text(card_needs(setup, control_).bytes));
-        }
+        std::string card;
+        if (device_.open && opener_for(setup, device_, [&](const std::string& line) { card = "  " + line + "\n"; }))
+            card = fmt::format("  memory of the card    {}\n", memory_text(card_needs(setup, control_).bytes));
         const TestPreview preview = preview_test(setup, control_);
         progress_.clear();
         show_specimen(*run.test, *specimen);
@@ -146,12 +145,12 @@ private:
         if (first && job_.has_variants()) text_ += (text_.empty() ? "" : "\n") + variant_text(*run.variant);
         if (job_.has_variants()) {
             if (first) text_ += preview_text(preview);
-            text_ += flats_text(run, *specimen);
+            text_ += flats_text(run, *specimen) + card;
             text_ += fmt::format("  {} x {}: about {:.0f} steps, {} each\n", group.runs, title(*run.test), preview.expected_steps,
                                  duration_text(preview.expected_seconds));
         } else {
             text_ += fmt::format("{} x {}\n{}", group.runs, title(*run.test), preview_text(preview));
-            text_ += flats_text(run, *specimen);
+            text_ += flats_text(run, *specimen) + card;
             text_ += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps,
                                  duration_text(preview.expected_seconds));
         }

@@ -17,7 +17,7 @@ namespace {
 
 [[noreturn]] void fail(cudaError_t error, const char* doing) {
     cudaGetLastError();   // it is told here
-    throw InputError({.key = "device"}, std::string("the graphics card failed while ") + doing + ": " + cudaGetErrorString(error), "\"cpu\"", "look at the card with nvidia-smi, or run on the processor");
+    throw InputError({.key = "--device"}, std::string("the graphics card failed while ") + doing + ": " + cudaGetErrorString(error), "cpu, or auto", "look at the card with nvidia-smi, or run on the processor");
 }
 void require(cudaError_t error, const char* doing) {
     if (error != cudaSuccess) fail(error, doing);
@@ -43,8 +43,8 @@ public:
             cudaGetLastError();
             std::size_t free_bytes = 0, all = 0;
             cudaMemGetInfo(&free_bytes, &all);
-            throw InputError({.key = "device"}, "the memory of the graphics card is too small for what runs on it: " + std::to_string(free_bytes >> 20) + " MiB of " + std::to_string(all >> 20) + " MiB are free",
-                             "\"cpu\"", "fewer tests at once (--jobs), a smaller specimen, or the processor");
+            throw InputError({.key = "--device"}, "the memory of the graphics card is too small for what runs on it: " + std::to_string(free_bytes >> 20) + " MiB of " + std::to_string(all >> 20) + " MiB are free",
+                             "cpu, or auto", "fewer tests at once (--jobs), a smaller specimen, or the processor");
         }
         require(error, "memory was taken");
         return memory;
@@ -161,7 +161,7 @@ std::unique_ptr<Backend> cuda_backend(DeviceProvenance& provenance) {
     const cudaError_t error = cudaGetDeviceCount(&count);
     if (error != cudaSuccess || count == 0) {
         cudaGetLastError();
-        throw InputError({.key = "device"}, driver == 0 ? "there is no graphics card here, or no driver for it" : std::string("no graphics card can be used here: ") + cudaGetErrorString(error), "\"cpu\"",
+        throw InputError({.key = "--device"}, driver == 0 ? "there is no graphics card here, or no driver for it" : std::string("no graphics card can be used here: ") + cudaGetErrorString(error), "cpu, or auto",
                          "run on the processor, or on a machine with an NVIDIA card and its driver");
     }
     int number = 0;

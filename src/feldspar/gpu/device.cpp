@@ -56,7 +56,7 @@ public:
         if (count <= 0) return;
         sort_out_packs(assembly);
         if (const std::string unknown = not_ported(assembly); !unknown.empty())
-            throw InputError({.key = "device"}, unknown, "\"cpu\"", "run this test on the processor");
+            throw InputError({.key = "--device"}, unknown, "cpu, or auto", "run this test on the processor");
         next_ = 0;
         DeviceArrays& arrays = bring(assembly);
         BlockOfSteps block;
