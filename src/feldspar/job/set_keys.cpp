@@ -96,10 +96,10 @@ std::vector<std::size_t> named_tables(const toml::array& list, std::string_view 
 // A key of each table of a list, or of those that the setting names.
 void set_in_list(toml::array& list, const std::string& list_name, const std::string& setting) {
     const toml::table tree = parse_setting(setting);
-    const auto& [first, value] = *tree.begin()->second.as_table()->begin();
-    const std::string word(first.str());
+    const auto first = tree.begin()->second.as_table()->begin();
+    const std::string word(first->first.str());
     std::vector<std::size_t> chosen;
-    if (value.is_table()) chosen = named_tables(list, list_name, word, setting);
+    if (first->second.is_table()) chosen = named_tables(list, list_name, word, setting);
     const bool named = !chosen.empty();
     for (std::size_t i = 0; !named && i < list.size(); ++i) chosen.push_back(i);
     for (const std::size_t i : chosen) {

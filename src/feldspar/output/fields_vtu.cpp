@@ -309,6 +309,9 @@ TestFields fields_of(const TestResult& result) {
     fields.contacts = result.grain_contacts;
     fields.cracks = result.cracks;
     fields.snapshots = result.snapshots;
+    for (Snapshot& snapshot : fields.snapshots)   // an archive keeps seven digits of them
+        for (std::vector<double>* stresses : {&snapshot.stress_xx_Pa, &snapshot.stress_yy_Pa, &snapshot.stress_xy_Pa})
+            for (double& stress : *stresses) stress = static_cast<float>(stress);
     fields.mineral = result.texture.phase_of_grain;
     if (!result.emission.events.empty())
         for (const EventColumn& column : event_columns()) {

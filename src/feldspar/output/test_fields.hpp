@@ -29,6 +29,7 @@ struct TestFields {
     std::vector<Snapshot> snapshots;
 };
 
+/// With the digits of an archive.
 TestFields fields_of(const TestResult& result);
 
 /// Reads what write_hdf5() has written. May be called on any thread. @throws InputError if the file cannot be read, is no archive of a test, or one of a later version
