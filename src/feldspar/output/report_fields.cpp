@@ -47,7 +47,7 @@ struct Limits {
     double low = 0.0, high = 0.0;
     std::uint8_t level(double value) const {
         const double share = high > low ? (value - low) / (high - low) : 0.0;
-        return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0)));
+        return static_cast<std::uint8_t>(5 * std::lround(51.0 * std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0)));   // in steps of 5: finer ones are not seen, and take half of the room
     }
 };
 
@@ -132,7 +132,7 @@ void add_cracks(Block& block, const TestResult& result) {
 double add_displacement(Block& block, const std::string& part, const std::vector<Vec2>& displacement_m) {
     double largest = 0.0;
     for (const Vec2 u : displacement_m) largest = std::max({largest, std::abs(u.x), std::abs(u.y)});
-    const double scale = largest > 0.0 && std::isfinite(largest) ? largest / 32767.0 : 1.0;
+    const double scale = largest > 0.0 && std::isfinite(largest) ? largest / 8191.0 : 1.0;   // finer steps would fill the page with noise
     std::vector<std::int16_t> steps;
     steps.reserve(2 * displacement_m.size());
     for (const bool y : {false, true}) {

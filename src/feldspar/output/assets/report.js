@@ -30,13 +30,16 @@ const packing = {
   follow(draw) { this.followers.push(draw); draw(this.seed); },
   choose(seed) { this.seed = seed; for (const draw of this.followers) draw(seed); },
 };
-packing.seed = packing.seeds[0] ?? null;
+// at first the one whose fields are here in most detail: that of the median strength
+packing.seed = data.fields.length && data.fields[0].role ? data.tests[data.fields[0].test].seed : packing.seeds[0] ?? null;
 
 /** A bar that stays in sight, where there are several packings. */
 function writePackingBar() {
   if (packing.seeds.length < 2) return;
-  const choose = packing.seeds.length <= 12 ? picker("Packing (seed)", packing.seeds.map(String), 0, (i) => packing.choose(packing.seeds[i])) : chooser("Packing (seed)", packing.seeds.map((s) => "seed " + s), (i) => packing.choose(packing.seeds[i]));
+  const first = packing.seeds.indexOf(packing.seed), choose = packing.seeds.length <= 12 ? picker("Packing (seed)", packing.seeds.map(String), first, (i) => packing.choose(packing.seeds[i])) : chooser("Packing (seed)", packing.seeds.map((s) => "seed " + s), (i) => packing.choose(packing.seeds[i]));
   choose.classList.add("packing");
+  const list = choose.querySelector("select");
+  if (list) list.selectedIndex = first;
   page.append(choose);
 }
 /** Which of these tests are of the packing shown: its number among them, or 0 where it was not tested so. */
@@ -825,6 +828,7 @@ function writePattern() {
     if (current !== i) return;
     specimen = ready;
     slider.max = specimen.meta.snapshots.length - 1;
+    for (const control of [play, slider, film]) control.hidden = last() < 1;
     showEnlargements();
     viewer.show(specimen);
     slider.value = viewer.snapshot;
