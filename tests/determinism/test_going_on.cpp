@@ -10,6 +10,7 @@
 
 #include "../verification/fixtures.hpp"
 #include "feldspar/base/error.hpp"
+#include "feldspar/gpu/device.hpp"
 #include "feldspar/job/job.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/lab/keep_test.hpp"
@@ -61,7 +62,7 @@ private:
     int asked_ = 0, end_at_ = 0;
 };
 
-TestResult run_in_pieces(const TestSetup& setup, const std::vector<int>& moments, int* pieces = nullptr) {
+TestResult run_in_pieces(const TestSetup& setup, const std::vector<int>& moments, int* pieces = nullptr, const std::function<std::unique_ptr<StepDevice>()>& device = {}) {
     Memory memory;
     int threads = 1;
     for (std::size_t piece = 0;; ++piece) {
@@ -69,6 +70,7 @@ TestResult run_in_pieces(const TestSetup& setup, const std::vector<int>& moments
         RunControl control = fixtures::threads(threads);
         control.stop = &memory.stop;
         control.keeper = &memory;
+        control.device = device;
         TestResult result = run_test(setup, control);
         EXPECT_TRUE(memory.refused.empty()) << memory.refused.front();
         if (pieces != nullptr) *pieces = static_cast<int>(piece) + 1;
@@ -156,6 +158,23 @@ TEST(GoingOn, GoesBackBeforeTheStrengthAndRepeatsAsIfUndisturbed) {
     const TestResult result = run_in_pieces(setup, moments, &pieces);
     EXPECT_GT(pieces, 10);
     EXPECT_TRUE(bytes_of(result) == bytes_of(undisturbed));
+}
+
+// A device that has seen all of a test, also the way back to earlier states, and a new one for every piece.
+TEST(GoingOn, OnADeviceToo) {
+    for (const MethodId method : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::biaxial}) {
+        TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04), 11), method);
+        setup.numerics.accuracy = 0.02;
+        if (method == methods::biaxial) setup.test.sigma3_Pa = 2e6;
+        RunControl control = fixtures::threads(1);
+        control.device = open_emulation;
+        const TestResult undisturbed = run_test(setup, control);
+        EXPECT_TRUE(method != methods::uniaxial_compression || undisturbed.passages > 1) << "it never went back: choose another packing";
+        std::vector<int> moments;
+        for (int k = 0; k < 12; ++k) moments.push_back(20 + 37 * k % 90);
+        const TestResult result = run_in_pieces(setup, moments, nullptr, open_emulation);
+        EXPECT_TRUE(bytes_of(result) == bytes_of(undisturbed)) << name(method);
+    }
 }
 
 TEST(GoingOn, AnUnevenRockGoesOn) {
