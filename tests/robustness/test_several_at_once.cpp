@@ -69,7 +69,7 @@ TEST(SeveralAtOnce, StopTogetherAndKeepWhatTheyHave) {
         const Json& test = summary.at("tests").at(static_cast<std::size_t>(seed - 1));
         EXPECT_EQ(test.at("seed"), seed);
         EXPECT_EQ(test.at("interrupted"), true);
-        for (const char* file : {"history", "archive", "paraview"})
+        for (const char* file : {"history", "archive"})
             EXPECT_TRUE(fs::exists(place / "results" / test.at("files").at(file).get<std::string>())) << file;
     }
     EXPECT_TRUE(fs::exists(place / "results/report.html"));
