@@ -209,7 +209,7 @@ inline Provenance make_provenance() {
             .compiler = "a compiler",
             .started = "2026-01-01T00:00:00Z",
             .command_line = "feldspar run augig.toml",
-            .threads = 2};
+            .threads = 2, .device = {}};
 }
 
 inline PropertySummary make_properties() {
