@@ -363,6 +363,8 @@ TEST(CommandLine, ResultsSayWhichCardMadeThem) {
     const auto here = summary_of("here"), there = summary_of("there");
     EXPECT_NE(there.at("provenance").at("device").get<std::string>().find("an emulated card"), std::string::npos);
     EXPECT_FALSE(here.at("provenance").contains("device"));
+}
+
 // What was probably meant, and where to read on.
 TEST(CommandLine, SuggestsCommandsAndOptions) {
     const TemporaryFolder place;
