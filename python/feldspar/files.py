@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterator, Optional, Union
 
@@ -150,11 +151,18 @@ class RunTest:
     def fields(self, number: int = -1) -> "pyvista.DataSet":
         """The fields at one of the moments that were kept, in their order (0 the start, -1 the end), as a mesh of pyvista. Raises MissingPackage without pyvista, InputError."""
         pyvista = _pyvista()
-        pvd = self._file("paraview")
-        files = sorted(pvd.with_name(pvd.stem + "-vtu").glob("grains-*.vtu"))
-        if not -len(files) <= number < len(files):
-            raise _wrong(pvd, f"has no fields number {number}", f"{-len(files)} ... {len(files) - 1}")
-        return pyvista.read(str(files[number]))
+        archive = self._file("archive")
+        with tempfile.TemporaryDirectory() as folder:
+            _core.export_paraview(str(archive), folder)
+            files = sorted(Path(folder).glob("*/grains-*.vtu"))
+            if not -len(files) <= number < len(files):
+                raise _wrong(archive, f"has no fields number {number}", f"{-len(files)} ... {len(files) - 1}")
+            return pyvista.read(str(files[number]))
+
+    def export_paraview(self, directory: PathLike) -> None:
+        """Writes the fields for ParaView into a directory, as `feldspar export`. Raises InputError if the run kept none, OutputError."""
+        Path(directory).mkdir(parents=True, exist_ok=True)
+        _core.export_paraview(str(self._file("archive")), os.fspath(directory))
 
     def __repr__(self) -> str:
         return f"<feldspar.RunTest: {self.name}, seed {self.seed}, grade {self.grade}>"

@@ -10,6 +10,7 @@
 #include "feldspar/output/event_columns.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
+#include "feldspar/output/test_fields.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "types.hpp"
 
@@ -226,8 +227,10 @@ void save(R r, const std::string& folder) {
     const Provenance provenance = collect_provenance("import feldspar", r.result->threads);
     write_history_csv(directory, *r.result, provenance);
     write_events_csv(directory, *r.result);
-    write_vtu(directory, *r.result);
+    write_paraview(directory, fields_of(*r.result));
 }
+
+void export_paraview(const std::string& archive, const std::string& folder) { write_paraview(RunDirectory::open(folder), read_archive(archive)); }
 
 // Fields at one moment, which live in their result.
 struct PySnapshot {
@@ -364,6 +367,8 @@ smallest magnitude that counts) and fractal_dimension; None where there are too 
                                r.result->cracks.size());
         });
 
+    m.def("export_paraview", &export_paraview, py::arg("archive"), py::arg("directory"),
+          "Writes the fields of a test's archive for ParaView into a directory that is there, as `feldspar export`. Raises InputError if the archive cannot be read, OutputError.");
     m.def("summarise", [](const std::vector<PyResult>& results) {
         std::vector<TestResult> list;
         for (const PyResult& r : results) list.push_back(*r.result);

@@ -90,6 +90,13 @@ class Runs(unittest.TestCase):
         self.assertEqual(grid.n_cells, len(self.live[0].specimen.triangles))
         self.assertEqual(self.run_.tests[0].fields().n_cells, grid.n_cells)
 
+    def test_fields_for_paraview(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.run_.tests[0].export_paraview(folder)
+            collection = list(Path(folder).glob("*.pvd"))
+            self.assertEqual(len(collection), 1)
+            self.assertTrue(list(Path(folder).glob("*/grains-*.vtu")))
+
 
 class Studies(unittest.TestCase):
     def test_a_study_runs_goes_on_and_is_read_as_frames(self):
