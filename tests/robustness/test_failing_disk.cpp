@@ -206,7 +206,7 @@ protected:
         const Outcome undisturbed = run_program(whole.path(), command(), watched.with({"none", 0, 0, false}));
         ASSERT_EQ(undisturbed.code, 0) << undisturbed.err;
         const std::vector<Fault> faults = faults_of(watched.calls());
-        ASSERT_GT(faults.size(), 20U);
+        ASSERT_GT(faults.size(), 15U);   // one a kind of call and file; far fewer would say that calls are not seen
         int injected = 0, ended = 0;
         for (const Fault& fault : faults) {
             const TemporaryFolder place;
