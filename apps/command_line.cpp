@@ -109,6 +109,7 @@ int CommandLine::refuse(int argc, char** argv, const CLI::ParseError& error) con
     std::string text = error.what(), hint;
     if (argc < 2) {
         text = "a command is required";
+        hint = "'feldspar new laboratory --out rock.toml' writes a first job, 'feldspar run rock.toml' runs it";
     } else if (&command == &app_ && !strange.empty()) {
         std::vector<std::string> names;
         for (const CLI::App* one : commands_in(app_)) names.push_back(one->get_name());

@@ -43,7 +43,9 @@ const LiteratureRock& literature_rock(std::string_view name) {
     }
     for (const LiteratureRock& rock : rocks)
         if (kind_of(rock.name) == name) return rock;
-    throw InputError({.key = "--rock"}, "'" + std::string(name) + "' is no rock of the list", listed(words) + "; or a kind of rock, such as granite", did_you_mean(name, words));
+    std::vector<std::string_view> near = words;
+    for (const LiteratureRock& rock : rocks) near.push_back(kind_of(rock.name));
+    throw InputError({.key = "--rock"}, "'" + std::string(name) + "' is no rock of the list", listed(words) + "; or a kind of rock, such as granite", did_you_mean(name, near));
 }
 
 }  // namespace feldspar

@@ -241,6 +241,7 @@ public:
                 break;
             }
             if (!adaptive_) {
+                if (e_.control.observer == nullptr) continue;
                 if (observe().stop) break;
                 if (const double speed = lead_.given_speed.value_or(own_speed_); speed != e_.settings.speed) e_.change_speed(speed);
                 continue;

