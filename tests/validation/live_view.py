@@ -22,7 +22,13 @@ import urllib.request
 from report_opens import opened_browser, problems
 
 CURVES = """[...charts].filter((c) => c.host.closest(".live")).map((c) => c.series[0].x.length)"""
-PATTERNS = """[...document.querySelectorAll(".live .pattern canvas")].map((c) => c.width > 1 && c.getContext("2d").getImageData(0, 0, c.width, c.height).data.some((v) => v > 0))"""
+# Of a copy: a canvas that is read again and again makes the browser say so in its console.
+PATTERNS = """[...document.querySelectorAll(".live .pattern canvas")].map(({width, height}, i) => {
+  if (!(width > 1)) return false;
+  const ctx = Object.assign(document.createElement("canvas"), {width, height}).getContext("2d", {willReadFrequently: true});
+  ctx.drawImage(document.querySelectorAll(".live .pattern canvas")[i], 0, 0);
+  return ctx.getImageData(0, 0, width, height).data.some((v) => v > 0);
+})"""
 SHEET = """[document.documentElement.scrollWidth, document.documentElement.clientWidth]"""
 
 
