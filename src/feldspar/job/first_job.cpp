@@ -177,7 +177,7 @@ ReadRock read_rock_numbers(const GivenRock& given) {
     stress_of("sigma-ci", sigma_ci, 1e3, 2e9, "a stress from 0.001 to 2000 MPa, such as \"55 MPa\"");
     with("grain-size", [&](const std::string& text) { read.grain_m = positive_quantity("grain-size", text, Dimension::length, 1e-5, 16e-3, "a length from 0.01 to 16 mm: the specimen is 80 mm wide and wants five grains across at least"); });
     for (const auto& [key, text] : given.values)
-        if (std::none_of(names.begin(), names.end(), [&](const GivenName& name) { return name.option == key; })) throw InputError({.key = option_of(key)}, "is no number of a rock");
+        if (std::none_of(names.begin(), names.end(), [&, &option = key](const GivenName& name) { return name.option == option; })) throw InputError({.key = option_of(key)}, "is no number of a rock");
 
     for (const GivenName& name : names) {
         const auto found = given.values.find(std::string(name.option));

@@ -40,7 +40,7 @@ void read_value(const JobTable& table, const TestSpec& test, StageSpec& stage) {
     const char* given = nullptr;
     for (const auto& [key, counts] : keys) {
         if (!table.has(key)) continue;
-        if (given != nullptr) table.check({}, [&] { table.fail(key, fmt::format("given beside {}", given), "one of at, by and beyond"); });
+        if (given != nullptr) table.check({}, [&, &second = key] { table.fail(second, fmt::format("given beside {}", given), "one of at, by and beyond"); });
         given = key;
         stage.counts = counts;
     }
@@ -120,7 +120,8 @@ struct Placed {
 };
 
 void hold_against(const Placed& placed, const TestSpec& test, Before& before) {
-    const auto& [table, stage] = placed;
+    const JobTable& table = placed.table;
+    const StageSpec& stage = placed.stage;
     if (stage.kind == StageKind::hold || stage.kind == StageKind::confine) {
         before.stress_Pa.reset();
         before.load_N.reset();

@@ -304,8 +304,8 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
     std::vector<std::uint64_t> seeds;
     std::set<std::uint64_t> seen;
     for (const toml::node& node : table.array(key))
-        table.check({}, [&] {
-            const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, lowest, highest));
+        table.check({}, [&, least = lowest, most = highest] {
+            const auto seed = static_cast<std::uint64_t>(table.integer_of(node, key, least, most));
             if (!seen.insert(seed).second)
                 table.fail_at(node, key, "the seed " + std::to_string(seed) + " is given twice", "each seed once");
             seeds.push_back(seed);

@@ -151,7 +151,7 @@ std::set<int> share_crossings(Tessellation& cells, const Outline& outline, doubl
     std::map<int, int> instead;
     for (const auto& [v, cuts] : cuts_at)
         if (cuts.size() > 1) {
-            const auto known = std::find_if(several.begin(), several.end(), [&](const auto& one) { return norm(cells.vertices[one.first] - cells.vertices[v]) < 1e-6 * snap_m; });
+            const auto known = std::find_if(several.begin(), several.end(), [&, place = cells.vertices[v]](const auto& one) { return norm(cells.vertices[one.first] - place) < 1e-6 * snap_m; });
             if (known == several.end()) several.push_back({v, cuts});
         }
     for (const auto& [v, cuts] : cuts_at)

@@ -123,9 +123,9 @@ std::vector<std::pair<std::string, double>> read_coupled(const TableReader& tabl
             if (value.is_table()) {
                 walk(*value.as_table(), full);
             } else {
-                table.check({}, [&] {
-                    if (!value.is_number()) table.fail_at(value, "coupled", shown(value) + " is not a factor", allowed);
-                    factors.emplace_back(read_job_key(table, "coupled", full), *value.value<double>());
+                table.check({}, [&, &factor = value] {
+                    if (!factor.is_number()) table.fail_at(factor, "coupled", shown(factor) + " is not a factor", allowed);
+                    factors.emplace_back(read_job_key(table, "coupled", full), *factor.value<double>());
                 });
             }
         }
