@@ -21,17 +21,9 @@ width = "40 mm"
 height = "80 mm"
 [specimen.grains]
 diameter = { distribution = "uniform", minimum = "7 mm", maximum = "11 mm" }
-[material.grain]
-E = "25.8 GPa"
-nu = 0.23
-[material.contact]
-Kn = "18.00e4 GPa/m"
-eta = 0.28
-sigma_nt = "8.5 MPa"
-tau = "29.75 MPa"
-mu = 0.40
-Gfn = "20 N/m"
-Gfs = "800 N/m"
+[material]
+elastic_preset = "augig-flexible"
+strength_preset = "augig-table7"
 [numerics]
 accuracy = "10 %"
 [[test]]

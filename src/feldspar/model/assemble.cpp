@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "feldspar/model/attachment.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/model/texture.hpp"
+#include "feldspar/specimen/cell_graph.hpp"
 
 namespace feldspar {
 namespace {
@@ -234,12 +236,11 @@ void lay_out_bonds(Assembly& assembly) {
 
 void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, ContactKind kind) {
     std::unordered_map<std::uint64_t, std::pair<int, int>> owner;   // directed edge -> (cell, edge of the cell)
-    const auto directed = [](int from, int to) { return static_cast<std::uint64_t>(from) << 32 | static_cast<std::uint32_t>(to); };
     owner.reserve(std::accumulate(cells.cells.begin(), cells.cells.end(), std::size_t{0}, [](std::size_t sum, const Cell& cell) { return sum + cell.vertices.size(); }));
     for (int g = 0; g < std::ssize(cells.cells); ++g) {
         const Cell& cell = cells.cells[g];
         const int nv = static_cast<int>(cell.vertices.size());
-        for (int k = 0; k < nv; ++k) owner[directed(cell.vertices[k], cell.vertices[(k + 1) % nv])] = {g, k};
+        for (int k = 0; k < nv; ++k) owner[dart(cell.vertices[k], cell.vertices[(k + 1) % nv])] = {g, k};
     }
     struct Facing {
         int place;       // sum of those of the two grains, in the order of packs or rigid bodies
@@ -257,7 +258,7 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
         for (int k = 0; k < nv; ++k) {
             if (cell.neighbours[k] <= g) continue;
             const int from = cell.vertices[k], to = cell.vertices[(k + 1) % nv];
-            const auto other = owner.find(directed(to, from));
+            const auto other = owner.find(dart(to, from));
             if (other == owner.end()) throw NumericalError("the tessellation is not conforming");
             facing.push_back({place[g] + place[other->second.first], cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
         }
@@ -387,6 +388,19 @@ ClosestEdge closest_edge(const Assembly& assembly, int index, Vec2 x) {
 
 }  // namespace
 
+namespace {
+
+// The arrays of nodes, or of bonds, that are as long as there are of them.
+auto arrays_of(Nodes& n) { return std::tie(n.reference, n.displacement, n.velocity, n.force, n.inverse_mass, n.loading_mode, n.mass); }
+auto arrays_of(Bonds& b) { return std::tie(b.un_m, b.us_m, b.Fn_N, b.Fs_N, b.max_un_m, b.max_us_m, b.damage, b.fracture_J, b.friction_J); }
+
+template <class Arrays, class Work>
+void for_each_array(Arrays&& arrays, Work work) {
+    std::apply([&](auto&... array) { (work(array), ...); }, arrays);
+}
+
+}  // namespace
+
 int Nodes::add(Vec2 place, Vec2 free) {
     reference.push_back(place);
     for (auto* array : {&displacement, &velocity, &force, &loading_mode}) array->push_back({});
@@ -396,29 +410,28 @@ int Nodes::add(Vec2 place, Vec2 free) {
 }
 
 void Nodes::reserve(std::size_t nodes) {
-    for (auto* array : {&reference, &displacement, &velocity, &force, &inverse_mass, &loading_mode}) array->reserve(nodes);
-    mass.reserve(nodes);
+    for_each_array(arrays_of(*this), [&](auto& array) { array.reserve(nodes); });
 }
 
 namespace {
 
 // What growing arrays have reserved beyond their ends: up to half of the memory.
 void release_spare_memory(Assembly& a) {
-    const auto release = [](auto&... arrays) { (arrays.shrink_to_fit(), ...); };
-    release(a.nodes.reference, a.nodes.displacement, a.nodes.velocity, a.nodes.force, a.nodes.inverse_mass, a.nodes.loading_mode, a.nodes.mass);
-    release(a.triangles, a.bodies, a.edges, a.contacts, a.origins, a.points, a.initial_shapes);
-    release(a.bonds.un_m, a.bonds.us_m, a.bonds.Fn_N, a.bonds.Fs_N, a.bonds.max_un_m, a.bonds.max_us_m, a.bonds.damage, a.bonds.fracture_J, a.bonds.friction_J);
-    release(a.packs.offset, a.packs.tangent_x, a.packs.tangent_y, a.packs.line_a, a.packs.line_b, a.packs.contacts);
+    const auto release = [](auto& array) { array.shrink_to_fit(); };
+    for_each_array(arrays_of(a.nodes), release);
+    for_each_array(arrays_of(a.bonds), release);
+    for_each_array(std::tie(a.triangles, a.bodies, a.edges, a.contacts, a.origins, a.points, a.initial_shapes), release);
+    for_each_array(std::tie(a.packs.offset, a.packs.tangent_x, a.packs.tangent_y, a.packs.line_a, a.packs.line_b, a.packs.contacts), release);
 }
 
 }  // namespace
 
 void Bonds::reserve(std::size_t count) {
-    for (auto* quantity : {&un_m, &us_m, &Fn_N, &Fs_N, &max_un_m, &max_us_m, &damage, &fracture_J, &friction_J}) quantity->reserve(count);
+    for_each_array(arrays_of(*this), [&](auto& quantity) { quantity.reserve(count); });
 }
 
 void Bonds::resize(std::size_t count) {
-    for (auto* quantity : {&un_m, &us_m, &Fn_N, &Fs_N, &max_un_m, &max_us_m, &damage, &fracture_J, &friction_J}) quantity->resize(count);
+    for_each_array(arrays_of(*this), [&](auto& quantity) { quantity.resize(count); });
 }
 
 void Bonds::set(std::size_t i, const BondState& s) {

@@ -1,6 +1,7 @@
 // The cells while they are being made: one shared vertex graph, and where each vertex may go.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "feldspar/specimen/specimen.hpp"
@@ -16,6 +17,9 @@ enum VertexPlace : int {
 
 /// What an edge of a cell borders on: a neighbouring cell j is j (>= 0), edge k of the outline is -1 - k.
 constexpr int outline_label(int edge) { return -1 - edge; }
+
+/// An edge from one vertex to another, as one number.
+constexpr std::uint64_t dart(int from, int to) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32 | static_cast<std::uint32_t>(to); }
 
 /// A closed chain of edges, counter-clockwise, of one cell: the cell itself, or a piece of it in a non-convex outline.
 struct Face {

@@ -17,13 +17,11 @@
 #include "feldspar/geometry/overlap.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/geometry/triangulate.hpp"
+#include "feldspar/specimen/cell_graph.hpp"
 #include "feldspar/specimen/mesh_grains.hpp"
 
 namespace feldspar {
 namespace {
-
-/// An edge from one vertex to another, as one number.
-std::uint64_t dart(int from, int to) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32 | static_cast<std::uint32_t>(to); }
 
 /// What two polygons have in common: area and its first moment.
 struct Common {

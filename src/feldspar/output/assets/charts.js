@@ -101,6 +101,36 @@ function fitted(ctx, label, room) {
   return tail.trim() || label;
 }
 
+/** Grains and the cracks between them, in the colours of the theme. Grain g has the corners begin[g] ... begin[g + 1] - 1; corner(i): where one lies on the canvas.
+    cracks: of each its mode (0 tensile, 1 shear) and both ends on the canvas. */
+function drawCracked(ctx, begin, corner, cracks, edgeWidth, crackWidth) {
+  ctx.beginPath();
+  for (let g = 0; g + 1 < begin.length; ++g) {
+    for (let i = begin[g]; i < begin[g + 1]; ++i) {
+      if (i === begin[g]) ctx.moveTo(...corner(i));
+      else ctx.lineTo(...corner(i));
+    }
+    ctx.closePath();
+  }
+  ctx.fillStyle = theme.get("grain");
+  ctx.fill();
+  ctx.strokeStyle = theme.get("edge");
+  ctx.lineWidth = edgeWidth;
+  ctx.stroke();
+  ctx.lineCap = "round";
+  ctx.lineWidth = crackWidth;
+  for (const mode of [0, 1]) {
+    ctx.beginPath();
+    for (const crack of cracks) {
+      if (crack.mode !== mode) continue;
+      ctx.moveTo(...crack.from);
+      ctx.lineTo(...crack.to);
+    }
+    ctx.strokeStyle = theme.get(mode ? "shear" : "tensile");
+    ctx.stroke();
+  }
+}
+
 /** Hands `blob` to the reader as a file. */
 function saveAs(blob, name) {
   const link = h("a", {href: URL.createObjectURL(blob), download: name});

@@ -165,31 +165,9 @@ function paintPattern(canvas, meta, parts, k, count) {
   canvas.height = Math.round(height * scale + 4 * dpr);
   canvas.style.height = canvas.height / dpr + "px";
   const ctx = canvas.getContext("2d"), x = (v) => 2 * dpr + v * scale, y = (v) => canvas.height - 2 * dpr - v * scale;
-  ctx.beginPath();
-  for (let g = 0; g + 1 < begin.length; ++g) {
-    for (let i = begin[g]; i < begin[g + 1]; ++i) {
-      if (i === begin[g]) ctx.moveTo(x(points[2 * i]), y(points[2 * i + 1]));
-      else ctx.lineTo(x(points[2 * i]), y(points[2 * i + 1]));
-    }
-    ctx.closePath();
-  }
-  ctx.fillStyle = theme.get("grain");
-  ctx.fill();
-  ctx.strokeStyle = theme.get("edge");
-  ctx.lineWidth = 0.4 * dpr;
-  ctx.stroke();
-  ctx.lineCap = "round";
-  ctx.lineWidth = Math.min(2.6, Math.max(1.3, css / 130)) * dpr;
-  for (const kind of [0, 1]) {
-    ctx.beginPath();
-    for (let c = 0; c < count; ++c) {
-      if (mode[c] !== kind) continue;
-      ctx.moveTo(x(ends[4 * c]), y(ends[4 * c + 1]));
-      ctx.lineTo(x(ends[4 * c + 2]), y(ends[4 * c + 3]));
-    }
-    ctx.strokeStyle = theme.get(kind ? "shear" : "tensile");
-    ctx.stroke();
-  }
+  const at = (from, i) => [x(from[2 * i]), y(from[2 * i + 1])];
+  const cracks = Array.from({length: count}, (_, c) => ({mode: mode[c], from: at(ends, 2 * c), to: at(ends, 2 * c + 1)}));
+  drawCracked(ctx, begin, (i) => at(points, i), cracks, 0.4 * dpr, Math.min(2.6, Math.max(1.3, css / 130)) * dpr);
 }
 
 function writeComparedEnvelopes() {

@@ -74,32 +74,9 @@
       this.canvas.height = Math.round(high * dpr);
       const ctx = this.canvas.getContext("2d"), scale = 0.9 * Math.min(this.canvas.width / o.width, (this.canvas.height - 26 * dpr) / o.height);
       const at = (x, y) => [this.canvas.width / 2 + (x - o.x0 - o.width / 2) * scale, (this.canvas.height - 20 * dpr) / 2 - (y - o.y0 - o.height / 2) * scale];
-      ctx.beginPath();
-      for (let g = 0; g + 1 < o.begin.length; ++g) {
-        for (let i = o.begin[g]; i < o.begin[g + 1]; ++i) {
-          const [x, y] = this.corner(i), [ux, uy] = this.move(i), [px, py] = at(x + ux, y + uy);
-          if (i === o.begin[g]) ctx.moveTo(px, py);
-          else ctx.lineTo(px, py);
-        }
-        ctx.closePath();
-      }
-      ctx.fillStyle = theme.get("grain");
-      ctx.fill();
-      ctx.strokeStyle = theme.get("edge");
-      ctx.lineWidth = 0.5 * dpr;
-      ctx.stroke();
-      ctx.lineCap = "round";
-      ctx.lineWidth = Math.min(4, Math.max(1.6, wide / 150)) * dpr;
-      for (const mode of [0, 1]) {
-        ctx.beginPath();
-        for (const crack of this.cracks) {
-          if (crack.mode !== mode) continue;
-          ctx.moveTo(...at(...this.crackEnd(crack, 0)));
-          ctx.lineTo(...at(...this.crackEnd(crack, 1)));
-        }
-        ctx.strokeStyle = theme.get(mode ? "shear" : "tensile");
-        ctx.stroke();
-      }
+      const corner = (i) => { const [x, y] = this.corner(i), [ux, uy] = this.move(i); return at(x + ux, y + uy); };
+      const cracks = this.cracks.map((crack) => ({mode: crack.mode, from: at(...this.crackEnd(crack, 0)), to: at(...this.crackEnd(crack, 1))}));
+      drawCracked(ctx, o.begin, corner, cracks, 0.5 * dpr, Math.min(4, Math.max(1.6, wide / 150)) * dpr);
       ctx.font = 12 * dpr + "px system-ui, sans-serif";
       ctx.textAlign = "center";
       const shear = this.cracks.filter((c) => c.mode).length;
