@@ -25,24 +25,22 @@ void add_column(py::list& columns, const std::string& name, const std::string& u
     columns.append(py::make_tuple(name, unit, meaning, values));
 }
 
-py::object history(R r) {
+// The columns of a file.
+template <class Columns, class Row>
+py::object file_table(const Columns& of_file, const std::vector<Row>& rows) {
     py::list columns;
-    const std::vector<HistoryRow>& rows = r.result->history;
-    for (const FileColumn& column : history_columns(*r.result)) {
-        py::object values;
-        if (column.whole) {
-            py::array_t<std::int64_t> array(static_cast<py::ssize_t>(rows.size()));
-            for (std::size_t i = 0; i < rows.size(); ++i) array.mutable_data()[i] = static_cast<std::int64_t>(column.value(rows[i]));
-            values = array;
-        } else {
-            py::array_t<double> array(static_cast<py::ssize_t>(rows.size()));
-            for (std::size_t i = 0; i < rows.size(); ++i) array.mutable_data()[i] = column.value(rows[i]);
-            values = array;
-        }
-        add_column(columns, column.name, column.unit, column.meaning, values);
+    for (const auto& column : of_file) {
+        const auto values = [&]<class Number>(Number) -> py::object {
+            py::array_t<Number> array(static_cast<py::ssize_t>(rows.size()));
+            for (std::size_t i = 0; i < rows.size(); ++i) array.mutable_data()[i] = static_cast<Number>(column.value(rows[i]));
+            return array;
+        };
+        add_column(columns, column.name, column.unit, column.meaning, column.whole ? values(std::int64_t{}) : values(double{}));
     }
     return table(columns);
 }
+
+py::object history(R r) { return file_table(history_columns(*r.result), r.result->history); }
 
 // Views of the rows themselves.
 py::object history_si(R r) {
@@ -115,18 +113,7 @@ py::object cracks(R r) {
     return table(columns);
 }
 
-py::object events(R r) {
-    py::list columns;
-    const std::vector<AcousticEvent>& list = r.result->emission.events;
-    for (const EventColumn& column : event_columns()) {
-        py::array_t<double> array(static_cast<py::ssize_t>(list.size()));
-        for (std::size_t i = 0; i < list.size(); ++i) array.mutable_data()[i] = column.value(list[i]);
-        py::object values = array;
-        if (column.whole) values = array.attr("astype")("int64");
-        add_column(columns, column.name, column.unit, column.meaning, values);
-    }
-    return table(columns);
-}
+py::object events(R r) { return file_table(event_columns(), r.result->emission.events); }
 
 py::dict emission(R r) {
     const AcousticEmission& e = r.result->emission;
