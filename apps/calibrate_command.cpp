@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "device_option.hpp"
 #include "feldspar/calibration/calibrate.hpp"
 #include "feldspar/calibration/calibration_files.hpp"
 #include "feldspar/calibration/calibration_report.hpp"
-#include "device_option.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "running_study.hpp"
@@ -19,7 +19,9 @@ class CalibrationProgress {
 public:
     explicit CalibrationProgress(int budget) : budget_(budget) { progress_.keep_log_short(); }
 
-    void report(int number, const Run& run, const TestProgress& state) { progress_.report(number, budget_, label_of(run), state); }
+    void report(int number, const Run& run, const TestProgress& state) {
+        progress_.report(number, budget_, label_of(run), state);
+    }
 
     void ended(int number, const Run& run, const RunRecord& record) {
         progress_.ended(number);
@@ -44,7 +46,8 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     const std::vector<std::string> contradicting = contradictions(calibration.targets);
     for (const std::string& sentence : contradicting) say(stderr, "{}\n", sentence);
     if (!contradicting.empty() && !options.insist)
-        throw InputError({options.calibration, 0, 0, "targets"}, "the targets contradict each other, so no run was made", "targets of one rock, or --insist to see how near one can come");
+        throw InputError({options.calibration, 0, 0, "targets"}, "the targets contradict each other, so no run was made",
+                         "targets of one rock, or --insist to see how near one can come");
 
     check_budget(calibration);
 
@@ -65,8 +68,9 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     control.note = [&](const std::string& line) { progress.note(line); };
     RunLaboratory laboratory(calibration, ledger, control);
     running = &laboratory;
-    progress.note(fmt::format("{}: {} targets, {} unknowns, at most {} runs; results in {}", calibration.name, calibration.targets.size(),
-                              calibration.unknowns.size(), calibration.budget, calibration.results.string()));
+    progress.note(fmt::format("{}: {} targets, {} unknowns, at most {} runs; results in {}", calibration.name,
+                              calibration.targets.size(), calibration.unknowns.size(), calibration.budget,
+                              calibration.results.string()));
     const CalibrationResult result = calibrate(calibration, laboratory, [&](const std::string& line) { progress.note(line); });
     progress.clear();
     if (!result.complete) {
@@ -77,7 +81,8 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
     directory.write_text("calibration.json", calibration_json(calibration, result, control.provenance));
     directory.write_text("calibrated.toml", calibrated_job(calibration, result));
     write_calibration_report(calibration, result, control.provenance, calibration_page(calibration));
-    say("\n{}\nJob with the best set: {}\nReport: {}\n", calibration_text(result, output_columns()), (calibration.results / "calibrated.toml").string(), calibration_page(calibration).string());
+    say("\n{}\nJob with the best set: {}\nReport: {}\n", calibration_text(result, output_columns()),
+        (calibration.results / "calibrated.toml").string(), calibration_page(calibration).string());
     return ExitCode::success;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "commands.hpp"
+#include "device_option.hpp"
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/thread_shares.hpp"
@@ -19,7 +20,6 @@
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/planned_runs.hpp"
 #include "feldspar/study/sharing.hpp"
-#include "device_option.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"
@@ -29,7 +29,8 @@ namespace {
 
 // The grains are the cells, which fill the outline: larger than the discs that were asked for, which leave pores.
 std::string sizes_text(const SizeSummary& sizes) {
-    return fmt::format("mean {:.3g}, {:.3g} to {:.3g}, D50 {:.3g}", 1e3 * sizes.mean_m, 1e3 * sizes.minimum_m, 1e3 * sizes.maximum_m, 1e3 * sizes.D50_m);
+    return fmt::format("mean {:.3g}, {:.3g} to {:.3g}, D50 {:.3g}", 1e3 * sizes.mean_m, 1e3 * sizes.minimum_m,
+                       1e3 * sizes.maximum_m, 1e3 * sizes.D50_m);
 }
 
 void print_specimen(const std::string& what, const Specimen& specimen) {
@@ -41,19 +42,23 @@ void print_specimen(const std::string& what, const Specimen& specimen) {
     say("  vertices per grain    {:.2f}\n", q.vertices_per_grain);
     say("  merged edges          {}\n", q.merged_edges);
     say("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
-    say("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2,
-        1e3 * q.smallest_triangle_height_m);
+    say("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2, 1e3 * q.smallest_triangle_height_m);
     if (specimen.spec.given_cells.given())
         say("  corners of the file   {} welded, {} put into edges, {} moved onto the outline\n", q.welded, q.inserted, q.moved);
-    else say("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
-        100.0 * q.overlap_max);
+    else
+        say("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
+            100.0 * q.overlap_max);
     say("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
     if (!specimen.spec.given_cells.given()) say("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
     const std::vector<PhaseFill> fills = fill_of_phases(specimen);
     for (std::size_t p = 0; p < fills.size(); ++p)
-        say("  {:<22}{} grains, {:.2f} % of the area ({:.4g} % asked for), mm: {}; discs {}\n", specimen.packing.phase_names[p], fills[p].grains, 100.0 * fills[p].area_share,
-            100.0 * specimen.spec.phase_sizes[p].share, sizes_text(fills[p].cells), sizes_text(fills[p].discs));
-    if (q.crossings > 0) say("  cuts that cross       {} crossings, or ends on another cut; {} pieces were too small for a grain and went to a neighbour\n", q.crossings, q.joined_pieces);
+        say("  {:<22}{} grains, {:.2f} % of the area ({:.4g} % asked for), mm: {}; discs {}\n", specimen.packing.phase_names[p],
+            fills[p].grains, 100.0 * fills[p].area_share, 100.0 * specimen.spec.phase_sizes[p].share, sizes_text(fills[p].cells),
+            sizes_text(fills[p].discs));
+    if (q.crossings > 0)
+        say("  cuts that cross       {} crossings, or ends on another cut; {} pieces were too small for a grain and went to a "
+            "neighbour\n",
+            q.crossings, q.joined_pieces);
     say("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
     say("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
     say("  area error            {:.1e}\n", q.area_error);
@@ -65,8 +70,10 @@ std::string flats_text(const PlannedRun& run, const Specimen& specimen) {
     if (!method_of(*run.test).specimen.own_disc || !specimen.outline.flattened()) return {};
     const double angle = specimen.spec.outline.flat_angle_rad, R = specimen.outline.radius_m;
     const Variant& v = *run.variant;
-    return fmt::format("  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n", in_degrees(angle),
-                       2e3 * R * std::sin(0.5 * angle), 2e3 * specimen.outline.flat_height_m, flat_coefficient(specimen, v.model, v.grain, v.contact, *run.test));
+    return fmt::format(
+        "  flats of the disc     {:.4g} degrees, {:.3g} mm wide, {:.3g} mm apart; stress = k 2P / (pi D t), k = {:.4f}\n",
+        in_degrees(angle), 2e3 * R * std::sin(0.5 * angle), 2e3 * specimen.outline.flat_height_m,
+        flat_coefficient(specimen, v.model, v.grain, v.contact, *run.test));
 }
 
 std::string memory_text(double bytes) {
@@ -111,7 +118,12 @@ std::string variant_text(const Variant& variant) {
 // tests the steps and the time.
 class Check {
 public:
-    Check(const Job& job, int threads, DeviceUse device) : job_(job), device_(std::move(device)), packings_(planned_runs(job).size(), &stop_requested()), threads_(threads), sharing_(job.at_once, threads) {
+    Check(const Job& job, int threads, DeviceUse device)
+        : job_(job),
+          device_(std::move(device)),
+          packings_(planned_runs(job).size(), &stop_requested()),
+          threads_(threads),
+          sharing_(job.at_once, threads) {
         control_.stop = &stop_requested();
     }
 
@@ -128,7 +140,8 @@ private:
     void add(const Group& group) {
         const PlannedRun& run = group.example;
         const std::shared_ptr<const Specimen> specimen =
-            packings_.get(specimen_of(run), run.seed, threads_, [&](const SpecimenProgress& state) { progress_.making(packing_stem(run), state); });
+            packings_.get(specimen_of(run), run.seed, threads_,
+                          [&](const SpecimenProgress& state) { progress_.making(packing_stem(run), state); });
         progress_.busy("building " + label_of(run));
         // timed with the threads that it will have beside the others; what these would take of its speed is not seen
         const int bodies = body_count(run, *specimen);
@@ -159,8 +172,8 @@ private:
 
     void show_specimen(const TestSpec& test, const Specimen& specimen) {
         const std::string head = method_of(test).specimen.own_disc ? fmt::format("Disc of the {}", method_of(test).words.title)
-                                 : test.specimen                    ? fmt::format("Specimen of {}", title(test))
-                                                                    : "Specimen";
+                                 : test.specimen                   ? fmt::format("Specimen of {}", title(test))
+                                                                   : "Specimen";
         if (shown_.insert(head).second) print_specimen(head, specimen);
     }
 

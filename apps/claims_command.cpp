@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "commands.hpp"
-#include "say.hpp"
 #include "feldspar/findings/claims.hpp"
 #include "feldspar/study/report_json.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {

@@ -14,11 +14,14 @@ namespace {
 
 std::vector<const CLI::App*> commands_in(const CLI::App& app) {
     std::vector<const CLI::App*> commands;
-    for (const CLI::App* inside : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) commands.push_back(inside);
+    for (const CLI::App* inside : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); }))
+        commands.push_back(inside);
     return commands;
 }
 
-std::string full_name(const CLI::App& app) { return app.get_parent() == nullptr ? app.get_name() : full_name(*app.get_parent()) + " " + app.get_name(); }
+std::string full_name(const CLI::App& app) {
+    return app.get_parent() == nullptr ? app.get_name() : full_name(*app.get_parent()) + " " + app.get_name();
+}
 
 // The command that a command line is for, by its words: the innermost one that they name.
 const CLI::App* command_of(const CLI::App& app, int argc, char** argv) {
@@ -26,8 +29,10 @@ const CLI::App* command_of(const CLI::App& app, int argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
         const std::vector<const CLI::App*> inside = commands_in(*command);
         const auto found = std::ranges::find_if(inside, [&](const CLI::App* one) { return one->get_name() == argv[i]; });
-        if (found != inside.end()) command = *found;
-        else if (command == &app && argv[i][0] != '-') break;   // no command
+        if (found != inside.end())
+            command = *found;
+        else if (command == &app && argv[i][0] != '-')
+            break;  // no command
     }
     return command;
 }
@@ -58,11 +63,13 @@ std::vector<std::string> unexpected(const CLI::App& app, const CLI::App& command
 
 }  // namespace
 
-bool told(const CLI::Option& option) { return !option.get_group().empty() && option.get_name() != "--help" && option.get_name().find("--help") == std::string::npos; }
+bool told(const CLI::Option& option) {
+    return !option.get_group().empty() && option.get_name() != "--help" && option.get_name().find("--help") == std::string::npos;
+}
 
 std::string value_name(const CLI::Option& option) {
     const std::string type = option.get_type_name();
-    return type.substr(0, type.find(':'));   // without what its check says of it
+    return type.substr(0, type.find(':'));  // without what its check says of it
 }
 
 std::string written(const CLI::Option& option) {
@@ -128,7 +135,8 @@ int CommandLine::refuse(int argc, char** argv, const CLI::ParseError& error) con
     }
     put(stderr, printable(fmt::format("feldspar: {}\n", text)));
     if (!hint.empty()) put(stderr, printable(fmt::format("  {}\n", hint)));
-    put(stderr, fmt::format("  '{} --help' shows {}\n", full_name(command), &command == &app_ ? "the commands with examples" : "its options with examples"));
+    put(stderr, fmt::format("  '{} --help' shows {}\n", full_name(command),
+                            &command == &app_ ? "the commands with examples" : "its options with examples"));
     return static_cast<int>(ExitCode::input);
 }
 
@@ -136,12 +144,12 @@ int CommandLine::run(int argc, char** argv, const std::function<int(const Action
     try {
         app_.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app_.exit(error);   // --help, --version
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app_.exit(error);  // --help, --version
         return refuse(argc, argv, error);
     }
     for (const auto& [command, action] : actions_)
         if (command->parsed()) return guarded(action);
-    return static_cast<int>(ExitCode::input);   // not reached: one command is required
+    return static_cast<int>(ExitCode::input);  // not reached: one command is required
 }
 
 }  // namespace feldspar

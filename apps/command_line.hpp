@@ -1,4 +1,5 @@
-// The commands of the program as a tree: what is parsed, what is said of mistakes, and what manual pages and completions are written from.
+// The commands of the program as a tree: what is parsed, what is said of mistakes, and what manual pages and completions are
+// written from.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,8 +17,8 @@ namespace feldspar {
 /// A command of the tree as manual pages and completions see it.
 struct CommandPage {
     const CLI::App* app;
-    std::string name;   ///< with those before it: "study status"
-    std::vector<const CLI::App*> inside;   ///< commands in it that users call
+    std::string name;                     ///< with those before it: "study status"
+    std::vector<const CLI::App*> inside;  ///< commands in it that users call
 };
 
 /// The commands, each with what it does. What follows from the command line lives in the action, as long as it may be called.

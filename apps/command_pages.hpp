@@ -8,7 +8,8 @@
 
 namespace feldspar {
 
-/// The manual page of a command in roff, section 1. @param name  "run", "study status"; empty: the page of the whole program. @throws InputError if there is no such command
+/// The manual page of a command in roff, section 1. @param name  "run", "study status"; empty: the page of the whole program.
+/// @throws InputError if there is no such command
 std::string manual_page(const CommandLine& line, const std::string& name);
 
 /// The same by the name of the page.

@@ -16,21 +16,21 @@ namespace feldspar {
 
 /// What stands on the command line beside the job file; it takes precedence over the job.
 struct JobOptions {
-    std::string job;                     ///< the file; "-": standard input
-    std::vector<std::string> settings;   ///< "key=value", laid over the file
-    std::vector<std::uint64_t> seeds;    ///< for every test; empty = as the job says
-    std::vector<std::string> variants;   ///< names or file stems of the variants to run; empty = all
-    std::vector<std::string> tests;      ///< kinds of the tests to run, or short names such as UCS; empty = all
+    std::string job;                    ///< the file; "-": standard input
+    std::vector<std::string> settings;  ///< "key=value", laid over the file
+    std::vector<std::uint64_t> seeds;   ///< for every test; empty = as the job says
+    std::vector<std::string> variants;  ///< names or file stems of the variants to run; empty = all
+    std::vector<std::string> tests;     ///< kinds of the tests to run, or short names such as UCS; empty = all
     std::optional<int> threads;
-    std::optional<int> at_once;          ///< tests side by side
-    std::string device = "cpu";          ///< "cpu", "gpu", "auto": where the steps are made
+    std::optional<int> at_once;  ///< tests side by side
+    std::string device = "cpu";  ///< "cpu", "gpu", "auto": where the steps are made
 };
 
 /// Whether a run is shown in a browser while it goes on, and where the page is.
 struct LiveOptions {
     bool on = false;
-    std::optional<std::string> address;   ///< to listen at; none: this machine alone
-    std::optional<int> port;              ///< none: any that is free
+    std::optional<std::string> address;  ///< to listen at; none: this machine alone
+    std::optional<int> port;             ///< none: any that is free
 };
 
 struct RunOptions : JobOptions {
@@ -49,9 +49,9 @@ ExitCode run_command(const RunOptions& options);
 
 /// What stands on the command line of `export`.
 struct ExportOptions {
-    std::string run;                     ///< directory of a run, or one archive
+    std::string run;  ///< directory of a run, or one archive
     bool vtu = false;
-    std::vector<std::string> tests;      ///< stems or kinds; empty = all
+    std::vector<std::string> tests;  ///< stems or kinds; empty = all
     std::optional<std::string> out;
     std::optional<int> threads;
 };
@@ -61,8 +61,8 @@ ExitCode export_command(const ExportOptions& options);
 
 /// What stands on the command line of `view`.
 struct ViewOptions {
-    std::optional<std::string> run;   ///< a directory or a page; none: the newest in results/
-    bool print = false;               ///< opens nothing
+    std::optional<std::string> run;  ///< a directory or a page; none: the newest in results/
+    bool print = false;              ///< opens nothing
 };
 
 /// Opens a page in the browser.
@@ -74,21 +74,21 @@ ExitCode pages_command(const std::string& text);
 /// What stands on the command line beside the study file.
 struct StudyOptions {
     std::string study;
-    std::optional<std::string> results;   ///< directory of ledger and runs, instead of the study's own
+    std::optional<std::string> results;  ///< directory of ledger and runs, instead of the study's own
     std::optional<int> threads;
-    std::optional<int> at_once;           ///< runs side by side
-    std::string device = "cpu";           ///< "cpu", "gpu", "auto": where the steps are made
-    bool runs = false;                    ///< table: a row a run instead of a row a point
-    std::string command_line;             ///< for provenance
-    std::string on;                       ///< "slurm": on that cluster; empty: on this machine
+    std::optional<int> at_once;  ///< runs side by side
+    std::string device = "cpu";  ///< "cpu", "gpu", "auto": where the steps are made
+    bool runs = false;           ///< table: a row a run instead of a row a point
+    std::string command_line;    ///< for provenance
+    std::string on;              ///< "slurm": on that cluster; empty: on this machine
     SlurmOptions slurm;
-    bool retry_failed = false;            ///< also runs that failed for good
-    bool wait = false;                    ///< on Slurm: until the results are there
+    bool retry_failed = false;  ///< also runs that failed for good
+    bool wait = false;          ///< on Slurm: until the results are there
 };
 
 /// What an element of a job array is called with.
 struct ElementOptions {
-    std::string plan;   ///< <results>/slurm/<n>
+    std::string plan;  ///< <results>/slurm/<n>
     std::size_t group = 0;
     std::string command_line;
 };
@@ -120,14 +120,14 @@ ExitCode study_table_command(const StudyOptions& options);
 /// What stands on the command line beside the calibration file.
 struct CalibrateOptions {
     std::string calibration;
-    std::optional<std::string> results;   ///< directory of ledger and runs, instead of the file's own
-    std::optional<int> budget;            ///< runs, instead of the file's own
+    std::optional<std::string> results;  ///< directory of ledger and runs, instead of the file's own
+    std::optional<int> budget;           ///< runs, instead of the file's own
     std::optional<int> threads;
-    std::optional<int> at_once;           ///< runs side by side
-    std::string device = "cpu";           ///< "cpu", "gpu", "auto": where the steps are made
-    bool insist = false;                  ///< run even if the targets contradict each other
-    bool retry_failed = false;            ///< also runs that failed for good
-    std::string command_line;             ///< for provenance
+    std::optional<int> at_once;  ///< runs side by side
+    std::string device = "cpu";  ///< "cpu", "gpu", "auto": where the steps are made
+    bool insist = false;         ///< run even if the targets contradict each other
+    bool retry_failed = false;   ///< also runs that failed for good
+    std::string command_line;    ///< for provenance
 };
 
 /// Finds the values of a job's keys with which the model shows a laboratory's numbers, and confirms them.
@@ -135,10 +135,10 @@ ExitCode calibrate_command(const CalibrateOptions& options);
 
 /// What stands on the command line of `claims`.
 struct ClaimsOptions {
-    std::string folder;                    ///< holds claims.toml and the study files that it names
-    std::optional<std::string> results;    ///< directory of the ledger, instead of the studies' own
-    std::vector<std::string> claims;       ///< ids; empty = all
-    std::optional<std::string> csv, markdown;   ///< files to write, too
+    std::string folder;                        ///< holds claims.toml and the study files that it names
+    std::optional<std::string> results;        ///< directory of the ledger, instead of the studies' own
+    std::vector<std::string> claims;           ///< ids; empty = all
+    std::optional<std::string> csv, markdown;  ///< files to write, too
 };
 
 /// Holds the claims of a folder against what its studies' ledgers have, and prints the verdicts. Runs nothing.
@@ -146,12 +146,12 @@ ExitCode claims_command(const ClaimsOptions& options);
 
 /// What stands on the command line of `envelope` beside the job file.
 struct EnvelopeCommandOptions : JobOptions {
-    std::optional<int> packings;             ///< how many
-    std::vector<std::string> sigma3;         ///< "2 MPa"; empty = the job's, else a default series
+    std::optional<int> packings;      ///< how many
+    std::vector<std::string> sigma3;  ///< "2 MPa"; empty = the job's, else a default series
     bool with_tension = false;
-    bool retry_failed = false;               ///< also runs that failed for good
-    std::optional<std::string> results;      ///< directory of ledger, runs and files
-    std::string command_line;                ///< for provenance
+    bool retry_failed = false;           ///< also runs that failed for good
+    std::optional<std::string> results;  ///< directory of ledger, runs and files
+    std::string command_line;            ///< for provenance
 };
 
 /// UCS, biaxial series, DTS and BTS on several packings; Mohr-Coulomb and Hoek-Brown through them.
@@ -159,11 +159,11 @@ ExitCode envelope_command(const EnvelopeCommandOptions& options);
 
 /// What stands on the command line of `converge` beside the job file.
 struct ConvergeCommandOptions : JobOptions {
-    std::optional<int> packings;             ///< how many
-    std::string within = "5 %";              ///< a change that does not matter
-    bool retry_failed = false;               ///< also runs that failed for good
-    std::optional<std::string> results;      ///< directory of ledger, runs and files
-    std::string command_line;                ///< for provenance
+    std::optional<int> packings;         ///< how many
+    std::string within = "5 %";          ///< a change that does not matter
+    bool retry_failed = false;           ///< also runs that failed for good
+    std::optional<std::string> results;  ///< directory of ledger, runs and files
+    std::string command_line;            ///< for provenance
 };
 
 /// Varies grain size, specimen size, triangles and loading rate one at a time, and says whether the answer depends on them.
@@ -174,7 +174,7 @@ ExitCode check_command(const JobOptions& options);
 
 /// What stands on the command line of `export-cells` beside the job file.
 struct ExportCellsOptions : JobOptions {
-    std::string out;   ///< a new file, .tess, .msh or .csv
+    std::string out;  ///< a new file, .tess, .msh or .csv
 };
 
 /// Writes the cells of one specimen for other programs.
@@ -195,8 +195,8 @@ Job job_with_options(const JobOptions& options);
 /// Kinds of tests by their names, where short names may have been given. What is neither stays as it is.
 std::vector<std::string> full_kinds(std::vector<std::string> words);
 
-/// The number of threads to use: as wanted, or, with 0, one for each core that the program may use. Warns on stderr when there are
-/// fewer cores.
+/// The number of threads to use: as wanted, or, with 0, one for each core that the program may use. Warns on stderr when there
+/// are fewer cores.
 int thread_count(int wanted);
 
 }  // namespace feldspar

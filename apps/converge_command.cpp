@@ -18,7 +18,9 @@ double limit(const std::string& text) {
     } catch (const InputError& error) {
         throw InputError({{}, 0, 0, "--within"}, error.problem(), error.allowed(), error.suggestion());
     }
-    if (!(value > 0.0 && value < 1.0)) throw InputError({{}, 0, 0, "--within"}, fmt::format("'{}' is no change that does not matter", text), "more than 0 and less than 100 %");
+    if (!(value > 0.0 && value < 1.0))
+        throw InputError({{}, 0, 0, "--within"}, fmt::format("'{}' is no change that does not matter", text),
+                         "more than 0 and less than 100 %");
     return value;
 }
 
@@ -27,12 +29,14 @@ double limit(const std::string& text) {
 ExitCode converge_command(const ConvergeCommandOptions& options) {
     install_signal_handlers();
     JobOptions whole = options;
-    whole.tests.clear();   // the plan chooses
+    whole.tests.clear();  // the plan chooses
     const Job job = job_with_options(whole);
-    const ConvergePlan plan = plan_convergence(job, {options.packings, full_kinds(options.tests), limit(options.within), options.results});
+    const ConvergePlan plan =
+        plan_convergence(job, {options.packings, full_kinds(options.tests), limit(options.within), options.results});
     for (const std::string& remark : plan.remarks) say(stderr, "{}\n", remark);
     Ledger ledger(plan.study.results, Ledger::Access::write);
-    const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.device, options.retry_failed};
+    const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.device,
+                               options.retry_failed};
     const Execution execution = run_study(plan.study, ledger, running);
 
     const std::vector<PointResults> points = point_results(plan.study, ledger);

@@ -1,8 +1,8 @@
 #include "device_option.hpp"
 
-#include <cstdio>
-
 #include <fmt/format.h>
+
+#include <cstdio>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/gpu/device.hpp"
@@ -15,7 +15,8 @@ DeviceUse device_use(const std::string& wanted, Provenance& provenance) {
     DeviceProvenance card;
     try {
         card = card_here();
-        provenance.device = fmt::format("{} (CUDA driver {}, compute capability {}, {} precision)", card.card, card.driver, card.capability, card.precision);
+        provenance.device = fmt::format("{} (CUDA driver {}, compute capability {}, {} precision)", card.card, card.driver,
+                                        card.capability, card.precision);
     } catch (const InputError& error) {
         if (wanted != "auto") throw;
         say(stderr, "the tests run on the processor: {}\n", error.problem());

@@ -20,7 +20,9 @@ std::vector<double> stresses(const std::vector<std::string>& given) {
         } catch (const InputError& error) {
             throw InputError({{}, 0, 0, "--sigma3"}, error.problem(), error.allowed(), error.suggestion());
         }
-        if (value <= 0.0) throw InputError({{}, 0, 0, "--sigma3"}, fmt::format("'{}' confines nothing", text), "stresses greater than zero; the uniaxial test is always there");
+        if (value <= 0.0)
+            throw InputError({{}, 0, 0, "--sigma3"}, fmt::format("'{}' confines nothing", text),
+                             "stresses greater than zero; the uniaxial test is always there");
         values.push_back(value);
     }
     return values;
@@ -31,14 +33,17 @@ std::vector<double> stresses(const std::vector<std::string>& given) {
 ExitCode envelope_command(const EnvelopeCommandOptions& options) {
     install_signal_handlers();
     const Job job = job_with_options(options);
-    const EnvelopePlan plan = plan_envelope(job, {options.packings, stresses(options.sigma3), options.with_tension, options.results});
+    const EnvelopePlan plan =
+        plan_envelope(job, {options.packings, stresses(options.sigma3), options.with_tension, options.results});
     for (const std::string& remark : plan.remarks) say(stderr, "{}\n", remark);
     Ledger ledger(plan.study.results, Ledger::Access::write);
-    const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.device, options.retry_failed};
+    const StudyRunning running{thread_count(job.threads), job.at_once, options.command_line, options.device,
+                               options.retry_failed};
     const Execution execution = run_study(plan.study, ledger, running);
 
     const std::vector<PointResults> points = point_results(plan.study, ledger);
-    write_envelope(plan.study.results, plan.study, points, options.with_tension, collect_provenance(options.command_line, running.threads));
+    write_envelope(plan.study.results, plan.study, points, options.with_tension,
+                   collect_provenance(options.command_line, running.threads));
     say("\n{}\n", envelope_text(plan.study, points, options.with_tension, output_columns()));
     print_execution(plan.study, execution);
     say("Page: {}\n", (plan.study.results / "envelope.html").string());

@@ -7,8 +7,9 @@
 
 namespace feldspar {
 
-/// Catches SIGINT, SIGTERM and SIGHUP (unless they are ignored already, as under nohup) and SIGUSR1, by which the user asks for the states of running tests to be kept now; turns
-/// a broken pipe and a file-size limit into failed writes instead of sudden ends.
+/// Catches SIGINT, SIGTERM and SIGHUP (unless they are ignored already, as under nohup) and SIGUSR1, by which the user asks for
+/// the states of running tests to be kept now; turns a broken pipe and a file-size limit into failed writes instead of sudden
+/// ends.
 void install_signal_handlers();
 
 /// True once the user has asked to stop, or what failed asks the rest to end.

@@ -18,14 +18,15 @@ namespace {
 // Leaves the variants that the command line names, in the job's order.
 void keep_variants(Job& job, const std::vector<std::string>& wanted) {
     if (wanted.empty()) return;
-    if (!job.has_variants()) throw InputError({{}, 0, 0, "--variant"}, "the job has no variants", "the job as it is, without --variant");
+    if (!job.has_variants())
+        throw InputError({{}, 0, 0, "--variant"}, "the job has no variants", "the job as it is, without --variant");
     std::vector<std::string_view> names;
     for (const Variant& variant : job.variants) names.push_back(variant.name);
     const auto is = [](const Variant& variant, const std::string& name) { return variant.name == name || variant.stem == name; };
     for (const std::string& name : wanted)
         if (std::none_of(job.variants.begin(), job.variants.end(), [&](const Variant& variant) { return is(variant, name); }))
-            throw InputError({{}, 0, 0, "--variant"}, fmt::format("the job has no variant '{}'", name), fmt::format("{}", fmt::join(names, "; ")),
-                             did_you_mean(name, names));
+            throw InputError({{}, 0, 0, "--variant"}, fmt::format("the job has no variant '{}'", name),
+                             fmt::format("{}", fmt::join(names, "; ")), did_you_mean(name, names));
     std::erase_if(job.variants, [&](const Variant& variant) {
         return std::none_of(wanted.begin(), wanted.end(), [&](const std::string& name) { return is(variant, name); });
     });
@@ -39,11 +40,14 @@ void keep_tests(Job& job, const std::vector<std::string>& wanted) {
         if (std::find(kinds.begin(), kinds.end(), name(test.kind)) == kinds.end()) kinds.emplace_back(name(test.kind));
     for (const std::string& kind : wanted)
         if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
-            throw InputError({{}, 0, 0, "--test"}, fmt::format("the job has no test '{}'", kind), listed(kinds), did_you_mean(kind, kinds));
-    std::erase_if(job.tests, [&](const TestSpec& test) { return std::find(wanted.begin(), wanted.end(), name(test.kind)) == wanted.end(); });
+            throw InputError({{}, 0, 0, "--test"}, fmt::format("the job has no test '{}'", kind), listed(kinds),
+                             did_you_mean(kind, kinds));
+    std::erase_if(job.tests,
+                  [&](const TestSpec& test) { return std::find(wanted.begin(), wanted.end(), name(test.kind)) == wanted.end(); });
     for (const Variant& variant : job.variants)
         if (std::none_of(job.tests.begin(), job.tests.end(), [&](const TestSpec& test) { return variant.runs(test.kind); }))
-            throw InputError({{}, 0, 0, "--test"}, fmt::format("nothing is left to run for the variant '{}'", variant.name), {}, "name the --variant too");
+            throw InputError({{}, 0, 0, "--test"}, fmt::format("nothing is left to run for the variant '{}'", variant.name), {},
+                             "name the --variant too");
 }
 
 }  // namespace
@@ -55,7 +59,8 @@ std::vector<std::string> full_kinds(std::vector<std::string> words) {
 }
 
 Job job_with_options(const JobOptions& options) {
-    Job job = options.job == "-" ? parse_job(read_toml_file("/dev/stdin", "job"), "standard input", options.settings) : read_job(options.job, options.settings);
+    Job job = options.job == "-" ? parse_job(read_toml_file("/dev/stdin", "job"), "standard input", options.settings)
+                                 : read_job(options.job, options.settings);
     keep_variants(job, options.variants);
     keep_tests(job, full_kinds(options.tests));
     if (options.threads) job.threads = *options.threads;
@@ -75,8 +80,7 @@ Job job_with_options(const JobOptions& options) {
 int thread_count(int wanted) {
     const int cores = usable_cores();
     if (wanted == 0) return cores;
-    if (wanted > cores)
-        say(stderr, "warning: {} threads on {} will wait for each other\n", wanted, counted(cores, "core"));
+    if (wanted > cores) say(stderr, "warning: {} threads on {} will wait for each other\n", wanted, counted(cores, "core"));
     return wanted;
 }
 

@@ -24,11 +24,15 @@ void LiveView::busy(const std::string& what) {
 
 void LiveView::over(const JobOutcome& outcome) {
     if (!board_) return;
-    std::string words = outcome.interrupted ? fmt::format("It was ended early, with results of {} of {}; the same command goes on there.", outcome.results.size(), counted(outcome.tests, "test"))
-                                            : fmt::format("{} have ended{}.", counted(outcome.tests, "test"), outcome.failed.empty() ? "" : fmt::format(", {} without a result", outcome.failed.size()));
+    std::string words =
+        outcome.interrupted
+            ? fmt::format("It was ended early, with results of {} of {}; the same command goes on there.", outcome.results.size(),
+                          counted(outcome.tests, "test"))
+            : fmt::format("{} have ended{}.", counted(outcome.tests, "test"),
+                          outcome.failed.empty() ? "" : fmt::format(", {} without a result", outcome.failed.size()));
     words += fmt::format(" This page is the report of the run as it stands in {}.", (outcome.directory / "report.html").string());
     board_->over(words);
-    server_.reset();   // when the pages have it
+    server_.reset();  // when the pages have it
 }
 
 }  // namespace feldspar

@@ -13,7 +13,8 @@ namespace feldspar {
 
 class LiveView {
 public:
-    /// Listens, and prints where, if the options ask for it; else nothing here does anything. @throws InputError if it cannot listen there
+    /// Listens, and prints where, if the options ask for it; else nothing here does anything. @throws InputError if it cannot
+    /// listen there
     LiveView(const LiveOptions& options, const std::string& name);
 
     /// What the run fills; null without a live view.
@@ -24,7 +25,7 @@ public:
 
 private:
     std::optional<LiveBoard> board_;
-    std::optional<LiveServer> server_;   // behind the board, that it goes away first
+    std::optional<LiveServer> server_;  // behind the board, that it goes away first
 };
 
 }  // namespace feldspar

@@ -4,13 +4,13 @@
 #include <cstdio>
 
 #include "commands.hpp"
-#include "say.hpp"
-#include "whole_text.hpp"
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/job/presets.hpp"
 #include "feldspar/job/toml_reader.hpp"
 #include "feldspar/study/study.hpp"
+#include "say.hpp"
+#include "whole_text.hpp"
 
 namespace feldspar {
 
@@ -25,12 +25,15 @@ std::string with_first_parameters(const std::string& kind, const GivenRock& rock
 
 std::string file_to_start_from(const std::string& kind, const GivenRock& rock) {
     if (kind == "study") {
-        if (rock.any()) throw InputError({}, "a study takes the numbers of a rock from its job", "feldspar new laboratory with these options for the job, and feldspar new study");
+        if (rock.any())
+            throw InputError({}, "a study takes the numbers of a rock from its job",
+                             "feldspar new laboratory with these options for the job, and feldspar new study");
         return study_template();
     }
     if (kind == "calibration") return rock.any() ? calibration_template(read_rock_numbers(rock)) : calibration_template();
     std::vector<std::string_view> kinds = job_template_kinds();
-    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) return rock.any() ? with_first_parameters(kind, rock) : job_template(kind);
+    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end())
+        return rock.any() ? with_first_parameters(kind, rock) : job_template(kind);
     kinds.insert(kinds.end(), {"study", "calibration"});
     throw InputError({}, "'" + kind + "' is nothing to start from", listed(kinds), did_you_mean(kind, kinds));
 }

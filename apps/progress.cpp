@@ -1,9 +1,5 @@
 #include "progress.hpp"
 
-#include "feldspar/base/printable.hpp"
-#include "feldspar/base/utf8.hpp"
-#include "say.hpp"
-
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -12,6 +8,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "feldspar/base/printable.hpp"
+#include "feldspar/base/utf8.hpp"
+#include "say.hpp"
 
 namespace feldspar {
 namespace {
@@ -77,7 +76,8 @@ void Progress::rewrite(const std::vector<std::string>& lines) {
     const auto [columns, rows] = screen();
     const std::size_t shown = lines.size() < rows ? lines.size() : rows - 2;  // lines that scroll away could not be taken back
     std::string text;
-    for (std::size_t i = 0; i < shown; ++i) text += (i > 0 ? "\n" : "") + std::string(first_columns(printable(lines[i], LineEnds::escaped), columns - 1));
+    for (std::size_t i = 0; i < shown; ++i)
+        text += (i > 0 ? "\n" : "") + std::string(first_columns(printable(lines[i], LineEnds::escaped), columns - 1));
     if (shown < lines.size()) text += fmt::format("\nand {} more", lines.size() - shown);
     put(stderr, text);
     std::fflush(stderr);
@@ -99,14 +99,15 @@ void Progress::busy(const std::string& what) {
 }
 
 void Progress::making(const std::string& what, const SpecimenProgress& progress) {
-    const std::string line = fmt::format("making {} of {} grains: {}, {:.0f} %", what, progress.grains, progress.stage, 100.0 * progress.share);
+    const std::string line =
+        fmt::format("making {} of {} grains: {}, {:.0f} %", what, progress.grains, progress.stage, 100.0 * progress.share);
     if (terminal_) {
         rewrite({line});
         return;
     }
     const auto now = Clock::now();
     if (what == making_ && now - last_making_ < plain_line_interval) return;
-    if (what == making_) note(line);   // most are made before the first line is due
+    if (what == making_) note(line);  // most are made before the first line is due
     making_ = what;
     last_making_ = now;
 }

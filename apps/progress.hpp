@@ -56,7 +56,7 @@ private:
     std::size_t lines_shown_ = 0;
     std::map<int, Running> running_;  // by the test's number
     Clock::time_point last_rewrite_;
-    std::string making_;              // the specimen told of last
+    std::string making_;  // the specimen told of last
     Clock::time_point last_making_;
 };
 

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <map>
 
+#include "device_option.hpp"
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/stopwatch.hpp"
 #include "feldspar/study/planned_runs.hpp"
-#include "device_option.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "say.hpp"
@@ -39,7 +39,9 @@ public:
     int done() const { return done_; }
     int failed() const { return failed_; }
 
-    void report(const Run& run, const TestProgress& progress) { progress_.report(numbers_[run.id], runs(), label_of(study_, run), progress); }
+    void report(const Run& run, const TestProgress& progress) {
+        progress_.report(numbers_[run.id], runs(), label_of(study_, run), progress);
+    }
 
     void ended(const Run& run, const RunRecord& record) {
         ++ended_;
@@ -60,7 +62,7 @@ private:
     }
 
     const Study& study_;
-    std::map<std::string, int> numbers_;   // of each run, from 1 on
+    std::map<std::string, int> numbers_;  // of each run, from 1 on
     int done_ = 0, failed_ = 0, ended_ = 0, first_ = 0;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     Progress progress_;
@@ -78,7 +80,8 @@ std::string label_of(const Study& study, const Run& run) {
 
 std::string result_text(const RunRecord& record) {
     if (record.state == RunState::failed) return "failed: " + record.reason;
-    return fmt::format("{:.4g} MPa, grade {}, {}", record.numbers.at("strength_Pa") / 1e6, record.texts.at("grade"), duration_text(record.numbers.at("wall_s")));
+    return fmt::format("{:.4g} MPa, grade {}, {}", record.numbers.at("strength_Pa") / 1e6, record.texts.at("grade"),
+                       duration_text(record.numbers.at("wall_s")));
 }
 
 Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& running) {
@@ -89,8 +92,8 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
     control.retry_failed = running.retry_failed;
     StudyProgress progress(study, ledger, running.retry_failed ? nullptr : &control.provenance);
     const std::string failed = progress.failed() > 0 ? fmt::format(", {} failed before and not repeated", progress.failed()) : "";
-    progress.note(fmt::format("{}: {} runs at {}, {} done already{}; results in {}", study.name, progress.runs(), counted(study.points.size(), "point"),
-                              progress.done(), failed, study.results.string()));
+    progress.note(fmt::format("{}: {} runs at {}, {} done already{}; results in {}", study.name, progress.runs(),
+                              counted(study.points.size(), "point"), progress.done(), failed, study.results.string()));
     control.threads = running.threads;
     control.at_once = running.at_once;
     control.keep = study.keep;
@@ -107,7 +110,8 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
 void print_execution(const Study& study, const Execution& execution) {
     say("{} runs done now, {} before, {} failed; {} of runs in {}\n", execution.done, execution.found_done, execution.failed,
         duration_text(execution.run_s), duration_text(execution.wall_s));
-    if (execution.found_failed > 0) say("{} failed before and were not repeated; --retry-failed runs them again\n", execution.found_failed);
+    if (execution.found_failed > 0)
+        say("{} failed before and were not repeated; --retry-failed runs them again\n", execution.found_failed);
     say("Ledger: {}\n", (study.results / "ledger.sqlite").string());
     if (execution.left > 0) say(stderr, "interrupted with {} runs left; the same command goes on with them\n", execution.left);
 }

@@ -10,11 +10,11 @@
 namespace feldspar {
 
 struct StudyRunning {
-    int threads = 1;            ///< of the whole program
-    int at_once = 0;            ///< runs side by side; 0 = as suits their size
-    std::string command_line;   ///< for provenance
-    std::string device = "cpu"; ///< where the steps are made
-    bool retry_failed = false;  ///< also runs that failed for good
+    int threads = 1;             ///< of the whole program
+    int at_once = 0;             ///< runs side by side; 0 = as suits their size
+    std::string command_line;    ///< for provenance
+    std::string device = "cpu";  ///< where the steps are made
+    bool retry_failed = false;   ///< also runs that failed for good
 };
 
 /// "biaxial at 4 MPa, seed 1".

@@ -1,9 +1,8 @@
-#include "feldspar/job/schema.hpp"
-
 #include <filesystem>
 
 #include "commands.hpp"
 #include "feldspar/job/key_reference.hpp"
+#include "feldspar/job/schema.hpp"
 #include "say.hpp"
 #include "whole_text.hpp"
 
@@ -16,7 +15,8 @@ ExitCode schema_command(bool markdown, const std::optional<std::string>& out) {
     if (markdown)
         say(stderr, "wrote {}\n", *out);
     else
-        say(stderr, "wrote {}; the first line of a job beside it: #:schema ./{}\n", *out, std::filesystem::path(*out).filename().string());
+        say(stderr, "wrote {}; the first line of a job beside it: #:schema ./{}\n", *out,
+            std::filesystem::path(*out).filename().string());
     return ExitCode::success;
 }
 

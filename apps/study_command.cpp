@@ -24,10 +24,13 @@ ExitCode study_command(const StudyOptions& options) {
     install_signal_handlers();
     const Study study = study_with_options(options);
     if (options.on == "slurm" && options.device != "cpu")
-        throw InputError({.key = "--device"}, "elements of a job array run on processors", "cpu", "run the study on a machine with a card, without --on slurm");
+        throw InputError({.key = "--device"}, "elements of a job array run on processors", "cpu",
+                         "run the study on a machine with a card, without --on slurm");
     if (options.on == "slurm") return study_on_slurm(study, options);
     Ledger ledger(study.results, Ledger::Access::write);
-    const Execution execution = run_study(study, ledger, {thread_count(options.threads.value_or(0)), options.at_once.value_or(0), options.command_line, options.device, options.retry_failed});
+    const Execution execution = run_study(study, ledger,
+                                          {thread_count(options.threads.value_or(0)), options.at_once.value_or(0),
+                                           options.command_line, options.device, options.retry_failed});
 
     const std::vector<PointResults> points = point_results(study, ledger);
     write_study_report(study, points, study_page(study));
@@ -45,7 +48,8 @@ ExitCode study_status_command(const StudyOptions& options) {
     for (const Run& run : study.runs)
         if (runs.emplace(run.id, &run).second) ids.push_back(run.id);
     if (std::filesystem::exists(study.results / "ledger.sqlite"))
-        for (RunRecord& record : Ledger(study.results, Ledger::Access::read).find(ids)) by_state[record.state].push_back(std::move(record));
+        for (RunRecord& record : Ledger(study.results, Ledger::Access::read).find(ids))
+            by_state[record.state].push_back(std::move(record));
     const auto count = [&](RunState state) { return by_state[state].size(); };
     say("{}: {} points, {} runs: {} done, {} running, {} failed, {} to do\n", study.name, study.points.size(), ids.size(),
         count(RunState::done), count(RunState::running), count(RunState::failed),
@@ -53,11 +57,13 @@ ExitCode study_status_command(const StudyOptions& options) {
     double spent_s = 0.0;
     for (const RunRecord& record : by_state[RunState::done]) spent_s += record.numbers.at("wall_s");
     say("Time of the runs that are done: {}\n", duration_text(spent_s));
-    for (const RunRecord& record : by_state[RunState::failed]) say("failed: {}: {}\n", label_of(study, *runs.at(record.id)), record.reason);
+    for (const RunRecord& record : by_state[RunState::failed])
+        say("failed: {}: {}\n", label_of(study, *runs.at(record.id)), record.reason);
     const Provenance here = collect_provenance({}, 1);
     const std::size_t kept = settled_runs(by_state[RunState::failed], &here).failed.size();
     if (kept > 0) say("{} of the failed runs will not be repeated, but by --retry-failed\n", kept);
-    for (const RunRecord& record : by_state[RunState::running]) say("running, or left behind: {}\n", label_of(study, *runs.at(record.id)));
+    for (const RunRecord& record : by_state[RunState::running])
+        say("running, or left behind: {}\n", label_of(study, *runs.at(record.id)));
     print_slurm_status(study.results);
     return ExitCode::success;
 }

@@ -28,9 +28,10 @@ std::string what_runs(const RunRecord& record) {
 void print_gathering(const Gathering& gathering) {
     for (const RunRecord& record : gathering.failed) say("failed: {}: {}\n", what_runs(record), record.reason);
     for (const LostElement& lost : gathering.lost)
-        say("not done: {} of element {}: {}\n  its output: {}\n", counted(lost.runs.size(), "run"), lost.job, lost.reason, lost.output.string());
-    say("{} taken into the ledger, {} in the queue, {} failed, {} not done\n", counted(gathering.taken, "run"),
-        gathering.queued, gathering.failed.size(), gathering.missing());
+        say("not done: {} of element {}: {}\n  its output: {}\n", counted(lost.runs.size(), "run"), lost.job, lost.reason,
+            lost.output.string());
+    say("{} taken into the ledger, {} in the queue, {} failed, {} not done\n", counted(gathering.taken, "run"), gathering.queued,
+        gathering.failed.size(), gathering.missing());
 }
 
 ExitCode outcome(const Gathering& gathering) {
@@ -48,17 +49,18 @@ void print_submission(const Submission& submission, const std::string& study) {
     }
     const SlurmPlan& plan = *submission.plan;
     say("Submitted {} (about {} on one thread) as {} of job {}; job {} takes the results in\n",
-        counted(submission.submitted, "run"), duration_text(submission.expected_s),
-        counted(plan.groups.size(), "element"), plan.array_job, plan.gather_job);
+        counted(submission.submitted, "run"), duration_text(submission.expected_s), counted(plan.groups.size(), "element"),
+        plan.array_job, plan.gather_job);
     say("Plan, scripts and output: {}\n", plan.directory.string());
-    say("To follow: feldspar study status {}   or   squeue --jobs={},{}\nTo stop:   scancel {}\n", study, plan.array_job, plan.gather_job,
-        plan.array_job);
+    say("To follow: feldspar study status {}   or   squeue --jobs={},{}\nTo stop:   scancel {}\n", study, plan.array_job,
+        plan.gather_job, plan.array_job);
 }
 
 // Waits so long, or until the user interrupts.
 void wait(std::chrono::milliseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
-    while (!stop_requested() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    while (!stop_requested() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
 std::string progress_text(const std::vector<ArrayState>& states) {
@@ -74,7 +76,7 @@ std::string progress_text(const std::vector<ArrayState>& states) {
 
 // Until no plan has anything in the queue; asks seldom, because everybody's jobs go through one queue.
 void wait_for(const std::vector<SlurmPlan>& plans) {
-    constexpr int patience = 10;   // failed questions in a row: the controller may be starting anew
+    constexpr int patience = 10;  // failed questions in a row: the controller may be starting anew
     std::chrono::milliseconds pause(500);
     std::string told;
     Progress progress;
@@ -118,7 +120,7 @@ ExitCode study_on_slurm(const Study& study, const StudyOptions& options) {
         say(stderr, "no longer waiting; the runs stay in the queue\n");
         return ExitCode::interrupted;
     }
-    const Gathering gathering = gather(ledger);   // again, should the gathering job have failed
+    const Gathering gathering = gather(ledger);  // again, should the gathering job have failed
     say("\n{}\n", study_text(study, point_results(study, ledger), output_columns()));
     print_gathering(gathering);
     return outcome(gathering);
@@ -127,7 +129,8 @@ ExitCode study_on_slurm(const Study& study, const StudyOptions& options) {
 ExitCode study_gather_command(const StudyOptions& options) {
     const fs::path results = fs::is_directory(options.study) ? fs::path(options.study) : study_with_options(options).results;
     if (read_plans(results).empty())
-        throw InputError({}, fmt::format("nothing of '{}' has gone to Slurm", results.string()), "feldspar study STUDY.toml --on slurm");
+        throw InputError({}, fmt::format("nothing of '{}' has gone to Slurm", results.string()),
+                         "feldspar study STUDY.toml --on slurm");
     Ledger ledger(results, Ledger::Access::write);
     const Gathering gathering = gather(ledger);
     print_gathering(gathering);
@@ -144,12 +147,13 @@ ExitCode study_element_command(const ElementOptions& options) {
     control.provenance = collect_provenance(options.command_line, control.threads);
     Progress progress;
     control.ended = [&](const Run&, const RunRecord& record) {
-        progress.note(record.state == RunState::failed ? fmt::format("failed: {}: {}", what_runs(record), record.reason)
-                                                       : fmt::format("done: {} in {}", what_runs(record), duration_text(record.numbers.at("wall_s"))));
+        progress.note(record.state == RunState::failed
+                          ? fmt::format("failed: {}: {}", what_runs(record), record.reason)
+                          : fmt::format("done: {} in {}", what_runs(record), duration_text(record.numbers.at("wall_s"))));
     };
     const Execution execution = run_element(plan, options.group, control);
-    progress.note(fmt::format("element {}: {} done now, {} before, {} failed, {} left", options.group, execution.done, execution.found_done,
-                              execution.failed, execution.left));
+    progress.note(fmt::format("element {}: {} done now, {} before, {} failed, {} left", options.group, execution.done,
+                              execution.found_done, execution.failed, execution.left));
     if (execution.left > 0) return ExitCode::interrupted;
     return execution.failed > 0 ? ExitCode::numerical : ExitCode::success;
 }

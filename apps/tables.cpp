@@ -8,8 +8,8 @@
 #include <regex>
 #include <vector>
 
-#include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/base/text_table.hpp"
+#include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -63,7 +63,8 @@ std::string median_and_range(const PropertySummary& properties, const std::strin
     const PropertyStatistics& s = found->second;
     const double factor = user_quantity(property).factor;
     if (s.seeds.size() < 2) return table_number(s.median * factor);
-    return fmt::format("{} ({}..{})", table_number(s.median * factor), table_number(s.minimum * factor), table_number(s.maximum * factor));
+    return fmt::format("{} ({}..{})", table_number(s.median * factor), table_number(s.minimum * factor),
+                       table_number(s.maximum * factor));
 }
 
 std::string compared_table(const Job& job, const std::vector<VariantSummary>& summaries, std::size_t columns) {
@@ -84,7 +85,8 @@ std::string compared_table(const Job& job, const std::vector<VariantSummary>& su
     for (const std::string& property : present) {
         const auto known = std::find_if(job.laboratory.begin(), job.laboratory.end(),
                                         [&](const auto& entry) { return property_of_laboratory(entry.first) == property; });
-        laboratory.push_back(known == job.laboratory.end() ? "" : table_number(laboratory_in_user_units(known->first, known->second)));
+        laboratory.push_back(known == job.laboratory.end() ? ""
+                                                           : table_number(laboratory_in_user_units(known->first, known->second)));
     }
     if (!job.laboratory.empty()) rows.push_back(laboratory);
     return aligned(rows, 1, columns) + "median (minimum..maximum) over the packings; strengths are positive magnitudes\n";
@@ -114,25 +116,33 @@ std::string cost_table(const std::vector<VariantSummary>& summaries, std::size_t
 
 // How each disc of a Brazilian test failed: its strength is worth as much as that.
 std::string disc_table(std::span<const TestResult> results, std::size_t columns) {
-    std::vector<Row> rows{{"Brazilian test", "seed", "BTS MPa", "first dip", "largest", "valid (ISRM)", "arc top", "bottom", "first crack r/R", "at share"}};
+    std::vector<Row> rows{{"Brazilian test", "seed", "BTS MPa", "first dip", "largest", "valid (ISRM)", "arc top", "bottom",
+                           "first crack r/R", "at share"}};
     bool flattened = false;
-    for (const TestResult& r : results) flattened = flattened || (r.specimen && r.specimen->outline.flattened() && method_of(r.test).specimen.own_disc);
+    for (const TestResult& r : results)
+        flattened = flattened || (r.specimen && r.specimen->outline.flattened() && method_of(r.test).specimen.own_disc);
     if (flattened) rows.front().emplace_back("k");
     const auto degrees = [](double value) { return std::isfinite(value) ? fmt::format("{:.1f} deg", value) : "-"; };
     for (const TestResult& r : results) {
         if (!method_of(r.test).specimen.own_disc) continue;
         const BrazilianFailure& b = r.properties.brazilian;
-        rows.push_back({title(r.variant, r.test), std::to_string(r.seed), peak_text(r), table_number(b.first_dip_Pa / 1e6), table_number(b.largest_Pa / 1e6),
-                        validity_in_words(b), degrees(b.contact_arc_top_deg), degrees(b.contact_arc_bottom_deg), table_number(b.first_crack_radius),
+        rows.push_back({title(r.variant, r.test), std::to_string(r.seed), peak_text(r), table_number(b.first_dip_Pa / 1e6),
+                        table_number(b.largest_Pa / 1e6), validity_in_words(b), degrees(b.contact_arc_top_deg),
+                        degrees(b.contact_arc_bottom_deg), table_number(b.first_crack_radius),
                         table_number(b.first_crack_share)});
         if (flattened) rows.back().push_back(table_number(b.flat_coefficient));
     }
     if (rows.size() == 1) return {};
     return "\n" + aligned(rows, 1, columns, 2) +
-           wrapped_text("BTS: largest stress until the disc is split ('>': it was not); first dip: before the first fall of 5 %; largest: of the whole record", {}, columns) +
-           wrapped_text("valid (ISRM): split by a crack from the central part, r/R up to 0.6; arcs: of contact at the BTS; share: of the BTS, at the first crack" +
-                            std::string(flattened ? "; k: stresses are k 2P / (pi D t)" : ""),
-                        {}, columns);
+           wrapped_text(
+               "BTS: largest stress until the disc is split ('>': it was not); first dip: before the first fall of 5 %; largest: "
+               "of the whole record",
+               {}, columns) +
+           wrapped_text(
+               "valid (ISRM): split by a crack from the central part, r/R up to 0.6; arcs: of contact at the BTS; share: of the "
+               "BTS, at the first crack" +
+                   std::string(flattened ? "; k: stresses are k 2P / (pi D t)" : ""),
+               {}, columns);
 }
 
 }  // namespace
@@ -181,7 +191,9 @@ std::string property_table(const Job& job, const PropertySummary& properties, st
 }
 
 bool worse_than_asked(const TestResult& result) {
-    const double asked = result.numerics.kind == NumericsKind::adaptive && !result.numerics.residual_target ? result.numerics.accuracy : NumericsSpec{}.accuracy;
+    const double asked = result.numerics.kind == NumericsKind::adaptive && !result.numerics.residual_target
+                             ? result.numerics.accuracy
+                             : NumericsSpec{}.accuracy;
     return result.evidence.grade == 'C' || !(result.evidence.error_estimate <= asked);
 }
 
@@ -192,17 +204,24 @@ std::string test_table(std::span<const TestResult> results, std::span<const Fail
         rows.push_back({title(r.variant, r.test), std::to_string(r.seed), peak_text(r), cracks_text(r), std::to_string(r.steps),
                         duration_text(r.wall_s), fmt::format("{:.3f} %", 100.0 * r.energy_residual),
                         std::string(1, r.evidence.grade)});
-    for (const FailedTest& f : failed) rows.push_back({title(f.variant, f.test), std::to_string(f.seed), "failed", "-", "-", "-", "-", "-"});
+    for (const FailedTest& f : failed)
+        rows.push_back({title(f.variant, f.test), std::to_string(f.seed), "failed", "-", "-", "-", "-", "-"});
     std::string text = aligned(rows, 1, columns, 2);
-    text += wrapped_text("cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached", {}, columns);
+    text += wrapped_text(
+        "cracks t + s: tensile + shear; energy residual: largest, of the work supplied; '>': the peak was not reached", {},
+        columns);
     text += wrapped_text("quasi-static: A to about 0.5 %, B to about 2 %, C not shown", {}, columns);
     text += disc_table(results, columns);
-    for (const FailedTest& f : failed) text += wrapped_text(fmt::format("{}, seed {}: failed: {}", title(f.variant, f.test), f.seed, in_one_line(f.reason)), {}, columns);
-    for (const TestResult& r : results) {   // a section other than the whole width is said beside the number
-        for (const std::string& remark : r.properties.remarks) text += wrapped_text(fmt::format("{}, seed {}: {}", title(r.variant, r.test), r.seed, remark), {}, columns);
+    for (const FailedTest& f : failed)
+        text += wrapped_text(fmt::format("{}, seed {}: failed: {}", title(f.variant, f.test), f.seed, in_one_line(f.reason)), {},
+                             columns);
+    for (const TestResult& r : results) {  // a section other than the whole width is said beside the number
+        for (const std::string& remark : r.properties.remarks)
+            text += wrapped_text(fmt::format("{}, seed {}: {}", title(r.variant, r.test), r.seed, remark), {}, columns);
     }
     for (const TestResult& r : results) {
-        if (r.interrupted) text += wrapped_text(fmt::format("{}, seed {}: interrupted", title(r.variant, r.test), r.seed), {}, columns);
+        if (r.interrupted)
+            text += wrapped_text(fmt::format("{}, seed {}: interrupted", title(r.variant, r.test), r.seed), {}, columns);
         if (!worse_than_asked(r)) continue;
         text += fmt::format("\n{}, seed {}: worse than asked\n", title(r.variant, r.test), r.seed);
         text += wrapped_text(r.evidence.verdict, "  ", columns);

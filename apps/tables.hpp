@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
-#include "feldspar/lab/properties.hpp"
 #include "feldspar/job/job.hpp"
+#include "feldspar/lab/properties.hpp"
 #include "feldspar/output/results.hpp"
 
 namespace feldspar {
@@ -20,7 +20,8 @@ std::string variant_table(const Job& job, std::span<const TestResult> results, s
 /// The verdict says that the strength is less certain than the accuracy that the job asks for (without one: the usual accuracy).
 bool worse_than_asked(const TestResult& result);
 
-/// The tests one by one: peak, cracks, steps, time, energy residual and grade; below them those that failed, and why, and the verdict in words of those that are worse than asked.
+/// The tests one by one: peak, cracks, steps, time, energy residual and grade; below them those that failed, and why, and the
+/// verdict in words of those that are worse than asked.
 std::string test_table(std::span<const TestResult> results, std::span<const FailedTest> failed = {}, std::size_t columns = 0);
 
 /// One line for a test that has just ended.

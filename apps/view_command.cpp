@@ -37,7 +37,9 @@ fs::path newest_page() {
         newest = page;
         newest_time = time;
     }
-    if (!newest) throw InputError({{}, 0, 0, "RUN"}, "there is no report in results/", "the directory of a run, such as results/granite-1");
+    if (!newest)
+        throw InputError({{}, 0, 0, "RUN"}, "there is no report in results/",
+                         "the directory of a run, such as results/granite-1");
     return *newest;
 }
 
@@ -47,9 +49,13 @@ fs::path page_of(const std::string& run) {
         if (fs::path(run).extension() == ".html") return run;
         throw InputError({{}, 0, 0, "RUN"}, fmt::format("'{}' is not a page", run), "the directory of a run, or its report.html");
     }
-    if (!fs::is_directory(run, error)) throw InputError({{}, 0, 0, "RUN"}, fmt::format("there is no directory '{}'", run), "the directory of a run, such as results/granite-1");
+    if (!fs::is_directory(run, error))
+        throw InputError({{}, 0, 0, "RUN"}, fmt::format("there is no directory '{}'", run),
+                         "the directory of a run, such as results/granite-1");
     if (const auto page = page_in(run)) return *page;
-    throw InputError({{}, 0, 0, "RUN"}, fmt::format("there is no report in '{}'", run), "the directory of a run, a study, an envelope or a calibration", "a run writes its report when its first test has ended");
+    throw InputError({{}, 0, 0, "RUN"}, fmt::format("there is no report in '{}'", run),
+                     "the directory of a run, a study, an envelope or a calibration",
+                     "a run writes its report when its first test has ended");
 }
 
 bool set(const char* variable) {
@@ -69,7 +75,7 @@ bool opened(const fs::path& page) {
         ::execlp("xdg-open", "xdg-open", file.c_str(), static_cast<char*>(nullptr));
         ::_exit(127);
     }
-    for (int tenths = 0; tenths < 20; ++tenths) {   // xdg-open comes back at once, unless it is the browser itself
+    for (int tenths = 0; tenths < 20; ++tenths) {  // xdg-open comes back at once, unless it is the browser itself
         int status = 0;
         if (::waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) && WEXITSTATUS(status) == 0;
         ::usleep(100'000);
@@ -85,8 +91,10 @@ ExitCode view_command(const ViewOptions& options) {
     say("{}\n", page.string());
     std::fflush(stdout);
     if (options.print) return ExitCode::success;
-    if (!set("DISPLAY") && !set("WAYLAND_DISPLAY")) say(stderr, "there is no display here: open the page in a browser\n");
-    else if (!opened(page)) say(stderr, "no browser could be started by xdg-open: open the page in one yourself\n");
+    if (!set("DISPLAY") && !set("WAYLAND_DISPLAY"))
+        say(stderr, "there is no display here: open the page in a browser\n");
+    else if (!opened(page))
+        say(stderr, "no browser could be started by xdg-open: open the page in one yourself\n");
     return ExitCode::success;
 }
 

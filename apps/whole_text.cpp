@@ -1,7 +1,5 @@
 #include "whole_text.hpp"
 
-#include "commands.hpp"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,6 +8,8 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
+
+#include "commands.hpp"
 
 namespace feldspar {
 
@@ -24,23 +24,26 @@ ExitCode print_whole(const std::string& text) {
 void write_whole(const std::string& text, const std::string& path, const std::string& option) {
     namespace fs = std::filesystem;
     const auto refuse = [&](int error) {
-        throw InputError(
-            {{}, 0, 0, option},
-            fmt::format("'{}' {}", path, error == EEXIST ? "exists already and is not overwritten" : fmt::format("cannot be made: {}", std::strerror(error))),
-            "the name of a new file in a directory that exists");
+        throw InputError({{}, 0, 0, option},
+                         fmt::format("'{}' {}", path,
+                                     error == EEXIST ? "exists already and is not overwritten"
+                                                     : fmt::format("cannot be made: {}", std::strerror(error))),
+                         "the name of a new file in a directory that exists");
     };
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(path, ignored))) refuse(EEXIST);
     std::string aside;
     std::FILE* file = nullptr;
-    for (int attempt = 0; file == nullptr && attempt < 100; ++attempt) {   // never one that is there: in a directory that others may write to it may be a link to anywhere
+    for (int attempt = 0; file == nullptr && attempt < 100;
+         ++attempt) {  // never one that is there: in a directory that others may write to it may be a link to anywhere
         aside = (fs::path(path).parent_path() / fmt::format(".feldspar-{}-{}.part", ::getpid(), attempt)).string();
         file = std::fopen(aside.c_str(), "wx");
         if (file == nullptr && errno != EEXIST) break;
     }
     if (file == nullptr) refuse(errno);
     errno = 0;
-    bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;
+    bool whole =
+        std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0 && ::fsync(::fileno(file)) == 0;
     int error = errno;
     if (std::fclose(file) != 0 && whole) {
         whole = false;

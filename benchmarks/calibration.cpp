@@ -14,8 +14,8 @@ namespace {
 
 // x <- x a + b with a < 1 tends to 1, so that it stays an ordinary number for ever.
 constexpr double kFactor = 0.999, kSummand = 0.001;
-constexpr int kRounds = 2000;       // between two looks at the clock: 1 to 10 us
-constexpr int kAccumulators = 12;   // in flight at once: more than the units times their latency (2 x 4 on most)
+constexpr int kRounds = 2000;      // between two looks at the clock: 1 to 10 us
+constexpr int kAccumulators = 12;  // in flight at once: more than the units times their latency (2 x 4 on most)
 
 /// What a loop returns, so that the compiler cannot drop it, and the floating-point operations that it made.
 struct Done {
@@ -93,7 +93,7 @@ double rate_of(Rounds rounds, double seconds) {
         sum += done.sum;
         elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
     } while (elapsed < seconds);
-    volatile double kept = sum;   // the results are used
+    volatile double kept = sum;  // the results are used
     static_cast<void>(kept);
     return 1e-9 * operations / elapsed;
 }
@@ -111,14 +111,14 @@ int vector_bits() { return choose().bits; }
 
 double multiply_add_rate(double seconds) {
     const Rounds rounds = choose().rounds;
-    rate_of(rounds, 0.1 * seconds);   // wide units wake up in some microseconds, which are not counted
+    rate_of(rounds, 0.1 * seconds);  // wide units wake up in some microseconds, which are not counted
     return rate_of(rounds, seconds);
 }
 
 double read_rate(double seconds) {
     constexpr std::size_t kNumbers = std::size_t{1} << 20, kPart = kNumbers / 64, kLanes = 16;
     thread_local const std::vector<double> numbers(kNumbers, 1.0);
-    thread_local std::size_t place = 0;   // goes on where the last call ended
+    thread_local std::size_t place = 0;  // goes on where the last call ended
     double sums[kLanes] = {}, bytes = 0.0, elapsed = 0.0;
     const double begin = thread_seconds();
     do {
@@ -130,7 +130,7 @@ double read_rate(double seconds) {
     } while (elapsed < seconds);
     double sum = 0.0;
     for (const double one : sums) sum += one;
-    volatile double kept = sum;   // the results are used
+    volatile double kept = sum;  // the results are used
     static_cast<void>(kept);
     return 1e-9 * bytes / elapsed;
 }

@@ -1,5 +1,5 @@
-// How fast the cores are right now. Multiply-adds in registers depend on nothing but the core and who else uses it; reading from the
-// shared cache depends on who else uses that.
+// How fast the cores are right now. Multiply-adds in registers depend on nothing but the core and who else uses it; reading from
+// the shared cache depends on who else uses that.
 #pragma once
 
 #include "benchmarks/reading.hpp"
@@ -15,7 +15,8 @@ int vector_bits();
 double multiply_add_rate(double seconds);
 
 /// GB/s of the calling thread that reads 8 MiB of its own again and again, over about so many seconds of processor time
-/// (that a core was lost shows in the other rate): more than a core's own caches hold, so that what it read before is gone from these.
+/// (that a core was lost shows in the other rate): more than a core's own caches hold, so that what it read before is gone from
+/// these.
 double read_rate(double seconds);
 
 /// Both on every thread of the team at once, each over half of the time: the rates of the slowest.

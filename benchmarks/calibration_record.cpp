@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <fstream>
-
 #include <nlohmann/json.hpp>
 
 namespace feldspar::benchmarks {
@@ -22,7 +21,8 @@ std::map<std::string, std::map<std::string, double>> read(const std::filesystem:
 
 }  // namespace
 
-BestCalibrations record_calibrations(const std::filesystem::path& file, const std::string& processor, const BestCalibrations& best) {
+BestCalibrations record_calibrations(const std::filesystem::path& file, const std::string& processor,
+                                     const BestCalibrations& best) {
     auto all = read(file);
     BestCalibrations ever;
     for (const auto& [threads, rate] : best) {

@@ -1,6 +1,11 @@
-// What a step costs on a graphics card: specimens of the paper's size to a million grains, and many of the paper's size at once, beside the processor's threads.
+// What a step costs on a graphics card: specimens of the paper's size to a million grains, and many of the paper's size at once,
+// beside the processor's threads.
 //
-// A million grains are ten specimens of 100,000 side by side in one set of arrays: their packing alone would take longer than everything else here.
+// A million grains are ten specimens of 100,000 side by side in one set of arrays: their packing alone would take longer than
+// everything else here.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -9,9 +14,6 @@
 #include <string>
 #include <thread>
 #include <vector>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "benchmarks/granite.hpp"
 #include "feldspar/base/error.hpp"
@@ -37,14 +39,18 @@ void append(A& all, const A& one) {
 // Flexible grains without plates, so many times side by side: what a step reads of them.
 Assembly tiled(const Assembly& one, int times) {
     Assembly all = one;
-    const auto nodes = one.nodes.count(), bodies = static_cast<int>(one.bodies.size()), contacts = static_cast<int>(one.contacts.size()), points = static_cast<int>(one.points.size());
-    const auto states = static_cast<int>(one.bonds.un_m.size()), edges = static_cast<int>(one.packs.inverse_cross.size()), triangles = static_cast<int>(one.packs.scale.size());
+    const auto nodes = one.nodes.count(), bodies = static_cast<int>(one.bodies.size()),
+               contacts = static_cast<int>(one.contacts.size()), points = static_cast<int>(one.points.size());
+    const auto states = static_cast<int>(one.bonds.un_m.size()), edges = static_cast<int>(one.packs.inverse_cross.size()),
+               triangles = static_cast<int>(one.packs.scale.size());
     const std::size_t lanes = kMostLanes * one.packs.contacts.size();
     Packs& packs = all.packs;
     for (auto* lines : {&packs.line_a, &packs.line_b}) lines->resize(lanes);
     packs.shared.resize(static_cast<std::size_t>(edges));
     for (int t = 1; t < times; ++t) {
-        for (Array<Vec2> Nodes::*array : {&Nodes::reference, &Nodes::displacement, &Nodes::velocity, &Nodes::force, &Nodes::inverse_mass, &Nodes::loading_mode}) append(all.nodes.*array, one.nodes.*array);
+        for (Array<Vec2> Nodes::*array : {&Nodes::reference, &Nodes::displacement, &Nodes::velocity, &Nodes::force,
+                                          &Nodes::inverse_mass, &Nodes::loading_mode})
+            append(all.nodes.*array, one.nodes.*array);
         append(all.nodes.mass, one.nodes.mass);
         append(all.bodies, one.bodies);
         append(all.body_work, one.body_work);
@@ -57,7 +63,8 @@ Assembly tiled(const Assembly& one, int times) {
             point.state += t * states;
             all.points.push_back(point);
         }
-        for (Array<double> Bonds::*array : {&Bonds::un_m, &Bonds::us_m, &Bonds::Fn_N, &Bonds::Fs_N, &Bonds::max_un_m, &Bonds::max_us_m, &Bonds::damage, &Bonds::fracture_J, &Bonds::friction_J})
+        for (Array<double> Bonds::*array : {&Bonds::un_m, &Bonds::us_m, &Bonds::Fn_N, &Bonds::Fs_N, &Bonds::max_un_m,
+                                            &Bonds::max_us_m, &Bonds::damage, &Bonds::fracture_J, &Bonds::friction_J})
             append(all.bonds.*array, one.bonds.*array);
         for (GrainPack pack : one.packs.grains) {
             pack.first_node += t * nodes;
@@ -75,9 +82,13 @@ Assembly tiled(const Assembly& one, int times) {
             pack.first_state += t * states;
             packs.contacts.push_back(pack);
         }
-        for (Array<double> Packs::*array : {&Packs::offset, &Packs::tangent_x, &Packs::tangent_y, &Packs::along, &Packs::area}) append(packs.*array, one.packs.*array);
+        for (Array<double> Packs::*array : {&Packs::offset, &Packs::tangent_x, &Packs::tangent_y, &Packs::along, &Packs::area})
+            append(packs.*array, one.packs.*array);
         for (Array<std::uint32_t> Packs::*lines : {&Packs::line_a, &Packs::line_b})
-            for (std::size_t i = 0; i < lanes; ++i) (packs.*lines).push_back((one.packs.*lines)[i] + static_cast<std::uint32_t>(t * edges) * static_cast<std::uint32_t>(sizeof(SideLine)));
+            for (std::size_t i = 0; i < lanes; ++i)
+                (packs.*lines)
+                    .push_back((one.packs.*lines)[i] +
+                               static_cast<std::uint32_t>(t * edges) * static_cast<std::uint32_t>(sizeof(SideLine)));
         for (std::size_t f = 0; f < one.fixtures.size(); ++f)
             for (const int node : one.fixtures[f].nodes) all.fixtures[f].nodes.push_back(node + t * nodes);
     }
@@ -112,7 +123,9 @@ double block_on_card_s(Assembly& assembly, StepSettings settings, StepDevice& de
     advance(assembly, team, settings, 0, 10, work);
     double least = 1e9;
     for (int i = 0; i < 5; ++i)
-        least = std::min(least, seconds_of([&] { for (int k = 0; k < 10; ++k) advance(assembly, team, settings, 0, 10, work); }) / 10.0);
+        least = std::min(least, seconds_of([&] {
+                                    for (int k = 0; k < 10; ++k) advance(assembly, team, settings, 0, 10, work);
+                                }) / 10.0);
     return least;
 }
 
@@ -120,7 +133,8 @@ void report_size(const char* what, Assembly& assembly, const StepSettings& setti
     const auto device = open_card();
     const double step_s = step_on_card_s(assembly, settings, *device, steps);
     const double triangles = static_cast<double>(assembly.packs.scale.size());
-    fmt::print("{:34} {:9.4f} ms a step  {:8.3g} triangles a second  {:6.2f} GB on the card", what, 1e3 * step_s, triangles / step_s, card_bytes(assembly) / 1e9);
+    fmt::print("{:34} {:9.4f} ms a step  {:8.3g} triangles a second  {:6.2f} GB on the card", what, 1e3 * step_s,
+               triangles / step_s, card_bytes(assembly) / 1e9);
     if (blocks) fmt::print("  {:.3f} ms a block of 10 steps with copies", 1e3 * block_on_card_s(assembly, settings, *device));
     fmt::print("\n");
     std::fflush(stdout);
@@ -170,7 +184,8 @@ int run(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     try {
         const DeviceProvenance card = card_here();
-        fmt::print("{}, CUDA driver {}, compute capability {}, {} precision; {} threads beside it\n", card.card, card.driver, card.capability, card.precision, std::thread::hardware_concurrency());
+        fmt::print("{}, CUDA driver {}, compute capability {}, {} precision; {} threads beside it\n", card.card, card.driver,
+                   card.capability, card.precision, std::thread::hardware_concurrency());
     } catch (const InputError& error) {
         fmt::print("skipped: {}\n", error.what());
         return 0;
@@ -178,15 +193,18 @@ int run(int argc, char** argv) {
     Granite paper(GrainKind::flexible, Load::uniaxial, 1.0, packings);
     for (const State state : {State::elastic, State::breaking}) {
         paper.set(state);
-        report_size(state == State::elastic ? "paper's size" : "the same, breaking", paper.assembly(), paper.settings(), 2000, true);
+        report_size(state == State::elastic ? "paper's size" : "the same, breaking", paper.assembly(), paper.settings(), 2000,
+                    true);
     }
     for (const int block : {10, 50, 1000})
         for (const int count : {1, 16, tests}) {
-            fmt::print("{:4} tests at once on the card, blocks of {:4}: {:9.0f} specimen-steps a second\n", count, block, steps_a_second(paper.assembly(), paper.settings(), count, block, seconds, true));
+            fmt::print("{:4} tests at once on the card, blocks of {:4}: {:9.0f} specimen-steps a second\n", count, block,
+                       steps_a_second(paper.assembly(), paper.settings(), count, block, seconds, true));
             std::fflush(stdout);
         }
     const int cores = static_cast<int>(std::thread::hardware_concurrency());
-    fmt::print("{:4} tests at once on the processor, blocks of 10: {:9.0f} specimen-steps a second\n", cores, steps_a_second(paper.assembly(), paper.settings(), cores, 10, seconds, false));
+    fmt::print("{:4} tests at once on the processor, blocks of 10: {:9.0f} specimen-steps a second\n", cores,
+               steps_a_second(paper.assembly(), paper.settings(), cores, 10, seconds, false));
     if (most >= 16'000) {
         Granite granite(GrainKind::flexible, Load::uniaxial, std::sqrt(16'000.0 / 1630.0), packings);
         report_size("16,000 grains", granite.assembly(), granite.settings(), 500, true);
@@ -195,7 +213,8 @@ int run(int argc, char** argv) {
         Granite granite(GrainKind::flexible, Load::uniaxial, std::sqrt(100'000.0 / 1630.0), packings);
         for (const State state : {State::elastic, State::breaking}) {
             granite.set(state);
-            report_size(state == State::elastic ? "100,000 grains" : "the same, breaking", granite.assembly(), granite.settings(), 200, state == State::elastic);
+            report_size(state == State::elastic ? "100,000 grains" : "the same, breaking", granite.assembly(), granite.settings(),
+                        200, state == State::elastic);
         }
         if (most >= 1'000'000) {
             granite.set(State::elastic);

@@ -1,9 +1,9 @@
 #include "benchmarks/cases.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <regex>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 
@@ -49,28 +49,38 @@ const char* name(Load load) { return load == Load::uniaxial ? "uniaxial" : "braz
 
 const char* name(Size size) {
     switch (size) {
-        case Size::paper: return "paper";
-        case Size::grains_16k: return "16k";
-        case Size::grains_100k: return "100k";
+        case Size::paper:
+            return "paper";
+        case Size::grains_16k:
+            return "16k";
+        case Size::grains_100k:
+            return "100k";
     }
     return "?";
 }
 
 const char* name(State state) {
     switch (state) {
-        case State::elastic: return "elastic";
-        case State::relaxing: return "relaxing";
-        case State::breaking: return "breaking";
+        case State::elastic:
+            return "elastic";
+        case State::relaxing:
+            return "relaxing";
+        case State::breaking:
+            return "breaking";
     }
     return "?";
 }
 
 const char* name(Stage stage) {
     switch (stage) {
-        case Stage::contacts: return "contacts";
-        case Stage::bodies: return "bodies";
-        case Stage::step: return "step";
-        case Stage::energies: return "energies";
+        case Stage::contacts:
+            return "contacts";
+        case Stage::bodies:
+            return "bodies";
+        case Stage::step:
+            return "step";
+        case Stage::energies:
+            return "energies";
     }
     return "?";
 }
@@ -85,9 +95,12 @@ std::string name(const Case& one) {
 
 int grain_count(const SpecimenChoice& specimen) {
     switch (specimen.size) {
-        case Size::paper: return static_cast<int>(paper_grains(specimen.load));
-        case Size::grains_16k: return 16000;
-        case Size::grains_100k: return 100000;
+        case Size::paper:
+            return static_cast<int>(paper_grains(specimen.load));
+        case Size::grains_16k:
+            return 16000;
+        case Size::grains_100k:
+            return 100000;
     }
     return 0;
 }
@@ -97,7 +110,7 @@ double length_scale(const SpecimenChoice& specimen) {
 }
 
 double needed_memory(const SpecimenChoice& specimen) {
-    const double kB_a_grain = specimen.grains == GrainKind::inner_particles ? 80.0 : 12.0;   // seen: 50 and 7
+    const double kB_a_grain = specimen.grains == GrainKind::inner_particles ? 80.0 : 12.0;  // seen: 50 and 7
     return 100e6 + 1e3 * kB_a_grain * grain_count(specimen);
 }
 
@@ -112,7 +125,8 @@ std::vector<Case> make_cases(bool full, const std::vector<int>& threads) {
         }
     }
     for (const GrainKind grains : kKinds) {
-        const SpecimenChoice uniaxial{grains, Load::uniaxial, Size::grains_16k}, brazilian{grains, Load::brazilian, Size::grains_16k};
+        const SpecimenChoice uniaxial{grains, Load::uniaxial, Size::grains_16k},
+            brazilian{grains, Load::brazilian, Size::grains_16k};
         if (full) {
             add_all(cases, uniaxial, threads);
             if (grains != GrainKind::inner_particles) add_steps(cases, brazilian, State::elastic, threads);
@@ -121,7 +135,8 @@ std::vector<Case> make_cases(bool full, const std::vector<int>& threads) {
         }
     }
     if (full) {
-        for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) add_all(cases, {grains, Load::uniaxial, Size::grains_100k}, threads);
+        for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid})
+            add_all(cases, {grains, Load::uniaxial, Size::grains_100k}, threads);
     }
     return cases;
 }
@@ -131,7 +146,8 @@ std::vector<Case> filtered(const std::vector<Case>& cases, const std::string& ex
     try {
         pattern = std::regex(expression);
     } catch (const std::regex_error&) {
-        throw InputError({"", 0, 0, "--filter"}, fmt::format("'{}' is not a regular expression", expression), "for example 'flexible.*step/1t'");
+        throw InputError({"", 0, 0, "--filter"}, fmt::format("'{}' is not a regular expression", expression),
+                         "for example 'flexible.*step/1t'");
     }
     std::vector<Case> kept;
     for (const Case& one : cases)
@@ -140,8 +156,11 @@ std::vector<Case> filtered(const std::vector<Case>& cases, const std::string& ex
 }
 
 std::vector<std::string> left_out() {
-    return {"inner particles in 100 k grains: 2.6 million discs, six times the time and memory of those in 16 k grains (17 s to build, 0.8 GB)",
-            "Brazilian discs of 100 k grains, and of 16 k grains all but the elastic step: they differ from the uniaxial ones by a few contacts at the plates"};
+    return {
+        "inner particles in 100 k grains: 2.6 million discs, six times the time and memory of those in 16 k grains (17 s to "
+        "build, 0.8 GB)",
+        "Brazilian discs of 100 k grains, and of 16 k grains all but the elastic step: they differ from the uniaxial ones by a "
+        "few contacts at the plates"};
 }
 
 }  // namespace feldspar::benchmarks

@@ -10,15 +10,15 @@
 namespace feldspar::benchmarks {
 
 enum class Load { uniaxial, brazilian };
-enum class Size { paper, grains_16k, grains_100k };   ///< paper: 80 mm x 160 mm (1630 grains), or a disc of 80 mm (640)
+enum class Size { paper, grains_16k, grains_100k };  ///< paper: 80 mm x 160 mm (1630 grains), or a disc of 80 mm (640)
 
 enum class State {
-    elastic,         ///< every bond intact
-    relaxing,   ///< the same, damped viscously, as in the elastic start
-    breaking         ///< 30 % of the points softened and 10 % broken, scattered over the whole specimen
+    elastic,   ///< every bond intact
+    relaxing,  ///< the same, damped viscously, as in the elastic start
+    breaking   ///< 30 % of the points softened and 10 % broken, scattered over the whole specimen
 };
 
-enum class Stage { contacts, bodies, step, energies };   ///< energies: the sums of a record's ledger
+enum class Stage { contacts, bodies, step, energies };  ///< energies: the sums of a record's ledger
 
 /// What has to be built before anything can be measured.
 struct SpecimenChoice {

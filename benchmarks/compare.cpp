@@ -1,15 +1,16 @@
 #include "benchmarks/compare.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace feldspar::benchmarks {
 namespace {
 
 const Reading* find(const Report& report, const std::string& name) {
-    const auto found = std::find_if(report.readings.begin(), report.readings.end(), [&](const Reading& r) { return r.name == name; });
+    const auto found =
+        std::find_if(report.readings.begin(), report.readings.end(), [&](const Reading& r) { return r.name == name; });
     return found == report.readings.end() ? nullptr : &*found;
 }
 
@@ -19,7 +20,8 @@ bool same_work(const Counts& a, const Counts& b) {
 }
 
 Change change_between(const Reading& before, const Report& old_report, const Reading& after, const Report& new_report) {
-    const Summary old_one = summarise(before, old_report.best, old_report.quiet), new_one = summarise(after, new_report.best, new_report.quiet);
+    const Summary old_one = summarise(before, old_report.best, old_report.quiet),
+                  new_one = summarise(after, new_report.best, new_report.quiet);
     Change change;
     change.name = after.name;
     change.old_s = old_one.best_s;
@@ -58,8 +60,9 @@ Comparison compare(const Report& before, const Report& after) {
         if (now == after.best.end()) continue;
         // The best calibrations of two undisturbed runs on one machine agree to a few percent.
         if (std::abs(std::log(now->second / rate)) > std::log(1.1)) {
-            comparison.differences.push_back(fmt::format("best calibration of {} thread{}: {:.1f} GFLOP/s a core before, {:.1f} now", threads,
-                                                         threads == 1 ? "" : "s", rate, now->second));
+            comparison.differences.push_back(
+                fmt::format("best calibration of {} thread{}: {:.1f} GFLOP/s a core before, {:.1f} now", threads,
+                            threads == 1 ? "" : "s", rate, now->second));
         }
     }
     return comparison;

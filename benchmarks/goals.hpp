@@ -8,16 +8,14 @@ namespace feldspar::benchmarks {
 
 struct Goal {
     const char* case_name;
-    int vector_bits;       ///< the goal counts on machines whose vectors are at least this wide
-    double milliseconds;   ///< a step
+    int vector_bits;      ///< the goal counts on machines whose vectors are at least this wide
+    double milliseconds;  ///< a step
 };
 
 /// Of an undisturbed core that makes about 120 GFLOP/s in double precision with vectors of 512 bits, 60 with 256.
 inline constexpr Goal kGoals[] = {
-    {"flexible/uniaxial/paper/elastic/step/1t", 256, 0.25},
-    {"flexible/uniaxial/paper/elastic/step/1t", 512, 0.15},
-    {"flexible/uniaxial/paper/elastic/step/2t", 512, 0.08},
-    {"rigid/uniaxial/paper/elastic/step/1t", 256, 0.06},
+    {"flexible/uniaxial/paper/elastic/step/1t", 256, 0.25}, {"flexible/uniaxial/paper/elastic/step/1t", 512, 0.15},
+    {"flexible/uniaxial/paper/elastic/step/2t", 512, 0.08}, {"rigid/uniaxial/paper/elastic/step/1t", 256, 0.06},
     {"flexible/uniaxial/100k/elastic/step/2t", 256, 14.0},
 };
 

@@ -1,17 +1,17 @@
 #include "benchmarks/granite.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include <fmt/format.h>
-
 #include "benchmarks/granite_material.hpp"
 #include "feldspar/lab/body_energy.hpp"
-#include "feldspar/model/assemble.hpp"
-#include "feldspar/model/masses.hpp"
 #include "feldspar/methods/method.hpp"
+#include "feldspar/model/assemble.hpp"
 #include "feldspar/model/fixtures.hpp"
+#include "feldspar/model/masses.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/step/advance_packs.hpp"
 
@@ -34,11 +34,13 @@ SpecimenSpec specimen_spec(GrainKind grains, Load load, double length_scale) {
     return spec;
 }
 
-// All models and all programs that share the folder run on the same packing. Written aside, so that an interrupted run leaves none.
+// All models and all programs that share the folder run on the same packing. Written aside, so that an interrupted run leaves
+// none.
 Specimen make_or_load(SpecimenSpec spec, const std::filesystem::path& packings) {
     if (packings.empty()) return make_specimen(spec, kSeed);
     const bool disc = spec.outline.shape == Shape::disc;
-    const std::filesystem::path file = packings / fmt::format("{}-{}-grains.txt", disc ? "disc" : "rectangle", feldspar::grain_count(spec));
+    const std::filesystem::path file =
+        packings / fmt::format("{}-{}-grains.txt", disc ? "disc" : "rectangle", feldspar::grain_count(spec));
     if (std::filesystem::exists(file)) {
         spec.packing_file = file;
         return make_specimen(spec, kSeed);
@@ -63,7 +65,7 @@ Assembly make_assembly(GrainKind grains, Load load, const Specimen& specimen) {
     Nodes& nodes = assembly.nodes;
     for (const Body& body : assembly.bodies) {
         for (const int n : body.nodes()) {
-            if (body.kind == BodyKind::rigid && n != body.centre_node) continue;   // rigid bodies do not turn
+            if (body.kind == BodyKind::rigid && n != body.centre_node) continue;  // rigid bodies do not turn
             const double y = nodes.reference[n].y;
             nodes.displacement[n] = {0.0, -kStrain * y};
             nodes.velocity[n] = {0.0, -1e-8 * y};
@@ -116,7 +118,8 @@ struct Granite::Parts {
     long long grains = 0;
 };
 
-Granite::Granite(GrainKind grains, Load load, double length_scale, const std::filesystem::path& packings) : parts_(std::make_unique<Parts>()) {
+Granite::Granite(GrainKind grains, Load load, double length_scale, const std::filesystem::path& packings)
+    : parts_(std::make_unique<Parts>()) {
     const Specimen specimen = make_or_load(specimen_spec(grains, load, length_scale), packings);
     parts_->grains = specimen.quality.grains;
     parts_->assembly = make_assembly(grains, load, specimen);
@@ -132,7 +135,7 @@ void Granite::set(State state) {
     Assembly& assembly = parts_->assembly;
     parts_->settings.damping = state == State::relaxing ? Damping::viscous : Damping::local;
     for (const Contact& contact : assembly.contacts) {
-        if (contact.plate || contact.material == inside_grains) continue;   // plates only touch; inside a grain nothing breaks
+        if (contact.plate || contact.material == inside_grains) continue;  // plates only touch; inside a grain nothing breaks
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
             const Bond bond = bond_of(state, static_cast<std::uint32_t>(p));
             assembly.set_bond(p, bond_state(bond, assembly.laws[contact.material], assembly.points[p].area_m2));
@@ -158,9 +161,11 @@ void Granite::run(Stage stage, Team& team, int steps) {
     };
     const auto share = [&](const auto& all, int thread) { return team.share(static_cast<int>(std::ssize(all)), thread); };
     switch (stage) {
-        case Stage::contacts:   // forces take the place of motions in the lines, so these are written anew: it counts with the stage
+        case Stage::contacts:  // forces take the place of motions in the lines, so these are written anew: it counts with the
+                               // stage
             return on_all_threads([&](const KernelArrays& arrays, const KernelStep& step, int thread) {
-                const IndexRange grains = share(packs.grains, thread), contacts = share(packs.contacts, thread), rigid = team.share(packs.rigid_end, thread);
+                const IndexRange grains = share(packs.grains, thread), contacts = share(packs.contacts, thread),
+                                 rigid = team.share(packs.rigid_end, thread);
                 kernels.grain_lines(arrays, grains.begin, grains.end);
                 kernels.rigid_lines(arrays, rigid.begin, rigid.end);
                 team.barrier();
@@ -174,14 +179,14 @@ void Granite::run(Stage stage, Team& team, int steps) {
             });
         case Stage::step: {
             PlatenWork work;
-            constexpr int kBlock = 10;   // as a test does
+            constexpr int kBlock = 10;  // as a test does
             for (int k = 0; k < steps; k += kBlock) advance(assembly, team, settings, k, std::min(kBlock, steps - k), work);
             return;
         }
         case Stage::energies: {
             double sum = 0.0;
             for (int k = 0; k < steps; ++k) sum += stored_energy(assembly, 0.0).contacts_J;
-            volatile double kept = sum;   // the results are used
+            volatile double kept = sum;  // the results are used
             static_cast<void>(kept);
             return;
         }
@@ -208,11 +213,13 @@ Granite::Damage Granite::damage() const {
     Damage damage;
     const Assembly& assembly = parts_->assembly;
     for (const Contact& contact : assembly.contacts) {
-        if (contact.plate) continue;   // broken from the start
+        if (contact.plate) continue;  // broken from the start
         for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
             const double D = assembly.bond(p).damage;
-            if (D >= 1.0) ++damage.broken;
-            else if (D > 0.0) ++damage.softened;
+            if (D >= 1.0)
+                ++damage.broken;
+            else if (D > 0.0)
+                ++damage.softened;
         }
     }
     return damage;

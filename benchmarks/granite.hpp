@@ -16,8 +16,8 @@ struct StepSettings;
 
 namespace feldspar::benchmarks {
 
-/// A specimen of the Augig granite (elastic constants of Table 1, strengths of Table 7 of the paper) between platens or plates, with
-/// scaled masses, under a compression of 1e-4.
+/// A specimen of the Augig granite (elastic constants of Table 1, strengths of Table 7 of the paper) between platens or plates,
+/// with scaled masses, under a compression of 1e-4.
 class Granite {
 public:
     /// @param length_scale  over the paper's specimens; the grains keep their size
@@ -28,8 +28,8 @@ public:
     /// Puts bonds and damping into this state, whatever they were in before.
     void set(State state);
 
-    /// Runs a stage so many times on all threads of the team. The time step is so short that nothing moves: every step does its whole
-    /// work, and the same work.
+    /// Runs a stage so many times on all threads of the team. The time step is so short that nothing moves: every step does its
+    /// whole work, and the same work.
     void run(Stage stage, Team& team, int steps);
 
     Counts counts() const;

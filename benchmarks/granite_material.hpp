@@ -5,7 +5,7 @@
 
 namespace feldspar::benchmarks {
 
-inline constexpr double kSmallestGrain = 0.002, kLargestGrain = 0.004;   // m
+inline constexpr double kSmallestGrain = 0.002, kLargestGrain = 0.004;  // m
 inline constexpr GrainMaterial kGranite{25.8e9, 0.23, 2650.0};
 
 inline ContactMaterial granite_contact(GrainKind grains) {

@@ -1,4 +1,5 @@
 // What this machine is, as far as it says so itself.
+#include <fmt/format.h>
 #include <sched.h>
 #include <sys/utsname.h>
 
@@ -6,8 +7,6 @@
 #include <fstream>
 #include <system_error>
 #include <thread>
-
-#include <fmt/format.h>
 
 #include "benchmarks/calibration.hpp"
 #include "benchmarks/measure.hpp"
@@ -41,7 +40,7 @@ double waited_seconds() {
     std::error_code failed;
     double nanoseconds = 0.0;
     for (const auto& task : std::filesystem::directory_iterator("/proc/self/task", failed)) {
-        std::ifstream input(task.path() / "schedstat");   // time on a core, time waiting for one, number of turns
+        std::ifstream input(task.path() / "schedstat");  // time on a core, time waiting for one, number of turns
         double running = 0.0, waiting = 0.0;
         if (input >> running >> waiting) nanoseconds += waiting;
     }

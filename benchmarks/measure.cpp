@@ -7,9 +7,7 @@
 namespace feldspar::benchmarks {
 namespace {
 
-double wall_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 // Of the calling thread: its steps alone, whatever the process does besides.
 double processor_seconds() {
@@ -41,17 +39,20 @@ int steps_in_block(const std::function<void(int)>& run, const std::function<doub
 
 }  // namespace
 
-std::vector<Block> measure(const std::function<void(int)>& run, const std::function<Rates()>& calibrate, const std::function<double()>& waited,
-                           int threads, const MeasureSettings& settings, double& best_rate) {
+std::vector<Block> measure(const std::function<void(int)>& run, const std::function<Rates()>& calibrate,
+                           const std::function<double()>& waited, int threads, const MeasureSettings& settings,
+                           double& best_rate) {
     const int steps = steps_in_block(run, waited, settings.block_s);
-    const int warm_up = steps / 20;   // brings the caches back that the calibration has used; nothing where a step is as long as a block
+    const int warm_up =
+        steps / 20;  // brings the caches back that the calibration has used; nothing where a step is as long as a block
     const auto calibration = [&] {
         const Rates rates = calibrate();
         best_rate = std::max(best_rate, rates.multiply_add);
         return rates;
     };
     const auto quiet_blocks = [&](const std::vector<Block>& blocks) {
-        return std::count_if(blocks.begin(), blocks.end(), [&](const Block& block) { return is_quiet(block, threads, best_rate, settings.quiet); });
+        return std::count_if(blocks.begin(), blocks.end(),
+                             [&](const Block& block) { return is_quiet(block, threads, best_rate, settings.quiet); });
     };
     std::vector<Block> blocks;
     Rates before = calibration();

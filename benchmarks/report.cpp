@@ -1,10 +1,10 @@
 #include "benchmarks/report.hpp"
 
-#include <fstream>
-#include <sstream>
-
 #include <fmt/format.h>
+
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "feldspar/base/error.hpp"
 
@@ -111,7 +111,8 @@ Report from_json(const std::string& text, const std::string& origin) {
         for (const json& reading : all.at("readings")) report.readings.push_back(reading_from(reading));
         return report;
     } catch (const json::exception& error) {
-        throw InputError(place, fmt::format("this is not a report of this benchmark ({})", error.what()), "a file written with --out");
+        throw InputError(place, fmt::format("this is not a report of this benchmark ({})", error.what()),
+                         "a file written with --out");
     }
 }
 

@@ -12,14 +12,14 @@ namespace feldspar::benchmarks {
 /// Where and how the program was built and run.
 struct Machine {
     std::string processor;
-    int vector_bits = 0;      ///< widest vectors of the processor; the program need not use them
-    int cores = 0;            ///< that this process may use
+    int vector_bits = 0;  ///< widest vectors of the processor; the program need not use them
+    int cores = 0;        ///< that this process may use
     std::string system;
     std::string compiler;
     std::string build_type;
     std::string version;
     std::string commit;
-    std::string started;      ///< ISO 8601, UTC
+    std::string started;  ///< ISO 8601, UTC
     bool operator==(const Machine&) const = default;
 };
 

@@ -1,15 +1,15 @@
-// What it takes to make a specimen and to get it ready for the first step, stage by stage: the paper's rectangle (1630 grains) and
-// one of 100,000 grains of the same sizes and shape.
+// What it takes to make a specimen and to get it ready for the first step, stage by stage: the paper's rectangle (1630 grains)
+// and one of 100,000 grains of the same sizes and shape.
+#include <benchmark/benchmark.h>
+
 #include <cmath>
 #include <memory>
-
-#include <benchmark/benchmark.h>
 
 #include "benchmarks/granite_material.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/methods/method.hpp"
-#include "feldspar/model/fixtures.hpp"
 #include "feldspar/model/assemble.hpp"
+#include "feldspar/model/fixtures.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/specimen/clip_cells.hpp"
 #include "feldspar/specimen/fill_grains.hpp"
@@ -104,7 +104,8 @@ void filling(benchmark::State& state) {
 
 void whole_specimen(benchmark::State& state) {
     const SpecimenSpec spec = rectangle_of(state.range(0));
-    for (auto _ : state) benchmark::DoNotOptimize(make_specimen(spec, 1, {.threads = static_cast<int>(state.range(1)), .progress = {}}));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(make_specimen(spec, 1, {.threads = static_cast<int>(state.range(1)), .progress = {}}));
 }
 
 void assembling(benchmark::State& state) {
@@ -120,7 +121,9 @@ void masses(benchmark::State& state) {
 void stability(benchmark::State& state) {
     Assembly assembly = granite(state.range(0));
     const ContactMaterial contact = benchmarks::granite_contact(GrainKind::flexible);
-    attach(assembly, specimen_of(state.range(0)), method_of(methods::uniaxial_compression).build.fixtures({specimen_of(state.range(0)), {}, benchmarks::kGranite, contact, {}}));
+    attach(assembly, specimen_of(state.range(0)),
+           method_of(methods::uniaxial_compression)
+               .build.fixtures({specimen_of(state.range(0)), {}, benchmarks::kGranite, contact, {}}));
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     Team team(static_cast<int>(state.range(1)));
     for (auto _ : state) benchmark::DoNotOptimize(largest_omega2(assembly, team));
@@ -131,10 +134,17 @@ void contact_finder(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(ContactFinder(assembly, 3e-4));
 }
 
-#define FELDSPAR_SETUP(stage) BENCHMARK(stage)->Arg(kPaper)->Arg(kLarge)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime()
+#define FELDSPAR_SETUP(stage) \
+    BENCHMARK(stage)->Arg(kPaper)->Arg(kLarge)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime()
 // With one thread and, where it pays, with two.
-#define FELDSPAR_SETUP_THREADS(stage) \
-    BENCHMARK(stage)->Args({kPaper, 1})->Args({kLarge, 1})->Args({kLarge, 2})->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime()
+#define FELDSPAR_SETUP_THREADS(stage)   \
+    BENCHMARK(stage)                    \
+        ->Args({kPaper, 1})             \
+        ->Args({kLarge, 1})             \
+        ->Args({kLarge, 2})             \
+        ->Unit(benchmark::kMillisecond) \
+        ->UseRealTime()                 \
+        ->MeasureProcessCPUTime()
 
 FELDSPAR_SETUP_THREADS(packing);
 FELDSPAR_SETUP(clipping);

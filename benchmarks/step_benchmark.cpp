@@ -1,4 +1,7 @@
 // The program behind ./bench: what a step costs, stage by stage. docs/performance.md says how to read it.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -6,9 +9,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include "benchmarks/calibration.hpp"
 #include "benchmarks/calibration_record.hpp"
@@ -41,11 +41,15 @@ void add_options(CLI::App& app, Options& options) {
     app.add_flag("--list", options.list, "print the names of the cases and stop");
     app.add_option("--threads", options.threads, "numbers of threads")->check(CLI::Range(1, 1024))->capture_default_str();
     app.add_option("--out", options.out, "write all readings to this file")->type_name("FILE.json");
-    CLI::Option* compare = app.add_option("--compare", options.compare, "print ratios new/old to a file written with --out")->type_name("OLD.json");
-    app.add_option("--fail-above", options.fail_above_percent, "exit with 1 if an undisturbed case became slower by more than this")
+    CLI::Option* compare =
+        app.add_option("--compare", options.compare, "print ratios new/old to a file written with --out")->type_name("OLD.json");
+    app.add_option("--fail-above", options.fail_above_percent,
+                   "exit with 1 if an undisturbed case became slower by more than this")
         ->type_name("PERCENT")
         ->needs(compare);
-    app.add_option("--blocks", options.measure.quiet.blocks, "undisturbed blocks that a reading needs")->check(CLI::Range(1, 1000))->capture_default_str();
+    app.add_option("--blocks", options.measure.quiet.blocks, "undisturbed blocks that a reading needs")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
     app.add_option("--most-blocks", options.measure.most_blocks, "blocks after which a disturbed reading is given up")
         ->check(CLI::Range(1, 100000))
         ->capture_default_str();
@@ -94,7 +98,8 @@ void look_for_best(Report& report, Teams& teams, const Options& options) {
     constexpr int kCalibrations = 25;
     for (const int threads : options.threads) {
         double& best = report.best[threads];
-        for (int k = 0; k < kCalibrations; ++k) best = std::max(best, slowest_rates(teams.of(threads), options.measure.calibration_s).multiply_add);
+        for (int k = 0; k < kCalibrations; ++k)
+            best = std::max(best, slowest_rates(teams.of(threads), options.measure.calibration_s).multiply_add);
         fmt::print(stderr, "calibration with {} thread{}: {:.1f} GFLOP/s a core\n", threads, threads == 1 ? "" : "s", best);
     }
 }
@@ -105,28 +110,32 @@ Reading read(const Case& one, Granite& granite, Team& team, const MeasureSetting
     reading.stage = name(one.stage);
     reading.threads = one.threads;
     reading.counts = granite.counts();
-    reading.blocks = measure([&](int steps) { granite.run(one.stage, team, steps); }, [&] { return slowest_rates(team, settings.calibration_s); },
-                             waited_seconds, one.threads, settings, best);
+    reading.blocks =
+        measure([&](int steps) { granite.run(one.stage, team, steps); },
+                [&] { return slowest_rates(team, settings.calibration_s); }, waited_seconds, one.threads, settings, best);
     return reading;
 }
 
 // The cases [begin, end), all of one specimen.
-void run_on_specimen(const std::vector<Case>& cases, std::size_t begin, std::size_t end, const Options& options, Teams& teams, Report& report) {
+void run_on_specimen(const std::vector<Case>& cases, std::size_t begin, std::size_t end, const Options& options, Teams& teams,
+                     Report& report) {
     const SpecimenChoice& specimen = cases[begin].specimen;
     if (const auto memory = available_memory(); memory && *memory < needed_memory(specimen)) {
-        fmt::print(stderr, "left out: {} needs up to {:.1f} GB, and {:.1f} GB are free\n", name(specimen), 1e-9 * needed_memory(specimen), 1e-9 * *memory);
+        fmt::print(stderr, "left out: {} needs up to {:.1f} GB, and {:.1f} GB are free\n", name(specimen),
+                   1e-9 * needed_memory(specimen), 1e-9 * *memory);
         return;
     }
     fmt::print(stderr, "building {} ...\n", name(specimen));
     Granite granite(specimen.grains, specimen.load, length_scale(specimen), options.cache);
-    State state = State::elastic;   // as it was built
+    State state = State::elastic;  // as it was built
     for (std::size_t i = begin; i < end; ++i) {
         const Case& one = cases[i];
         if (one.state != state) granite.set(one.state);
         state = one.state;
         report.readings.push_back(read(one, granite, teams.of(one.threads), options.measure, report.best[one.threads]));
         const Summary summary = summarise(report.readings.back(), report.best, report.quiet);
-        fmt::print(stderr, "[{}/{}] {}  {}{}\n", i + 1, cases.size(), name(one), time_text(summary.best_s), summary.disturbed ? "  disturbed" : "");
+        fmt::print(stderr, "[{}/{}] {}  {}{}\n", i + 1, cases.size(), name(one), time_text(summary.best_s),
+                   summary.disturbed ? "  disturbed" : "");
     }
 }
 
@@ -140,7 +149,8 @@ Report run(const std::vector<Case>& cases, const Options& options) {
         while (end < cases.size() && cases[end].specimen == cases[begin].specimen) ++end;
         run_on_specimen(cases, begin, end, options, teams, report);
     }
-    report.on_record = record_calibrations(std::filesystem::path(options.cache) / "calibrations.json", report.machine.processor, report.best);
+    report.on_record =
+        record_calibrations(std::filesystem::path(options.cache) / "calibrations.json", report.machine.processor, report.best);
     return report;
 }
 
@@ -155,7 +165,7 @@ int report_on(const Options& options) {
         throw InputError({"", 0, 0, "--filter"}, fmt::format("no case has a name with '{}'", options.filter),
                          options.full ? "one of those that --list prints" : "one of those that --list prints; --full has more");
     }
-    std::optional<Report> before;   // read first: a mistake shows before anything is measured
+    std::optional<Report> before;  // read first: a mistake shows before anything is measured
     if (!options.compare.empty()) before = read_report(options.compare);
 
     const Report report = run(cases, options);
@@ -166,7 +176,8 @@ int report_on(const Options& options) {
     if (!before) return 0;
 
     const Comparison comparison = compare(*before, report);
-    fmt::print("\nAgainst {} ({}, {}):\n{}", options.compare, before->machine.commit, before->machine.started, comparison_table(comparison));
+    fmt::print("\nAgainst {} ({}, {}):\n{}", options.compare, before->machine.commit, before->machine.started,
+               comparison_table(comparison));
     const auto worst = worst_slowdown_percent(comparison);
     return options.fail_above_percent && worst && *worst > *options.fail_above_percent ? 1 : 0;
 }
@@ -175,7 +186,8 @@ int report_on(const Options& options) {
 }  // namespace feldspar::benchmarks
 
 int main(int argc, char** argv) {
-    CLI::App app("Measures what a step costs, stage by stage, with a calibration of the cores around every block (docs/performance.md).");
+    CLI::App app(
+        "Measures what a step costs, stage by stage, with a calibration of the cores around every block (docs/performance.md).");
     feldspar::benchmarks::Options options;
     add_options(app, options);
     CLI11_PARSE(app, argc, argv);

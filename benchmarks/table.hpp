@@ -8,7 +8,8 @@
 
 namespace feldspar::benchmarks {
 
-/// Where it was measured, and every reading: times a step, a piece and a second, memory, goals, and which readings stayed disturbed.
+/// Where it was measured, and every reading: times a step, a piece and a second, memory, goals, and which readings stayed
+/// disturbed.
 std::string report_table(const Report& report);
 
 /// Ratios new / old, marked where a case became slower or faster by more than 5 % and both readings were undisturbed.

@@ -14,7 +14,8 @@ inline std::string switched_on(const std::string& text, const std::function<bool
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find('\n', at), text.size());
         const std::string line = text.substr(at, end - at);
-        const bool off = line.starts_with("# [") || (line.starts_with("# ") && line.find(" = ") != std::string::npos && line.find(" = ") == line.find(' ', 2));
+        const bool off = line.starts_with("# [") || (line.starts_with("# ") && line.find(" = ") != std::string::npos &&
+                                                     line.find(" = ") == line.find(' ', 2));
         on += (off && !(stays_off && stays_off(line)) ? line.substr(2) : line) + "\n";
         at = end + 1;
     }

@@ -7,7 +7,7 @@ namespace feldspar::fixtures {
 
 inline ContactMaterial table7() {
     ContactMaterial c;
-    c.Kn_Pa_m = 18e13;   // Table 1
+    c.Kn_Pa_m = 18e13;  // Table 1
     c.eta = 0.28;
     c.sigma_nt_Pa = 8.5e6;
     c.tau_Pa = 29.75e6;

@@ -1,14 +1,14 @@
 // An empty folder of a test's own that vanishes with it, and whole files as text.
 #pragma once
 
+#include <stdlib.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <stdexcept>
 #include <string>
-
-#include <stdlib.h>
 
 namespace feldspar {
 
@@ -17,7 +17,9 @@ inline std::string read_text(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-inline void write_text(const std::filesystem::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+inline void write_text(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+}
 
 /// Number of entries, hidden ones too: a temporary file left behind is counted.
 inline int count_entries(const std::filesystem::path& directory) {

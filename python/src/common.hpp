@@ -17,7 +17,7 @@ namespace py = pybind11;
 
 namespace feldspar::python {
 
-// ---------------------------------------------------------------------------------------------------------------------------- arrays
+// ------------------------------------------------------------------------------------------------------------------------ arrays
 
 /// Makes an array read-only.
 py::array read_only(py::array array);
@@ -39,13 +39,15 @@ py::array view(const Vector& numbers, const py::handle& owner) {
 template <class Points>
 py::array view_points(const Points& points, const py::handle& owner) {
     static_assert(std::is_same_v<typename Points::value_type, Vec2>);
-    return view(points.empty() ? nullptr : &points.data()->x, {static_cast<py::ssize_t>(points.size()), 2}, {sizeof(Vec2), sizeof(double)}, owner);
+    return view(points.empty() ? nullptr : &points.data()->x, {static_cast<py::ssize_t>(points.size()), 2},
+                {sizeof(Vec2), sizeof(double)}, owner);
 }
 
 /// Of one member of each structure of a list.
 template <class T, class Vector>
 py::array view_member(const Vector& list, const T* first, const py::handle& owner) {
-    return view(list.empty() ? nullptr : first, {static_cast<py::ssize_t>(list.size())}, {sizeof(typename Vector::value_type)}, owner);
+    return view(list.empty() ? nullptr : first, {static_cast<py::ssize_t>(list.size())}, {sizeof(typename Vector::value_type)},
+                owner);
 }
 
 /// Keeps a shared object alive for the views of its arrays.
@@ -64,7 +66,7 @@ py::array_t<T> copied(const std::vector<T>& values) {
 /// Not-a-number becomes None.
 py::object number_or_none(double value);
 
-// ---------------------------------------------------------------------------------------------------------------------------- errors
+// ------------------------------------------------------------------------------------------------------------------------ errors
 
 /// Lets errors of the library arrive as those of feldspar.errors.
 void translate_errors();
@@ -75,23 +77,25 @@ void translate_errors();
 /// Raises feldspar.errors.NumericalError with the record of the test until then.
 [[noreturn]] void raise_numerical(const std::string& message, const py::object& result);
 
-// ---------------------------------------------------------------------------------------------------------------------- running work
+// ------------------------------------------------------------------------------------------------------------------ running work
 
-/// Runs work on a thread of its own while the calling thread waits without the interpreter's lock, looks for Ctrl-C, and calls Python for the work. So
-/// everything that is written in Python runs on the thread that it belongs to.
+/// Runs work on a thread of its own while the calling thread waits without the interpreter's lock, looks for Ctrl-C, and calls
+/// Python for the work. So everything that is written in Python runs on the thread that it belongs to.
 class OnCaller {
 public:
     OnCaller();
     ~OnCaller();
 
-    /// To be called by the calling thread, with the interpreter's lock. Returns when the work has ended. After Ctrl-C, or an error in Python, `stop` is called once, and the
-    /// work is waited for. @throws what the work threw, or the error of Python, which goes before; of Ctrl-C nothing: interrupted() tells
+    /// To be called by the calling thread, with the interpreter's lock. Returns when the work has ended. After Ctrl-C, or an
+    /// error in Python, `stop` is called once, and the work is waited for. @throws what the work threw, or the error of Python,
+    /// which goes before; of Ctrl-C nothing: interrupted() tells
     void run(const std::function<void()>& work, const std::function<void()>& stop);
 
     /// Ctrl-C was pressed.
     bool interrupted() const;
 
-    /// To be called by any thread of the work, without the lock: runs `call` on the calling thread, with the lock, and waits for it.
+    /// To be called by any thread of the work, without the lock: runs `call` on the calling thread, with the lock, and waits for
+    /// it.
     /// @return false if it was not made, or has failed in Python: the work is to end
     bool call(const std::function<void()>& call);
 
@@ -100,7 +104,7 @@ private:
     std::unique_ptr<Shared> shared_;
 };
 
-// ---------------------------------------------------------------------------------------------------------------------------- parts
+// ------------------------------------------------------------------------------------------------------------------------- parts
 
 void bind_jobs(py::module_& module);
 void bind_specimens(py::module_& module);

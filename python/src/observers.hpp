@@ -34,8 +34,8 @@ private:
     py::function function_;
     long long every_;
     std::optional<PyStage> first_;
-    long long next_ = 0, last_ = -1;                  // steps
-    std::shared_ptr<Assembly> left_ = std::make_shared<Assembly>();   // what views look at when the test is over
+    long long next_ = 0, last_ = -1;                                 // steps
+    std::shared_ptr<Assembly> left_ = std::make_shared<Assembly>();  // what views look at when the test is over
 };
 
 }  // namespace feldspar::python

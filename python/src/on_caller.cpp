@@ -11,9 +11,9 @@ namespace feldspar::python {
 struct OnCaller::Shared {
     std::mutex mutex;
     std::condition_variable to_caller, to_work;
-    const std::function<void()>* wanted = nullptr;   // a call that waits to be made
-    bool made = false;                               // it has been
-    bool refusing = false;                           // no further calls: the work is to end
+    const std::function<void()>* wanted = nullptr;  // a call that waits to be made
+    bool made = false;                              // it has been
+    bool refusing = false;                          // no further calls: the work is to end
     bool over = false;
     std::exception_ptr of_work, of_python;
     bool interrupted = false;
@@ -27,7 +27,7 @@ bool OnCaller::interrupted() const { return shared_->interrupted; }
 bool OnCaller::call(const std::function<void()>& call) {
     Shared& s = *shared_;
     std::unique_lock lock(s.mutex);
-    s.to_work.wait(lock, [&] { return s.wanted == nullptr || s.refusing; });   // another thread's call
+    s.to_work.wait(lock, [&] { return s.wanted == nullptr || s.refusing; });  // another thread's call
     if (s.refusing) return false;
     s.wanted = &call;
     s.made = false;
@@ -40,7 +40,7 @@ bool OnCaller::call(const std::function<void()>& call) {
 }
 
 void OnCaller::run(const std::function<void()>& work, const std::function<void()>& stop) {
-    constexpr std::chrono::milliseconds kLook{50};   // how long Ctrl-C may wait
+    constexpr std::chrono::milliseconds kLook{50};  // how long Ctrl-C may wait
     Shared& s = *shared_;
     std::thread thread([&] {
         std::exception_ptr error;
@@ -93,8 +93,10 @@ void OnCaller::run(const std::function<void()>& work, const std::function<void()
             try {
                 throw py::error_already_set();
             } catch (py::error_already_set& error) {
-                if (error.matches(PyExc_KeyboardInterrupt)) s.interrupted = true;
-                else s.of_python = std::current_exception();
+                if (error.matches(PyExc_KeyboardInterrupt))
+                    s.interrupted = true;
+                else
+                    s.of_python = std::current_exception();
             }
             refuse();
         }
@@ -108,7 +110,7 @@ void OnCaller::run(const std::function<void()>& work, const std::function<void()
             std::rethrow_exception(s.of_python);
         } catch (py::error_already_set& error) {
             if (!error.matches(PyExc_KeyboardInterrupt)) throw;
-            s.interrupted = true;   // Ctrl-C while Python was called
+            s.interrupted = true;  // Ctrl-C while Python was called
         }
     }
     if (s.of_work && !s.interrupted) std::rethrow_exception(s.of_work);

@@ -36,7 +36,8 @@ py::dict progress_dict(const TestProgress& p) {
 // Tells a function of Python how far work is; none may be given.
 class Teller {
 public:
-    Teller(OnCaller& caller, py::object function) : caller_(caller), function_(std::move(function)), silent_(function_.is_none()) {}
+    Teller(OnCaller& caller, py::object function)
+        : caller_(caller), function_(std::move(function)), silent_(function_.is_none()) {}
 
     /// @param fill  puts into a dictionary what is told
     void tell(const std::function<void(py::dict&)>& fill) const {
@@ -65,7 +66,8 @@ public:
         tell([&](py::dict& event) {
             event["event"] = "finished";
             event["label"] = label;
-            event["text"] = fmt::format("{}: {:.4g} MPa, grade {}", label, result.properties.peak_stress_Pa * MPa, result.evidence.grade);
+            event["text"] =
+                fmt::format("{}: {:.4g} MPa, grade {}", label, result.properties.peak_stress_Pa * MPa, result.evidence.grade);
         });
     }
 
@@ -77,13 +79,18 @@ private:
 
 PyResult shared(TestResult result) { return {std::make_shared<const TestResult>(std::move(result))}; }
 
-PyResult run_one(const Job& job, const TestChoice& test, const py::object& sigma3, std::optional<std::uint64_t> seed, const std::optional<std::string>& variant, int threads, const py::object& callback,
-                 long long every, const std::optional<PyStage>& begins, const py::object& progress) {
-    const Job one = single_run(job, test, sigma3.is_none() ? std::nullopt : std::optional(quantity_of(sigma3, Dimension::stress, "sigma3")), seed, variant);
+PyResult run_one(const Job& job, const TestChoice& test, const py::object& sigma3, std::optional<std::uint64_t> seed,
+                 const std::optional<std::string>& variant, int threads, const py::object& callback, long long every,
+                 const std::optional<PyStage>& begins, const py::object& progress) {
+    const Job one =
+        single_run(job, test, sigma3.is_none() ? std::nullopt : std::optional(quantity_of(sigma3, Dimension::stress, "sigma3")),
+                   seed, variant);
     const PlannedRun run = planned_runs(one).front();
     const int all_threads = threads_of(threads);
     if (every < 1) throw InputError({.key = "every"}, fmt::format("every {} steps", every), "1 or more");
-    if (begins && callback.is_none()) throw InputError({.key = "begins"}, "a first stage is given, and no callback that would go on from there", "callback=..., or stages in the job");
+    if (begins && callback.is_none())
+        throw InputError({.key = "begins"}, "a first stage is given, and no callback that would go on from there",
+                         "callback=..., or stages in the job");
     OnCaller caller;
     const Teller teller(caller, progress);
     std::unique_ptr<PyObserver> observer;
@@ -98,7 +105,8 @@ PyResult run_one(const Job& job, const TestChoice& test, const py::object& sigma
             control.threads = Sharing(0, all_threads).useful_threads(body_count(run, *specimen));
             control.stop = &stop;
             control.observer = observer.get();
-            if (!progress.is_none()) control.progress = [&](const TestProgress& state) { teller.progress(label_of(run), 1, 1, state); };
+            if (!progress.is_none())
+                control.progress = [&](const TestProgress& state) { teller.progress(label_of(run), 1, 1, state); };
             control.failed = [&](const TestResult& record) { failed = record; };
             try {
                 result = run_test(setup_of(run, specimen), control);
@@ -113,7 +121,8 @@ PyResult run_one(const Job& job, const TestChoice& test, const py::object& sigma
     return shared(std::move(*result));
 }
 
-py::object job_result(const Job& job, std::vector<TestResult> results, const std::vector<FailedTest>& failed, bool interrupted, const std::optional<std::string>& directory) {
+py::object job_result(const Job& job, std::vector<TestResult> results, const std::vector<FailedTest>& failed, bool interrupted,
+                      const std::optional<std::string>& directory) {
     const PropertySummary summary = job.has_variants() ? PropertySummary{} : summarise(results);
     py::list list, failures;
     for (TestResult& result : results) list.append(shared(std::move(result)));
@@ -124,13 +133,15 @@ py::object job_result(const Job& job, std::vector<TestResult> results, const std
         d["reason"] = one.reason;
         failures.append(d);
     }
-    return py::module_::import("feldspar.results").attr("JobResult")(job.name, list, properties_of(summary), envelope_of(summary), failures, interrupted, directory);
+    return py::module_::import("feldspar.results")
+        .attr("JobResult")(job.name, list, properties_of(summary), envelope_of(summary), failures, interrupted, directory);
 }
 
 // Takes the results of a job into memory.
 class MemorySink final : public RunSink {
 public:
-    MemorySink(const std::vector<PlannedRun>& runs, std::atomic<bool>& stop, const Teller& teller) : runs_(runs), packings_(runs.size(), &stop), teller_(teller) {}
+    MemorySink(const std::vector<PlannedRun>& runs, std::atomic<bool>& stop, const Teller& teller)
+        : runs_(runs), packings_(runs.size(), &stop), teller_(teller) {}
 
     int bodies(std::size_t i) override { return body_count(runs_[i], *specimen(i)); }
     RunningTests::Work begin(std::size_t i) override {
@@ -140,7 +151,9 @@ public:
             return result;
         };
     }
-    void progress(std::size_t i, const TestProgress& state) override { teller_.progress(label_of(runs_[i]), static_cast<int>(i) + 1, static_cast<int>(runs_.size()), state); }
+    void progress(std::size_t i, const TestProgress& state) override {
+        teller_.progress(label_of(runs_[i]), static_cast<int>(i) + 1, static_cast<int>(runs_.size()), state);
+    }
     void ended(std::size_t) override {}
     void finished(std::size_t i, TestResult result) override {
         if (!result.interrupted) teller_.finished(label_of(runs_[i]), result);
@@ -173,7 +186,7 @@ private:
     const std::vector<PlannedRun>& runs_;
     Packings packings_;
     const Teller& teller_;
-    std::map<std::size_t, TestResult> results_;   // by number: the job's order
+    std::map<std::size_t, TestResult> results_;  // by number: the job's order
     std::map<std::size_t, FailedTest> failed_;
 };
 
@@ -183,7 +196,9 @@ public:
     void busy(const std::string& what) override { teller_.note(what); }
     void making(const std::string&, const SpecimenProgress&) override {}
     void note(const std::string& line) override { teller_.note(line); }
-    void progress(int number, int count, const std::string& label, const TestProgress& state) override { teller_.progress(label, number, count, state); }
+    void progress(int number, int count, const std::string& label, const TestProgress& state) override {
+        teller_.progress(label, number, count, state);
+    }
     void ended(int) override {}
     void finished(const std::string& label, const TestResult& result) override { teller_.finished(label, result); }
     void clear() override {}
@@ -193,12 +208,15 @@ private:
     const Teller& teller_;
 };
 
-py::object run_whole(const Job& job, const std::vector<TestChoice>& tests, const std::vector<std::string>& variants, const std::vector<std::uint64_t>& seeds, bool write, const std::optional<std::string>& directory,
-                     bool fresh, int threads, int at_once, const py::object& progress) {
+py::object run_whole(const Job& job, const std::vector<TestChoice>& tests, const std::vector<std::string>& variants,
+                     const std::vector<std::uint64_t>& seeds, bool write, const std::optional<std::string>& directory, bool fresh,
+                     int threads, int at_once, const py::object& progress) {
     const Job part = part_of(job, tests, variants, seeds);
     const int all_threads = threads_of(threads != 0 ? threads : part.threads);
     const int side_by_side = at_once != 0 ? at_once : part.at_once;
-    if (side_by_side < 0) throw InputError({.key = "at_once"}, fmt::format("{} tests side by side", side_by_side), "0 for as suits their size, or a number of tests");
+    if (side_by_side < 0)
+        throw InputError({.key = "at_once"}, fmt::format("{} tests side by side", side_by_side),
+                         "0 for as suits their size, or a number of tests");
     OnCaller caller;
     const Teller teller(caller, progress);
     std::atomic<bool> stop{false};
@@ -217,7 +235,8 @@ py::object run_whole(const Job& job, const std::vector<TestChoice>& tests, const
         std::optional<JobOutcome> outcome;
         caller.run([&] { outcome = run_job(writing, control); }, end);
         if (!outcome) raise_interrupted(py::none());
-        const py::object result = job_result(writing, std::move(outcome->results), outcome->failed, outcome->interrupted, outcome->directory.string());
+        const py::object result =
+            job_result(writing, std::move(outcome->results), outcome->failed, outcome->interrupted, outcome->directory.string());
         if (caller.interrupted()) raise_interrupted(result);
         return result;
     }
@@ -229,17 +248,22 @@ py::object run_whole(const Job& job, const std::vector<TestChoice>& tests, const
     return result;
 }
 
-py::dict preview(const Job& job, const TestChoice& test, const py::object& sigma3, std::optional<std::uint64_t> seed, const std::optional<std::string>& variant) {
-    const Job one = single_run(job, test, sigma3.is_none() ? std::nullopt : std::optional(quantity_of(sigma3, Dimension::stress, "sigma3")), seed, variant);
+py::dict preview(const Job& job, const TestChoice& test, const py::object& sigma3, std::optional<std::uint64_t> seed,
+                 const std::optional<std::string>& variant) {
+    const Job one =
+        single_run(job, test, sigma3.is_none() ? std::nullopt : std::optional(quantity_of(sigma3, Dimension::stress, "sigma3")),
+                   seed, variant);
     const PlannedRun run = planned_runs(one).front();
     OnCaller caller;
     std::atomic<bool> stop{false};
     TestPreview p;
-    caller.run([&] {
-        RunControl control;
-        control.stop = &stop;
-        p = preview_test(setup_of(run, Packings(1, &stop).get(specimen_of(run), run.seed, 1)), control);
-    }, [&] { stop = true; });
+    caller.run(
+        [&] {
+            RunControl control;
+            control.stop = &stop;
+            p = preview_test(setup_of(run, Packings(1, &stop).get(specimen_of(run), run.seed, 1)), control);
+        },
+        [&] { stop = true; });
     if (caller.interrupted()) raise_interrupted(py::none());
     py::dict d;
     d["grains"] = p.grains;
@@ -257,14 +281,20 @@ py::dict preview(const Job& job, const TestChoice& test, const py::object& sigma
 }  // namespace
 
 void bind_running(py::module_& m) {
-    m.def("run", &run_one, py::arg("job"), py::arg("test") = TestChoice{}, py::kw_only(), py::arg("sigma3") = py::none(), py::arg("seed") = py::none(), py::arg("variant") = py::none(), py::arg("threads") = 0,
-          py::arg("callback") = py::none(), py::arg("every") = 1, py::arg("begins") = py::none(), py::arg("progress") = py::none(),
+    m.def("run", &run_one, py::arg("job"), py::arg("test") = TestChoice{}, py::kw_only(), py::arg("sigma3") = py::none(),
+          py::arg("seed") = py::none(), py::arg("variant") = py::none(), py::arg("threads") = 0, py::arg("callback") = py::none(),
+          py::arg("every") = 1, py::arg("begins") = py::none(), py::arg("progress") = py::none(),
           R"(Runs one test on one packing in memory; feldspar.run() is the convenient form, which explains the arguments.)");
-    m.def("run_job", &run_whole, py::arg("job"), py::kw_only(), py::arg("tests") = std::vector<TestChoice>{}, py::arg("variants") = std::vector<std::string>{}, py::arg("seeds") = std::vector<std::uint64_t>{},
-          py::arg("write") = false, py::arg("directory") = py::none(), py::arg("fresh") = false, py::arg("threads") = 0, py::arg("at_once") = 0, py::arg("progress") = py::none(),
-          R"(Runs all tests of a job on all its packings; feldspar.run_job() is the convenient form, which explains the arguments.)");
-    m.def("preview", &preview, py::arg("job"), py::arg("test") = TestChoice{}, py::kw_only(), py::arg("sigma3") = py::none(), py::arg("seed") = py::none(), py::arg("variant") = py::none(),
-          R"(Builds and judges a test, and times a few steps, without running it: counts, memory_MB, expected_steps, expected_seconds. Arguments as of run(). Raises InputError for a setting that is unstable.)");
+    m.def(
+        "run_job", &run_whole, py::arg("job"), py::kw_only(), py::arg("tests") = std::vector<TestChoice>{},
+        py::arg("variants") = std::vector<std::string>{}, py::arg("seeds") = std::vector<std::uint64_t>{},
+        py::arg("write") = false, py::arg("directory") = py::none(), py::arg("fresh") = false, py::arg("threads") = 0,
+        py::arg("at_once") = 0, py::arg("progress") = py::none(),
+        R"(Runs all tests of a job on all its packings; feldspar.run_job() is the convenient form, which explains the arguments.)");
+    m.def(
+        "preview", &preview, py::arg("job"), py::arg("test") = TestChoice{}, py::kw_only(), py::arg("sigma3") = py::none(),
+        py::arg("seed") = py::none(), py::arg("variant") = py::none(),
+        R"(Builds and judges a test, and times a few steps, without running it: counts, memory_MB, expected_steps, expected_seconds. Arguments as of run(). Raises InputError for a setting that is unstable.)");
 }
 
 }  // namespace feldspar::python

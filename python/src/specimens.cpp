@@ -57,7 +57,7 @@ py::array_t<double> centroids(S s) {
     return points_array(points);
 }
 
-py::list of_each_cell(S s, const std::vector<int> Cell::* member) {
+py::list of_each_cell(S s, const std::vector<int> Cell::*member) {
     const py::capsule owner = keeper(s.specimen);
     py::list list;
     for (const Cell& cell : s.specimen->cells.cells) list.append(view(cell.*member, owner));
@@ -72,7 +72,8 @@ py::array_t<double> outline(S s) {
     for (int k = 0; k < kCorners; ++k) {
         const double angle = 2.0 * std::numbers::pi * k / kCorners;
         Vec2 at = outline.centre + outline.radius_m * Vec2{std::cos(angle), std::sin(angle)};
-        if (outline.flattened()) at.y = std::clamp(at.y, outline.centre.y - outline.flat_height_m, outline.centre.y + outline.flat_height_m);
+        if (outline.flattened())
+            at.y = std::clamp(at.y, outline.centre.y - outline.flat_height_m, outline.centre.y + outline.flat_height_m);
         circle.push_back(at);
     }
     return points_array(circle);
@@ -128,13 +129,15 @@ void save(S s, const std::string& file) {
     }
     const std::string text = cells_as_text(*s.specimen, cell_format_of(path));
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    if (!std::filesystem::is_directory(folder)) throw OutputError(fmt::format("'{}' cannot be written: there is no directory '{}'", file, folder.string()));
+    if (!std::filesystem::is_directory(folder))
+        throw OutputError(fmt::format("'{}' cannot be written: there is no directory '{}'", file, folder.string()));
     RunDirectory::open(folder).write_text(path.filename().string(), text);
 }
 
 }  // namespace
 
-PySpecimen with_phases(std::shared_ptr<const Specimen> specimen, const GrainMaterial& grain, const ContactMaterial& contact, const Heterogeneity& rock) {
+PySpecimen with_phases(std::shared_ptr<const Specimen> specimen, const GrainMaterial& grain, const ContactMaterial& contact,
+                       const Heterogeneity& rock) {
     PySpecimen s{std::move(specimen), {}, {}};
     if (!rock.minerals.phases.empty()) {
         s.phases = Texture(*s.specimen, grain, contact, rock).phases();
@@ -146,52 +149,100 @@ PySpecimen with_phases(std::shared_ptr<const Specimen> specimen, const GrainMate
 }
 
 void bind_specimens(py::module_& m) {
-    py::class_<PySpecimen>(m, "Specimen", R"(A specimen: cells on one shared vertex graph, and the triangles in them. Lengths in metres.
+    py::class_<PySpecimen>(m, "Specimen",
+                           R"(A specimen: cells on one shared vertex graph, and the triangles in them. Lengths in metres.
 
 Arrays are read-only views of the specimen's own memory where that is possible; what has to be put together (polygons, areas, centroids) is a new array each time.
 Made by :meth:`Job.specimen` or :func:`feldspar.specimen`.)")
-        .def_property_readonly("seed", [](S s) { return s.specimen->seed; }, "Seed of the packing.")
-        .def_property_readonly("thickness", [](S s) { return s.specimen->spec.thickness_m; }, "Thickness, m.")
-        .def_property_readonly("outline", &outline, "The outline as a polygon, counter-clockwise: shape (n, 2), m. Of a disc 360 points of its circle. Holes and notches are not in it.")
-        .def_property_readonly("outline_labels", [](S s) { return s.specimen->outline.edge_labels; }, "Labels of the outline's edges, then those of holes and notches, then those that were given by place.")
-        .def_property_readonly("area", [](S s) { return s.specimen->outline.area_m2; }, "Area of the outline without holes and notches, m2.")
-        .def_property_readonly("vertices", [](S s) { return view_points(s.specimen->cells.vertices, keeper(s.specimen)); }, "Vertices that the cells share: view, shape (n, 2), m.")
-        .def_property_readonly("cells", [](S s) { return of_each_cell(s, &Cell::vertices); }, "Of each cell the numbers of its vertices, counter-clockwise: a list of views.")
-        .def_property_readonly("neighbours", [](S s) { return of_each_cell(s, &Cell::neighbours); }, "Of each cell, edge by edge (from corner k to k + 1), the cell on the other side, or -1 on the boundary: a list of views.")
-        .def_property_readonly("boundary_edges", [](S s) { return of_each_cell(s, &Cell::outline_edges); }, "Of each cell, edge by edge, the number of its label in outline_labels, or -1 inside: a list of views.")
-        .def_property_readonly("polygons", &polygons, "Of each cell its corners, counter-clockwise: a list of arrays of shape (n, 2), m.")
+        .def_property_readonly(
+            "seed", [](S s) { return s.specimen->seed; }, "Seed of the packing.")
+        .def_property_readonly(
+            "thickness", [](S s) { return s.specimen->spec.thickness_m; }, "Thickness, m.")
+        .def_property_readonly("outline", &outline,
+                               "The outline as a polygon, counter-clockwise: shape (n, 2), m. Of a disc 360 points of its "
+                               "circle. Holes and notches are not in it.")
+        .def_property_readonly(
+            "outline_labels", [](S s) { return s.specimen->outline.edge_labels; },
+            "Labels of the outline's edges, then those of holes and notches, then those that were given by place.")
+        .def_property_readonly(
+            "area", [](S s) { return s.specimen->outline.area_m2; }, "Area of the outline without holes and notches, m2.")
+        .def_property_readonly(
+            "vertices", [](S s) { return view_points(s.specimen->cells.vertices, keeper(s.specimen)); },
+            "Vertices that the cells share: view, shape (n, 2), m.")
+        .def_property_readonly(
+            "cells", [](S s) { return of_each_cell(s, &Cell::vertices); },
+            "Of each cell the numbers of its vertices, counter-clockwise: a list of views.")
+        .def_property_readonly(
+            "neighbours", [](S s) { return of_each_cell(s, &Cell::neighbours); },
+            "Of each cell, edge by edge (from corner k to k + 1), the cell on the other side, or -1 on the boundary: a list of "
+            "views.")
+        .def_property_readonly(
+            "boundary_edges", [](S s) { return of_each_cell(s, &Cell::outline_edges); },
+            "Of each cell, edge by edge, the number of its label in outline_labels, or -1 inside: a list of views.")
+        .def_property_readonly("polygons", &polygons,
+                               "Of each cell its corners, counter-clockwise: a list of arrays of shape (n, 2), m.")
         .def_property_readonly("areas", &areas, "Areas of the cells, m2.")
         .def_property_readonly("centroids", &centroids, "Centroids of the cells: shape (n, 2), m.")
-        .def_property_readonly("contacts", &contacts, "Pairs of neighbouring cells, a row a common edge: shape (n, 2), the smaller number first.")
-        .def_property_readonly("nodes", [](S s) { return view_points(s.specimen->mesh.nodes, keeper(s.specimen)); }, "Nodes of the grain mesh: view, shape (n, 2), m. They belong to one grain each.")
-        .def_property_readonly("triangles", [](S s) {
-            const auto& triangles = s.specimen->mesh.triangles;
-            return view(triangles.empty() ? nullptr : triangles.front().data(), {static_cast<py::ssize_t>(triangles.size()), 3}, {sizeof(triangles[0]), sizeof(int)}, keeper(s.specimen));
-        }, "Triangles of the grain mesh by their nodes, counter-clockwise: view, shape (n, 3).")
+        .def_property_readonly("contacts", &contacts,
+                               "Pairs of neighbouring cells, a row a common edge: shape (n, 2), the smaller number first.")
+        .def_property_readonly(
+            "nodes", [](S s) { return view_points(s.specimen->mesh.nodes, keeper(s.specimen)); },
+            "Nodes of the grain mesh: view, shape (n, 2), m. They belong to one grain each.")
+        .def_property_readonly(
+            "triangles",
+            [](S s) {
+                const auto& triangles = s.specimen->mesh.triangles;
+                return view(triangles.empty() ? nullptr : triangles.front().data(),
+                            {static_cast<py::ssize_t>(triangles.size()), 3}, {sizeof(triangles[0]), sizeof(int)},
+                            keeper(s.specimen));
+            },
+            "Triangles of the grain mesh by their nodes, counter-clockwise: view, shape (n, 3).")
         .def_property_readonly("triangle_cells", &triangle_cells, "The cell of each triangle.")
-        .def_property_readonly("phases", [](S s) { return copied(s.phases); }, "The mineral of each cell, as a number of phase_names.")
-        .def_property_readonly("phase_names", [](S s) { return s.phase_names; }, "Names of the minerals; [\"rock\"] of a rock of one mineral.")
-        .def_property_readonly("crystals", [](S s) { return view(s.specimen->crystal_of_cell, keeper(s.specimen)); }, "The crystal of each cell: view; empty if each cell is one.")
-        .def_property_readonly("disc_centres", [](S s) { return view_points(s.specimen->packing.centres, keeper(s.specimen)); }, "Centres of the packed discs: view, shape (n, 2), m.")
-        .def_property_readonly("disc_radii", [](S s) { return view(s.specimen->packing.radii_m, keeper(s.specimen)); }, "Radii of the packed discs: view, m.")
-        .def_property_readonly("particle_centres", [](S s) { return view_points(s.specimen->filling.centres, keeper(s.specimen)); }, "Centres of inner particles: view, shape (n, 2), m; empty if the grains are not filled.")
-        .def_property_readonly("particle_radii", [](S s) { return view(s.specimen->filling.radii_m, keeper(s.specimen)); }, "Radii of inner particles: view, m.")
-        .def_property_readonly("quality", &quality, "What one should know of the specimen before trusting it: counts, sizes in mm, and warnings in sentences.")
-        .def("save", &save, py::arg("file"), "Writes the cells as .tess (Neper), .msh (gmsh) or .csv, or the packing as .txt, to be read by a job again. Raises InputError for another ending, OutputError.")
+        .def_property_readonly(
+            "phases", [](S s) { return copied(s.phases); }, "The mineral of each cell, as a number of phase_names.")
+        .def_property_readonly(
+            "phase_names", [](S s) { return s.phase_names; }, "Names of the minerals; [\"rock\"] of a rock of one mineral.")
+        .def_property_readonly(
+            "crystals", [](S s) { return view(s.specimen->crystal_of_cell, keeper(s.specimen)); },
+            "The crystal of each cell: view; empty if each cell is one.")
+        .def_property_readonly(
+            "disc_centres", [](S s) { return view_points(s.specimen->packing.centres, keeper(s.specimen)); },
+            "Centres of the packed discs: view, shape (n, 2), m.")
+        .def_property_readonly(
+            "disc_radii", [](S s) { return view(s.specimen->packing.radii_m, keeper(s.specimen)); },
+            "Radii of the packed discs: view, m.")
+        .def_property_readonly(
+            "particle_centres", [](S s) { return view_points(s.specimen->filling.centres, keeper(s.specimen)); },
+            "Centres of inner particles: view, shape (n, 2), m; empty if the grains are not filled.")
+        .def_property_readonly(
+            "particle_radii", [](S s) { return view(s.specimen->filling.radii_m, keeper(s.specimen)); },
+            "Radii of inner particles: view, m.")
+        .def_property_readonly(
+            "quality", &quality,
+            "What one should know of the specimen before trusting it: counts, sizes in mm, and warnings in sentences.")
+        .def("save", &save, py::arg("file"),
+             "Writes the cells as .tess (Neper), .msh (gmsh) or .csv, or the packing as .txt, to be read by a job again. Raises "
+             "InputError for another ending, OutputError.")
         .def("__len__", [](S s) { return s.specimen->cells.cells.size(); })
-        .def("__repr__", [](S s) { return fmt::format("<feldspar.Specimen: {} grains, seed {}>", s.specimen->cells.cells.size(), s.specimen->seed); });
+        .def("__repr__", [](S s) {
+            return fmt::format("<feldspar.Specimen: {} grains, seed {}>", s.specimen->cells.cells.size(), s.specimen->seed);
+        });
 
-    m.def("make_specimen", [](const std::string& text, const std::string& name, std::uint64_t seed, int threads) {
-        const SpecimenSpec spec = parse_specimen(text, name);
-        std::shared_ptr<const Specimen> made;
-        const int count = threads_of(threads);
-        OnCaller caller;
-        std::atomic<bool> stop{false};
-        caller.run([&] { made = Packings(1, &stop).get(spec, seed, count); }, [&] { stop = true; });
-        if (caller.interrupted()) raise_interrupted(py::none());
-        return with_phases(made, {}, {}, {});
-    }, py::arg("text"), py::arg("name"), py::arg("seed") = 1, py::arg("threads") = 0,
-          "Makes a specimen from TOML text with a table [specimen]; feldspar.specimen() is the convenient form. Raises InputError, NumericalError.");
+    m.def(
+        "make_specimen",
+        [](const std::string& text, const std::string& name, std::uint64_t seed, int threads) {
+            const SpecimenSpec spec = parse_specimen(text, name);
+            std::shared_ptr<const Specimen> made;
+            const int count = threads_of(threads);
+            OnCaller caller;
+            std::atomic<bool> stop{false};
+            caller.run([&] { made = Packings(1, &stop).get(spec, seed, count); }, [&] { stop = true; });
+            if (caller.interrupted()) raise_interrupted(py::none());
+            return with_phases(made, {}, {}, {});
+        },
+        py::arg("text"), py::arg("name"), py::arg("seed") = 1, py::arg("threads") = 0,
+        "Makes a specimen from TOML text with a table [specimen]; feldspar.specimen() is the convenient form. Raises InputError, "
+        "NumericalError.");
 }
 
 }  // namespace feldspar::python

@@ -27,7 +27,8 @@ std::string label_of_run(const Study& study, const Run& run) {
 // Tells a function of Python of runs; none may be given.
 class RunTeller {
 public:
-    RunTeller(OnCaller& caller, py::object function) : caller_(caller), function_(std::move(function)), silent_(function_.is_none()) {}
+    RunTeller(OnCaller& caller, py::object function)
+        : caller_(caller), function_(std::move(function)), silent_(function_.is_none()) {}
 
     void tell(const char* event, const std::string& text, int number = 0, int count = 0) const {
         if (silent_) return;
@@ -73,7 +74,10 @@ py::dict run_study(const Study& study, int threads, int at_once, bool retry_fail
             control.provenance = collect_provenance("feldspar.run_study()", all_threads);
             int number = 0;
             const int count = static_cast<int>(study.runs.size());
-            if (!teller.silent()) control.ended = [&](const Run& run, const RunRecord& record) { teller.tell("finished", RunTeller::ended(label_of_run(study, run), record), ++number, count); };
+            if (!teller.silent())
+                control.ended = [&](const Run& run, const RunRecord& record) {
+                    teller.tell("finished", RunTeller::ended(label_of_run(study, run), record), ++number, count);
+                };
             control.note = [&](const std::string& line) { teller.tell("note", line); };
             execution = execute(study.runs, ledger, control);
             write_study_report(study, point_results(study, ledger), study_page(study));
@@ -91,7 +95,8 @@ py::dict run_study(const Study& study, int threads, int at_once, bool retry_fail
     return d;
 }
 
-std::string run_calibration(const std::string& file, const std::optional<std::string>& results, std::optional<int> budget, int threads, int at_once, bool insist, const py::object& progress) {
+std::string run_calibration(const std::string& file, const std::optional<std::string>& results, std::optional<int> budget,
+                            int threads, int at_once, bool insist, const py::object& progress) {
     Calibration calibration = read_calibration(file);
     if (results) calibration.results = *results;
     if (budget) calibration.budget = *budget;
@@ -125,11 +130,16 @@ std::string run_calibration(const std::string& file, const std::optional<std::st
             control.stop = &stop;
             control.provenance = collect_provenance("feldspar.calibrate()", all_threads);
             const RunLaboratory* running = nullptr;
-            if (!teller.silent()) control.ended = [&](const Run& run, const RunRecord& record) { teller.tell("finished", RunTeller::ended(label_of_run(run), record), running->number_of(run), calibration.budget); };
+            if (!teller.silent())
+                control.ended = [&](const Run& run, const RunRecord& record) {
+                    teller.tell("finished", RunTeller::ended(label_of_run(run), record), running->number_of(run),
+                                calibration.budget);
+                };
             control.note = [&](const std::string& line) { teller.tell("note", line); };
             RunLaboratory laboratory(calibration, ledger, control);
             running = &laboratory;
-            const CalibrationResult result = calibrate(calibration, laboratory, [&](const std::string& line) { teller.tell("note", line); });
+            const CalibrationResult result =
+                calibrate(calibration, laboratory, [&](const std::string& line) { teller.tell("note", line); });
             complete = result.complete;
             if (!complete) return;
             json = calibration_json(calibration, result, control.provenance);
@@ -147,37 +157,59 @@ std::string run_calibration(const std::string& file, const std::optional<std::st
 
 void bind_studies(py::module_& m) {
     py::class_<Study>(m, "Study", "A study: one job, varied along axes, on several packings. Read by :meth:`read`.")
-        .def_static("read", [](const std::string& file, const std::optional<std::string>& results) {
-            Study study = read_study(file);
-            if (results) study.results = *results;
-            return study;
-        }, py::arg("file"), py::arg("results") = py::none(), "Reads and checks a study file. results: directory of ledger and runs in place of the file's. Raises InputError.")
-        .def_property_readonly("name", [](const Study& s) { return s.name; }, "Name of the study.")
-        .def_property_readonly("title", [](const Study& s) { return s.title; }, "Its title.")
-        .def_property_readonly("results", [](const Study& s) { return s.results.string(); }, "Directory of its ledger and runs.")
-        .def_property_readonly("page", [](const Study& s) { return study_page(s).string(); }, "The page that is written when it has been run.")
-        .def_property_readonly("axes", [](const Study& s) { return s.axes; }, "Names of its axes.")
-        .def_property_readonly("points", [](const Study& s) {
-            py::list list;
-            for (const Point& point : s.points) {
-                std::vector<std::string> labels;
-                for (const AxisValue& value : point.values) labels.push_back(value.label);
-                list.append(py::cast(labels));
-            }
-            return list;
-        }, "Its points: the label of the value on each axis.")
+        .def_static(
+            "read",
+            [](const std::string& file, const std::optional<std::string>& results) {
+                Study study = read_study(file);
+                if (results) study.results = *results;
+                return study;
+            },
+            py::arg("file"), py::arg("results") = py::none(),
+            "Reads and checks a study file. results: directory of ledger and runs in place of the file's. Raises InputError.")
+        .def_property_readonly(
+            "name", [](const Study& s) { return s.name; }, "Name of the study.")
+        .def_property_readonly(
+            "title", [](const Study& s) { return s.title; }, "Its title.")
+        .def_property_readonly(
+            "results", [](const Study& s) { return s.results.string(); }, "Directory of its ledger and runs.")
+        .def_property_readonly(
+            "page", [](const Study& s) { return study_page(s).string(); }, "The page that is written when it has been run.")
+        .def_property_readonly(
+            "axes", [](const Study& s) { return s.axes; }, "Names of its axes.")
+        .def_property_readonly(
+            "points",
+            [](const Study& s) {
+                py::list list;
+                for (const Point& point : s.points) {
+                    std::vector<std::string> labels;
+                    for (const AxisValue& value : point.values) labels.push_back(value.label);
+                    list.append(py::cast(labels));
+                }
+                return list;
+            },
+            "Its points: the label of the value on each axis.")
         .def("__len__", [](const Study& s) { return s.runs.size(); })
-        .def("run", &run_study, py::kw_only(), py::arg("threads") = 0, py::arg("at_once") = 0, py::arg("retry_failed") = false, py::arg("progress") = py::none(),
+        .def("run", &run_study, py::kw_only(), py::arg("threads") = 0, py::arg("at_once") = 0, py::arg("retry_failed") = false,
+             py::arg("progress") = py::none(),
              R"(Runs what is not done yet, and writes the page of the study. Goes on where it was interrupted.
 
 threads: of all runs together, 0 for as many as there are cores; at_once: runs side by side, 0 as suits their size; retry_failed: also runs that failed for good; progress: called with a dictionary when a
 run has ended (event, text, number, count). Returns counts: found_done, found_failed, done, failed, left, and run_s and wall_s. Raises OutputError, Interrupted with the same counts.)")
-        .def("points_csv", [](const Study& s) { return points_csv(s, point_results(s, Ledger(s.results, Ledger::Access::read))); }, "CSV text, a row a point: means, bounds of the 95 % intervals and number of packings, user units.")
-        .def("runs_csv", [](const Study& s) { return runs_csv(s, Ledger(s.results, Ledger::Access::read)); }, "CSV text, a row a run, SI units.")
-        .def("__repr__", [](const Study& s) { return fmt::format("<feldspar.Study '{}': {} points, {} runs>", s.name, s.points.size(), s.runs.size()); });
+        .def(
+            "points_csv", [](const Study& s) { return points_csv(s, point_results(s, Ledger(s.results, Ledger::Access::read))); },
+            "CSV text, a row a point: means, bounds of the 95 % intervals and number of packings, user units.")
+        .def(
+            "runs_csv", [](const Study& s) { return runs_csv(s, Ledger(s.results, Ledger::Access::read)); },
+            "CSV text, a row a run, SI units.")
+        .def("__repr__", [](const Study& s) {
+            return fmt::format("<feldspar.Study '{}': {} points, {} runs>", s.name, s.points.size(), s.runs.size());
+        });
 
-    m.def("run_calibration", &run_calibration, py::arg("file"), py::kw_only(), py::arg("results") = py::none(), py::arg("budget") = py::none(), py::arg("threads") = 0, py::arg("at_once") = 0,
-          py::arg("insist") = false, py::arg("progress") = py::none(), "Runs a calibration and returns calibration.json as text; feldspar.calibrate() is the convenient form, which explains the arguments.");
+    m.def("run_calibration", &run_calibration, py::arg("file"), py::kw_only(), py::arg("results") = py::none(),
+          py::arg("budget") = py::none(), py::arg("threads") = 0, py::arg("at_once") = 0, py::arg("insist") = false,
+          py::arg("progress") = py::none(),
+          "Runs a calibration and returns calibration.json as text; feldspar.calibrate() is the convenient form, which explains "
+          "the arguments.");
 }
 
 }  // namespace feldspar::python

@@ -1,4 +1,6 @@
 // The rules of the house that a compiler does not see (ARCHITECTURE.md), each as a test that names the offending lines.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,23 +10,23 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 namespace {
 
 namespace fs = std::filesystem;
 
 /// The rooms in the order in which data visits them; a room may include itself and the rooms before it.
-const std::vector<std::string> rooms{"base", "geometry", "specimen", "laws", "model", "methods", "fast", "step", "gpu", "lab", "job", "output", "live", "study", "findings", "calibration"};
+const std::vector<std::string> rooms{"base", "geometry", "specimen", "laws",   "model", "methods", "fast",     "step",
+                                     "gpu",  "lab",      "job",      "output", "live",  "study",   "findings", "calibration"};
 
 /// What the user asks, as plain data. Every room speaks this language, so it may be included from any floor; in turn it may
 /// include nothing of the house but itself and base (SharedVocabularyIncludesNothing).
-const std::set<std::string> vocabulary{"feldspar/model/spec.hpp", "feldspar/model/fixture_spec.hpp", "feldspar/model/gauge_spec.hpp", "feldspar/model/stage_spec.hpp"};
+const std::set<std::string> vocabulary{"feldspar/model/spec.hpp", "feldspar/model/fixture_spec.hpp",
+                                       "feldspar/model/gauge_spec.hpp", "feldspar/model/stage_spec.hpp"};
 
 const std::set<std::string> made_at_build_time{"feldspar_commit.hpp"};
 
 struct SourceFile {
-    std::string name;   // relative to the repository
+    std::string name;  // relative to the repository
     std::vector<std::string> lines;
 };
 
@@ -33,7 +35,8 @@ bool has_extension(const fs::path& file, const std::set<std::string>& extensions
 }
 
 const std::set<std::string> code_extensions{".hpp", ".cpp"};
-const std::set<std::string> text_extensions{".hpp", ".cpp", ".md", ".txt", ".cmake", ".toml", ".json", ".js", ".css", ".html", ".py", ".sh", ""};
+const std::set<std::string> text_extensions{".hpp", ".cpp", ".md",   ".txt", ".cmake", ".toml", ".json",
+                                            ".js",  ".css", ".html", ".py",  ".sh",    ""};
 
 SourceFile read(const fs::path& file) {
     SourceFile source{fs::relative(file, FELDSPAR_SOURCE_DIR).generic_string(), {}};
@@ -61,11 +64,13 @@ std::vector<SourceFile> files_under(const std::string& folder, const std::set<st
 /// Everything that we wrote: the folders of the house and the files at its door.
 std::vector<SourceFile> all_files() {
     std::vector<SourceFile> found;
-    for (const char* folder : {"src", "apps", "tests", "benchmarks", "cmake", "docs", "examples", "studies", "scripts", ".ci", "python"}) {
+    for (const char* folder :
+         {"src", "apps", "tests", "benchmarks", "cmake", "docs", "examples", "studies", "scripts", ".ci", "python"}) {
         for (SourceFile& file : files_under(folder, text_extensions)) found.push_back(std::move(file));
     }
     for (const auto& entry : fs::directory_iterator(FELDSPAR_SOURCE_DIR)) {
-        const bool ours = entry.is_regular_file() && has_extension(entry.path(), text_extensions) && entry.path().filename() != "LICENSE";
+        const bool ours =
+            entry.is_regular_file() && has_extension(entry.path(), text_extensions) && entry.path().filename() != "LICENSE";
         if (ours) found.push_back(read(entry.path()));
     }
     return found;
@@ -76,7 +81,8 @@ template <class Visit>
 void for_each_match(const std::vector<SourceFile>& files, const std::regex& pattern, Visit visit) {
     for (const SourceFile& file : files) {
         for (std::size_t i = 0; i < file.lines.size(); ++i) {
-            for (std::sregex_iterator m(file.lines[i].begin(), file.lines[i].end(), pattern), end; m != end; ++m) visit(file, i + 1, *m);
+            for (std::sregex_iterator m(file.lines[i].begin(), file.lines[i].end(), pattern), end; m != end; ++m)
+                visit(file, i + 1, *m);
         }
     }
 }
@@ -112,13 +118,15 @@ TEST(Conventions, IncludesGoOneWay) {
                            }
                            const std::string other = target.substr(9, target.find('/', 9) - 9);
                            ASSERT_LT(floor_of(other), rooms.size()) << at(file, line) << "there is no room '" << other << "'";
-                           EXPECT_LE(floor_of(other), floor_of(room)) << at(file, line) << "'" << room << "' must not know '" << other << "'";
+                           EXPECT_LE(floor_of(other), floor_of(room))
+                               << at(file, line) << "'" << room << "' must not know '" << other << "'";
                        });
     }
     EXPECT_GT(seen, 20u) << "no includes found: is this test looking at the right folder?";
 }
 
-/// A test method is one file and one line of a list: nothing outside its room asks for a method by its name, neither code nor the scripts of pages.
+/// A test method is one file and one line of a list: nothing outside its room asks for a method by its name, neither code nor the
+/// scripts of pages.
 TEST(Conventions, MethodsAreNamedInTheirRoomOnly) {
     std::string names;
     for (const std::string& line : read(fs::path(FELDSPAR_SOURCE_DIR) / "src/feldspar/methods/list.inc").lines) {
@@ -143,10 +151,12 @@ TEST(Conventions, SharedVocabularyIncludesNothing) {
     for (const std::string& header : vocabulary) {
         const SourceFile file = read(fs::path(FELDSPAR_SOURCE_DIR) / "src" / header);
         ASSERT_FALSE(file.lines.empty()) << header;
-        for_each_match({file}, std::regex(R"re(^\s*#\s*include\s*"([^"]+)")re"), [&](const SourceFile& in, std::size_t line, const std::smatch& match) {
-            const std::string target = match[1];
-            EXPECT_TRUE(vocabulary.count(target) > 0 || target.rfind("feldspar/base/", 0) == 0) << at(in, line) << "the shared vocabulary is plain data and depends on no room";
-        });
+        for_each_match({file}, std::regex(R"re(^\s*#\s*include\s*"([^"]+)")re"),
+                       [&](const SourceFile& in, std::size_t line, const std::smatch& match) {
+                           const std::string target = match[1];
+                           EXPECT_TRUE(vocabulary.count(target) > 0 || target.rfind("feldspar/base/", 0) == 0)
+                               << at(in, line) << "the shared vocabulary is plain data and depends on no room";
+                       });
     }
 }
 
@@ -161,7 +171,8 @@ TEST(Conventions, EveryHeaderSaysWhatItIs) {
     for (const SourceFile& file : files_under("src", {".hpp"})) {
         ASSERT_FALSE(file.lines.empty()) << file.name;
         EXPECT_EQ(file.lines.front().rfind("// ", 0), 0u) << file.name << ": starts with a comment on what it is for";
-        EXPECT_NE(std::find(file.lines.begin(), file.lines.end(), "#pragma once"), file.lines.end()) << file.name << ": #pragma once";
+        EXPECT_NE(std::find(file.lines.begin(), file.lines.end(), "#pragma once"), file.lines.end())
+            << file.name << ": #pragma once";
     }
 }
 
@@ -177,13 +188,16 @@ TEST(Conventions, NoUnfinishedNotes) {
 }
 
 TEST(Conventions, TheLibraryNeitherPrintsNorExits) {
-    expect_nowhere(files_under("src", code_extensions),
-                   std::regex(R"(std::(cout|cerr|clog|puts|exit|abort|terminate|quick_exit)\b|\bf?printf\s*\(|fmt::print\b|(^|[^\w.])exit\s*\()"),
-                   "the library throws; only the program prints and exits");
+    expect_nowhere(
+        files_under("src", code_extensions),
+        std::regex(
+            R"(std::(cout|cerr|clog|puts|exit|abort|terminate|quick_exit)\b|\bf?printf\s*\(|fmt::print\b|(^|[^\w.])exit\s*\()"),
+        "the library throws; only the program prints and exits");
 }
 
 TEST(Conventions, RandomNumbersComeFromNamedStreams) {
-    expect_nowhere(files_under("src", code_extensions), std::regex(R"(std::(random_device|mt19937\w*|\w+_distribution)\b|\bs?rand\s*\()"),
+    expect_nowhere(files_under("src", code_extensions),
+                   std::regex(R"(std::(random_device|mt19937\w*|\w+_distribution)\b|\bs?rand\s*\()"),
                    "use RandomStream: the same numbers on every platform");
 }
 
@@ -201,9 +215,11 @@ TEST(Conventions, CitedEquationsExist) {
     for (const char* folder : {"src", "tests", "docs/decisions"}) {
         for (SourceFile& file : files_under(folder, {".hpp", ".cpp", ".md"})) citing.push_back(std::move(file));
     }
-    for_each_match(citing, std::regex(R"(\(([STCMLP]\d+)\))"), [&](const SourceFile& file, std::size_t line, const std::smatch& match) {
-        EXPECT_EQ(equations.count(match[1]), 1u) << at(file, line) << "cites (" << match[1] << "), which docs/theory does not have";
-    });
+    for_each_match(citing, std::regex(R"(\(([STCMLP]\d+)\))"),
+                   [&](const SourceFile& file, std::size_t line, const std::smatch& match) {
+                       EXPECT_EQ(equations.count(match[1]), 1u)
+                           << at(file, line) << "cites (" << match[1] << "), which docs/theory does not have";
+                   });
 }
 
 // Links between our own pages must lead somewhere.
@@ -212,10 +228,11 @@ TEST(Conventions, LinksInTheDocumentationWork) {
     for (SourceFile& file : all_files()) {
         if (file.name.size() > 3 && file.name.substr(file.name.size() - 3) == ".md") pages.push_back(std::move(file));
     }
-    for_each_match(pages, std::regex(R"(\]\(([^)#:\s]+)(#[^)]*)?\))"), [&](const SourceFile& file, std::size_t line, const std::smatch& match) {
-        const fs::path target = fs::path(FELDSPAR_SOURCE_DIR) / fs::path(file.name).parent_path() / match[1].str();
-        EXPECT_TRUE(fs::exists(target)) << at(file, line) << "no such file: " << match[1];
-    });
+    for_each_match(pages, std::regex(R"(\]\(([^)#:\s]+)(#[^)]*)?\))"),
+                   [&](const SourceFile& file, std::size_t line, const std::smatch& match) {
+                       const fs::path target = fs::path(FELDSPAR_SOURCE_DIR) / fs::path(file.name).parent_path() / match[1].str();
+                       EXPECT_TRUE(fs::exists(target)) << at(file, line) << "no such file: " << match[1];
+                   });
 }
 
 TEST(Conventions, ScriptsStopAtTheFirstError) {

@@ -1,12 +1,13 @@
-// A test that is ended and goes on from its kept state leaves the bits of one that was never disturbed: every method, kind of grain and numerics, on other numbers of threads.
+// A test that is ended and goes on from its kept state leaves the bits of one that was never disturbed: every method, kind of
+// grain and numerics, on other numbers of threads.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <cctype>
 #include <cmath>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "../verification/fixtures.hpp"
 #include "feldspar/base/error.hpp"
@@ -24,7 +25,8 @@ std::string bytes_of(TestResult result) {
     result.threads = 1;
     std::string bytes;
     const StateBase nothing;
-    StateWriter writer([&](const void* data, std::size_t count) { bytes.append(static_cast<const char*>(data), count); }, nothing);
+    StateWriter writer([&](const void* data, std::size_t count) { bytes.append(static_cast<const char*>(data), count); },
+                       nothing);
     keep_course(writer, result);
     return bytes;
 }
@@ -35,11 +37,13 @@ public:
     bool due(bool stopped) override {
         ++asked_;
         if (asked_ == end_at_) stop = true;
-        return stopped || asked_ % 7 == 0;   // states kept on the way do not matter
+        return stopped || asked_ % 7 == 0;  // states kept on the way do not matter
     }
     void keep(const std::function<void(const StatePut&)>& write) override {
         state.clear();
-        write([&](const void* data, std::size_t count) { state.insert(state.end(), static_cast<const char*>(data), static_cast<const char*>(data) + count); });
+        write([&](const void* data, std::size_t count) {
+            state.insert(state.end(), static_cast<const char*>(data), static_cast<const char*>(data) + count);
+        });
     }
     std::vector<char> kept() override { return state; }
     void refuse(const std::string& why) override {
@@ -62,7 +66,8 @@ private:
     int asked_ = 0, end_at_ = 0;
 };
 
-TestResult run_in_pieces(const TestSetup& setup, const std::vector<int>& moments, int* pieces = nullptr, const std::function<std::unique_ptr<StepDevice>()>& device = {}) {
+TestResult run_in_pieces(const TestSetup& setup, const std::vector<int>& moments, int* pieces = nullptr,
+                         const std::function<std::unique_ptr<StepDevice>()>& device = {}) {
     Memory memory;
     int threads = 1;
     for (std::size_t piece = 0;; ++piece) {
@@ -91,7 +96,7 @@ std::vector<Case> all_cases() {
         for (const GrainKind grains : grain_kinds)
             for (const NumericsKind numerics : {NumericsKind::adaptive, NumericsKind::paper, NumericsKind::dynamic}) {
                 const TestMethod& definition = method.definition();
-                if (numerics != NumericsKind::adaptive && definition.build.stages != nullptr) continue;   // refused
+                if (numerics != NumericsKind::adaptive && definition.build.stages != nullptr) continue;  // refused
                 cases.push_back({method, grains, numerics});
             }
     return cases;
@@ -169,7 +174,8 @@ TEST(GoingOn, OnADeviceToo) {
         RunControl control = fixtures::threads(1);
         control.device = open_emulation;
         const TestResult undisturbed = run_test(setup, control);
-        EXPECT_TRUE(method != methods::uniaxial_compression || undisturbed.passages > 1) << "it never went back: choose another packing";
+        EXPECT_TRUE(method != methods::uniaxial_compression || undisturbed.passages > 1)
+            << "it never went back: choose another packing";
         std::vector<int> moments;
         for (int k = 0; k < 12; ++k) moments.push_back(20 + 37 * k % 90);
         const TestResult result = run_in_pieces(setup, moments, nullptr, open_emulation);

@@ -1,9 +1,9 @@
 // A test that is watched is the same test; one that is led through stages has the bits of the test whose setup has these stages.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstring>
 #include <functional>
-
-#include <gtest/gtest.h>
 
 #include "../verification/fixtures.hpp"
 #include "feldspar/base/error.hpp"
@@ -14,7 +14,8 @@ namespace {
 
 class Observer final : public TestObserver {
 public:
-    explicit Observer(std::function<TestOrders(const TestView&)> look, std::optional<StageSpec> first = {}) : look_(std::move(look)), first_(std::move(first)) {}
+    explicit Observer(std::function<TestOrders(const TestView&)> look, std::optional<StageSpec> first = {})
+        : look_(std::move(look)), first_(std::move(first)) {}
     std::optional<StageSpec> begins() override { return first_; }
     TestOrders look(const TestView& view) override {
         ++looks;
@@ -42,8 +43,10 @@ void expect_same_bits(const TestResult& a, const TestResult& b) {
         const HistoryRow &x = a.history[i], &y = b.history[i];
         ASSERT_EQ(x.step, y.step) << "row " << i;
         ASSERT_EQ(x.stage, y.stage) << "row " << i;
-        ASSERT_TRUE(same(x.axial_strain, y.axial_strain) && same(x.axial_stress_Pa, y.axial_stress_Pa) && same(x.residual, y.residual) && same(x.platen_speed, y.platen_speed) && same(x.sigma3_Pa, y.sigma3_Pa) &&
-                    same(x.energy.external, y.energy.external) && same(x.energy.damping, y.energy.damping) && same(x.energy.kinetic, y.energy.kinetic))
+        ASSERT_TRUE(same(x.axial_strain, y.axial_strain) && same(x.axial_stress_Pa, y.axial_stress_Pa) &&
+                    same(x.residual, y.residual) && same(x.platen_speed, y.platen_speed) && same(x.sigma3_Pa, y.sigma3_Pa) &&
+                    same(x.energy.external, y.energy.external) && same(x.energy.damping, y.energy.damping) &&
+                    same(x.energy.kinetic, y.energy.kinetic))
             << "row " << i;
     }
     ASSERT_EQ(a.cracks.size(), b.cracks.size());
@@ -73,7 +76,8 @@ TEST(Observers, WhoOnlyLooksChangesNoBit) {
 }
 
 class Led : public testing::TestWithParam<ModelSpec> {};
-INSTANTIATE_TEST_SUITE_P(Models, Led, testing::Values(ModelSpec{}, fixtures::model(GrainKind::rigid)), [](const auto& tested) { return fixtures::label(tested.param); });
+INSTANTIATE_TEST_SUITE_P(Models, Led, testing::Values(ModelSpec{}, fixtures::model(GrainKind::rigid)),
+                         [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(Led, ThroughStagesItHasTheBitsOfATestWithTheseStages) {
     TestSetup s = small(methods::biaxial, GetParam());
@@ -90,11 +94,13 @@ TEST_P(Led, ThroughStagesItHasTheBitsOfATestWithTheseStages) {
     ASSERT_EQ(wanted.stages.size(), stages.size()) << wanted.stop_reason;
 
     std::size_t next = 1;
-    Observer observer([&](const TestView& view) {
-        TestOrders orders;
-        if (view.stage_ended && next < stages.size()) orders.stage = stages[next++];
-        return orders;
-    }, stages.front());
+    Observer observer(
+        [&](const TestView& view) {
+            TestOrders orders;
+            if (view.stage_ended && next < stages.size()) orders.stage = stages[next++];
+            return orders;
+        },
+        stages.front());
     const TestResult led = run(s, observer);
     expect_same_bits(led, wanted);
     ASSERT_EQ(led.stages.size(), stages.size());
@@ -103,16 +109,20 @@ TEST_P(Led, ThroughStagesItHasTheBitsOfATestWithTheseStages) {
 }
 
 TEST(Observers, AStageMayBeCutShort) {
-    Observer observer([](const TestView& view) {
-        TestOrders orders;
-        if (view.stage == 1 && view.row().axial_stress_Pa > 20e6) orders.stage = StageSpec{.kind = StageKind::unload, .end = StageEnd::stress, .value = 5e6};
-        return orders;
-    }, StageSpec{.kind = StageKind::load});
+    Observer observer(
+        [](const TestView& view) {
+            TestOrders orders;
+            if (view.stage == 1 && view.row().axial_stress_Pa > 20e6)
+                orders.stage = StageSpec{.kind = StageKind::unload, .end = StageEnd::stress, .value = 5e6};
+            return orders;
+        },
+        StageSpec{.kind = StageKind::load});
     const TestResult led = run(small(), observer);
     ASSERT_EQ(led.stages.size(), 2U);
     EXPECT_EQ(led.stages[0].ended, "another stage was ordered");
     EXPECT_GT(led.history[led.stages[0].last_row].axial_stress_Pa, 20e6);
-    EXPECT_NEAR(led.history.back().axial_stress_Pa / 5e6, 1.0, 0.02) << "an end is met to a thousandth of the largest load, and what moves on";
+    EXPECT_NEAR(led.history.back().axial_stress_Pa / 5e6, 1.0, 0.02)
+        << "an end is met to a thousandth of the largest load, and what moves on";
 }
 
 TEST(Observers, MayEndATest) {
@@ -133,7 +143,8 @@ TEST(Observers, OrdersOfLoadAreInTheBooks) {
     s.test.sigma3_Pa = 4e6;
     s.numerics.maximum_steps = 3000;
     int orders_given = 0;
-    bool went_back = false, other_pressure = false, other_motion = false;   // as seen on the way: a test that goes back forgets these rows
+    bool went_back = false, other_pressure = false,
+         other_motion = false;  // as seen on the way: a test that goes back forgets these rows
     double motion = 0.0;
     Observer observer([&](const TestView& view) {
         TestOrders orders;
@@ -145,11 +156,22 @@ TEST(Observers, OrdersOfLoadAreInTheBooks) {
         if (n % 20 != 0) return orders;
         ++orders_given;
         switch (n / 20 % 5) {
-            case 1: orders.pressures = {{"", 5e6}}; break;
-            case 2: orders.pace = TestOrders::Pace::given; orders.speed = -0.5 * std::abs(view.speed); break;
-            case 3: orders.pace = TestOrders::Pace::own; break;
-            case 4: orders.motions = {{view.assembly.fixtures[0].name, 0.9 * view.assembly.fixtures[0].motion}}; break;
-            default: orders.pressures = {{"", 4e6}}; break;
+            case 1:
+                orders.pressures = {{"", 5e6}};
+                break;
+            case 2:
+                orders.pace = TestOrders::Pace::given;
+                orders.speed = -0.5 * std::abs(view.speed);
+                break;
+            case 3:
+                orders.pace = TestOrders::Pace::own;
+                break;
+            case 4:
+                orders.motions = {{view.assembly.fixtures[0].name, 0.9 * view.assembly.fixtures[0].motion}};
+                break;
+            default:
+                orders.pressures = {{"", 4e6}};
+                break;
         }
         return orders;
     });
@@ -174,7 +196,8 @@ TEST(Observers, AGivenSpeedHoldsWithNumericsThatKeepOne) {
     const TestResult led = run(s, observer);
     double first = led.history.front().platen_speed;
     EXPECT_GT(first, 0.0);
-    for (const HistoryRow& row : led.history) EXPECT_EQ(row.platen_speed, row.step > 100 && row.step <= 300 ? 2.0 * first : first) << "at step " << row.step;
+    for (const HistoryRow& row : led.history)
+        EXPECT_EQ(row.platen_speed, row.step > 100 && row.step <= 300 ? 2.0 * first : first) << "at step " << row.step;
     EXPECT_LT(led.energy_residual, 1e-3);
 }
 

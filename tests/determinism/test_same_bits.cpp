@@ -1,8 +1,8 @@
 // Same job, same seed: same bits, for any number of threads and every time.
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <cstring>
-
-#include <gtest/gtest.h>
 
 #include "../verification/fixtures.hpp"
 
@@ -28,7 +28,7 @@ std::uint64_t hash(const TestResult& r) {
         add(row.residual_median);
         add(row.platen_speed);
         add(row.stress_bottom_Pa);
-        add(row.energy.external);   // the platens' work is summed by one thread while the others wait
+        add(row.energy.external);  // the platens' work is summed by one thread while the others wait
         add(row.energy.kinetic);
         add(row.energy.friction);
         add(row.energy.fracture);
@@ -52,12 +52,13 @@ struct Case {
 
 class SameBits : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Tests, SameBits,
-                         testing::Values(Case{methods::uniaxial_compression, {}}, Case{methods::biaxial, {}}, Case{methods::brazilian, {}},
-                                         Case{methods::cyclic_compression, {}},
+                         testing::Values(Case{methods::uniaxial_compression, {}}, Case{methods::biaxial, {}},
+                                         Case{methods::brazilian, {}}, Case{methods::cyclic_compression, {}},
                                          Case{methods::biaxial, fixtures::model(GrainKind::rigid)},
                                          Case{methods::brazilian, fixtures::model(GrainKind::rigid, ContactKind::point)},
                                          Case{methods::uniaxial_compression, fixtures::model(GrainKind::inner_particles)},
-                                         Case{methods::direct_tension, fixtures::model(GrainKind::inner_particles, ContactKind::point, ContactNormal::edge)}),
+                                         Case{methods::direct_tension, fixtures::model(GrainKind::inner_particles,
+                                                                                       ContactKind::point, ContactNormal::edge)}),
                          [](const auto& tested) {
                              std::string text = name(tested.param.kind);
                              std::erase(text, '-');
@@ -66,15 +67,17 @@ INSTANTIATE_TEST_SUITE_P(Tests, SameBits,
 
 TEST_P(SameBits, ForAnyNumberOfThreadsAndEveryTime) {
     const auto [kind, model] = GetParam();
-    const bool inner = model.kind == GrainKind::inner_particles;   // ten times as many bodies: a smaller specimen
-    const SpecimenSpec spec = kind == methods::brazilian ? fixtures::disc(0.03) : inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04);
+    const bool inner = model.kind == GrainKind::inner_particles;  // ten times as many bodies: a smaller specimen
+    const SpecimenSpec spec = kind == methods::brazilian ? fixtures::disc(0.03)
+                              : inner                    ? fixtures::rectangle(0.014, 0.028)
+                                                         : fixtures::rectangle(0.02, 0.04);
     TestSetup s = fixtures::setup(spec, kind, model, ContactLaw::bilinear, 11);
     s.numerics.accuracy = 0.02;
     s.test.membrane_plates = 8;
-    if (inner && kind == methods::uniaxial_compression) s.numerics.maximum_steps = 3000;   // beyond the first cracks
-    if (kind == methods::cyclic_compression) s.numerics.maximum_steps = 5000;   // three cycles
+    if (inner && kind == methods::uniaxial_compression) s.numerics.maximum_steps = 3000;  // beyond the first cracks
+    if (kind == methods::cyclic_compression) s.numerics.maximum_steps = 5000;             // three cycles
     if (kind == methods::biaxial) s.test.sigma3_Pa = 4e6;
-    if (kind == methods::direct_tension) s.test.stop_fraction = 0.3;   // softening alone reaches the usual 0.8, without a crack
+    if (kind == methods::direct_tension) s.test.stop_fraction = 0.3;  // softening alone reaches the usual 0.8, without a crack
     const TestResult first = run_test(s, fixtures::threads(1));
     if (kind == methods::cyclic_compression) {
         EXPECT_GT(first.stages.size(), 4U);
@@ -94,7 +97,7 @@ TEST_P(SameBits, ForAnyNumberOfThreadsAndEveryTime) {
     EXPECT_EQ(hash(grown), one);
     EXPECT_EQ(grown.threads, 3);
     s.specimen = fixtures::make(fixtures::filled_for(model, spec), 12);
-    EXPECT_NE(hash(run_test(s, fixtures::threads(1))), one);   // another packing is another rock
+    EXPECT_NE(hash(run_test(s, fixtures::threads(1))), one);  // another packing is another rock
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Edits of a kept state behind its checksum: what a finished test left, and the state of one under way, read over those of a small specimen. A StateError refuses it.
+// Edits of a kept state behind its checksum: what a finished test left, and the state of one under way, read over those of a
+// small specimen. A StateError refuses it.
 #include "../verification/fixtures.hpp"
 #include "feldspar/lab/keep_test.hpp"
 #include "fuzz.hpp"
@@ -11,7 +12,9 @@ struct Kept final : StateKeeper {
     bool due(bool) override { return false; }
     void keep(const std::function<void(const StatePut&)>& write) override {
         bytes.clear();
-        write([&](const void* data, std::size_t count) { bytes.insert(bytes.end(), static_cast<const char*>(data), static_cast<const char*>(data) + count); });
+        write([&](const void* data, std::size_t count) {
+            bytes.insert(bytes.end(), static_cast<const char*>(data), static_cast<const char*>(data) + count);
+        });
     }
     std::vector<char> kept() override { return bytes; }
     void refuse(const std::string&) override {}
@@ -32,7 +35,7 @@ void checkpoint(std::string_view input) {
         choose_step(experiment);
         return experiment.state();
     }();
-    static const std::string whole = [] {   // one test has ended, the next is under way
+    static const std::string whole = [] {  // one test has ended, the next is under way
         Kept kept;
         TestKeeping keeping(&kept);
         Experiment experiment(setup, control);

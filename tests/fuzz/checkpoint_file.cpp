@@ -8,7 +8,8 @@ void checkpoint_file(std::string_view input) {
     static const CheckpointOwner owner{"test", "0.1.0 commit", "portable"};
     static const std::string whole = [] {
         const TemporaryFolder folder;
-        write_checkpoint(RunDirectory::open(folder.path()), "state", owner, [](const StatePut& put) { put("a state of some bytes", 21); });
+        write_checkpoint(RunDirectory::open(folder.path()), "state", owner,
+                         [](const StatePut& put) { put("a state of some bytes", 21); });
         return read_text(folder / "state");
     }();
     const std::filesystem::path file = file_with("state", edited(whole, input));

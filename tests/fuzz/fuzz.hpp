@@ -1,5 +1,6 @@
-// What the fuzzing targets share. A target is a function that takes any bytes as one kind of input and reads them as the program would. It may read or refuse them; that is all it
-// may do: a crash, a loop without end, memory without bound, or an error of another kind is a fault.
+// What the fuzzing targets share. A target is a function that takes any bytes as one kind of input and reads them as the program
+// would. It may read or refuse them; that is all it may do: a crash, a loop without end, memory without bound, or an error of
+// another kind is a fault.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +28,8 @@ bool read_or_refuse(Read&& read) {
         return true;
     } catch (const InputError& error) {
         if (error.problem().empty()) throw Fault("an InputError says nothing");
-        if (std::string_view(error.what()).size() > 1'000'000) throw Fault("the message of an InputError has more than a million characters");
+        if (std::string_view(error.what()).size() > 1'000'000)
+            throw Fault("the message of an InputError has more than a million characters");
         return false;
     }
 }
@@ -40,7 +42,8 @@ inline std::filesystem::path file_with(const std::string& name, std::string_view
     return file;
 }
 
-/// The bytes with these edits: of every 12 bytes 4 say where and 8 what is put there; the rest, if there is any, where the bytes end.
+/// The bytes with these edits: of every 12 bytes 4 say where and 8 what is put there; the rest, if there is any, where the bytes
+/// end.
 inline std::string edited(std::string bytes, std::string_view edits) {
     const auto place = [&](std::string_view text) {
         std::size_t at = 0;

@@ -1,5 +1,6 @@
 // A job file, with all that is said of it before it runs. What the program writes of it must be a job with the same results.
 #include "feldspar/job/job.hpp"
+
 #include "fuzz.hpp"
 
 namespace feldspar::fuzz {
@@ -10,7 +11,8 @@ void job(std::string_view input) {
         (void)warnings(read);
         const std::string resolved = resolved_toml(read);
         try {
-            if (resolved_toml(parse_job(resolved, "/nowhere/job-resolved.toml")) != resolved) throw Fault("the resolved job is read as another job:\n" + resolved);
+            if (resolved_toml(parse_job(resolved, "/nowhere/job-resolved.toml")) != resolved)
+                throw Fault("the resolved job is read as another job:\n" + resolved);
         } catch (const InputError& error) {
             throw Fault(std::string("the resolved job is refused: ") + error.what() + "\n" + resolved);
         }

@@ -1,6 +1,8 @@
-// Edits of the bytes of a ledger (an SQLite file): pages or rows are damaged. It is read, and a run is claimed and recorded. A damaged ledger is an OutputError, too.
-#include "../small_study.hpp"
+// Edits of the bytes of a ledger (an SQLite file): pages or rows are damaged. It is read, and a run is claimed and recorded. A
+// damaged ledger is an OutputError, too.
 #include "feldspar/study/ledger.hpp"
+
+#include "../small_study.hpp"
 #include "fuzz.hpp"
 
 namespace feldspar::fuzz {

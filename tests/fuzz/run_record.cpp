@@ -1,5 +1,7 @@
-// run.json of a run, as it is read back when a ledger is made anew. The checksum is taken out, so that what stands behind it is reached.
+// run.json of a run, as it is read back when a ledger is made anew. The checksum is taken out, so that what stands behind it is
+// reached.
 #include "feldspar/study/run_record.hpp"
+
 #include "fuzz.hpp"
 
 namespace feldspar::fuzz {

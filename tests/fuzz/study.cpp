@@ -1,6 +1,7 @@
 // A study file beside a job "job.toml".
-#include "../small_study.hpp"
 #include "feldspar/study/study.hpp"
+
+#include "../small_study.hpp"
 #include "fuzz.hpp"
 
 namespace feldspar::fuzz {

@@ -1,9 +1,12 @@
-// Every input that is kept for the fuzzing targets: found by fuzzing, or written for a fault. Reading it ends as it should, whatever the compiler. And so for inputs that come of these by
-// random edits, which need no Clang:
+// Every input that is kept for the fuzzing targets: found by fuzzing, or written for a fault. Reading it ends as it should,
+// whatever the compiler. And so for inputs that come of these by random edits, which need no Clang:
 //
-//   FELDSPAR_MUTATIONS=100000 build/release/test_corpus --gtest_filter='*Edited*/job'     so many; FELDSPAR_FIRST_MUTATION=n begins elsewhere
+//   FELDSPAR_MUTATIONS=100000 build/release/test_corpus --gtest_filter='*Edited*/job'     so many; FELDSPAR_FIRST_MUTATION=n
+//   begins elsewhere
 //
-// What ends the program, or takes more than 20 s of processor time, is in the file that the message names, or "last-input" in the current directory.
+// What ends the program, or takes more than 20 s of processor time, is in the file that the message names, or "last-input" in the
+// current directory.
+#include <gtest/gtest.h>
 #include <sys/time.h>
 
 #include <algorithm>
@@ -14,8 +17,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "fuzz.hpp"
 
@@ -44,12 +45,15 @@ const std::vector<Target>& all_targets() {
 // By the names of their files, in order.
 std::map<std::string, std::string> inputs_of(const Target& target) {
     std::map<std::string, std::string> inputs;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "tests/fuzz/corpus" / target.name)) inputs[entry.path().string()] = read_text(entry.path());
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "tests/fuzz/corpus" / target.name))
+        inputs[entry.path().string()] = read_text(entry.path());
     return inputs;
 }
 
 class Corpus : public testing::TestWithParam<Target> {};
-INSTANTIATE_TEST_SUITE_P(Inputs, Corpus, testing::ValuesIn(all_targets()), [](const auto& tested) { return std::string(tested.param.name); });
+INSTANTIATE_TEST_SUITE_P(Inputs, Corpus, testing::ValuesIn(all_targets()),
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST_P(Corpus, IsReadOrRefused) {
     const auto inputs = inputs_of(GetParam());
@@ -75,23 +79,66 @@ public:
 private:
     std::size_t below(std::size_t count) { return count == 0 ? 0 : random_() % count; }
 
-    std::pair<std::size_t, std::size_t> a_line(const std::string& text) {   // begin and length, with its end
-        const std::size_t at = below(text.size()), begin = at == 0 ? 0 : text.rfind('\n', at - 1) + 1, end = std::min(text.find('\n', at), text.size() - 1);
+    std::pair<std::size_t, std::size_t> a_line(const std::string& text) {  // begin and length, with its end
+        const std::size_t at = below(text.size()), begin = at == 0 ? 0 : text.rfind('\n', at - 1) + 1,
+                          end = std::min(text.find('\n', at), text.size() - 1);
         return {begin, end + 1 - begin};
     }
 
     void edit(std::string& text) {
-        static const std::vector<std::string> pieces{"0", "-1", "1e308", "-1e308", "1e-320", "nan", "inf", "1e999", "9223372036854775807", "-9223372036854775808", "2147483648", "4294967295", "0.1", "1e300", "",
-                                                     "\"\"", "[]", "{}", "[[", "]]", "\n", ",", " ", "=", ".", "\"", "'", "#", "%", "mm", " GPa", "true", std::string(1, '\0'), "\xff", "\xc2\x9b", std::string(300, 'a')};
+        static const std::vector<std::string> pieces{"0",
+                                                     "-1",
+                                                     "1e308",
+                                                     "-1e308",
+                                                     "1e-320",
+                                                     "nan",
+                                                     "inf",
+                                                     "1e999",
+                                                     "9223372036854775807",
+                                                     "-9223372036854775808",
+                                                     "2147483648",
+                                                     "4294967295",
+                                                     "0.1",
+                                                     "1e300",
+                                                     "",
+                                                     "\"\"",
+                                                     "[]",
+                                                     "{}",
+                                                     "[[",
+                                                     "]]",
+                                                     "\n",
+                                                     ",",
+                                                     " ",
+                                                     "=",
+                                                     ".",
+                                                     "\"",
+                                                     "'",
+                                                     "#",
+                                                     "%",
+                                                     "mm",
+                                                     " GPa",
+                                                     "true",
+                                                     std::string(1, '\0'),
+                                                     "\xff",
+                                                     "\xc2\x9b",
+                                                     std::string(300, 'a')};
         if (text.empty()) text = pieces[below(pieces.size())];
         if (text.empty()) return;
         const std::size_t at = below(text.size());
         switch (below(9)) {
-            case 0: text[at] = static_cast<char>(random_()); return;
-            case 1: text.insert(at, pieces[below(pieces.size())]); return;
-            case 2: text.erase(at, 1 + below(20)); return;
-            case 3: text.insert(at, text.substr(below(text.size()), below(60))); return;
-            case 4: {   // a number
+            case 0:
+                text[at] = static_cast<char>(random_());
+                return;
+            case 1:
+                text.insert(at, pieces[below(pieces.size())]);
+                return;
+            case 2:
+                text.erase(at, 1 + below(20));
+                return;
+            case 3:
+                text.insert(at, text.substr(below(text.size()), below(60)));
+                return;
+            case 4: {  // a number
                 std::size_t digit = text.find_first_of("0123456789", at);
                 if (digit == std::string::npos) return;
                 std::size_t end = text.find_first_not_of("0123456789.eE+-", digit);
@@ -109,14 +156,16 @@ private:
                 text.insert(a_line(text).first, line);
                 return;
             }
-            case 7: {   // a line of another input
+            case 7: {  // a line of another input
                 const std::string& other = inputs_[below(inputs_.size())];
                 if (other.empty()) return;
                 const auto [begin, length] = a_line(other);
                 text.insert(a_line(text).first, other.substr(begin, length));
                 return;
             }
-            default: text.resize(at); return;
+            default:
+                text.resize(at);
+                return;
         }
     }
 
@@ -134,7 +183,7 @@ TEST_P(Corpus, EditedIsReadOrRefused) {
     std::vector<std::string> inputs;
     for (const auto& [file, input] : inputs_of(GetParam())) inputs.push_back(input);
     Editor editor(inputs);
-    const itimerval limit{{0, 0}, {20, 0}};   // of processor time, so that a busy machine is no fault
+    const itimerval limit{{0, 0}, {20, 0}};  // of processor time, so that a busy machine is no fault
     for (std::uint64_t number = first; number < first + count; ++number) {
         const std::string input = editor.input(number);
         if (many) {

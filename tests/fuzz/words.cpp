@@ -7,7 +7,9 @@
 
 int main() {
     using namespace feldspar;
-    std::set<std::string> words{"[[", "]]", "[", "]", "{ ", " }", " = ", "\"\"\"", "true", "1e999", "-0", "nan", "0x7fffffffffffffff", "%", " GPa/m", "m^0.5", "sqrt(m)", "../"};
+    std::set<std::string> words{
+        "[[", "]]",     "[",     "]",       "{ ", " }", " = ", "\"\"\"", "true", "1e999", "-0", "nan", "0x7fffffffffffffff",
+        "%",  " GPa/m", "m^0.5", "sqrt(m)", "../"};
     for (const KeyTable& table : job_tables()) {
         words.insert(std::string(table.path));
         for (const JobKey& key : table.keys) {

@@ -1,13 +1,13 @@
 // Properties that every contact law must have, looped over the laws, and the closed forms of each.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <numbers>
 
-#include <gtest/gtest.h>
-
+#include "../table7.hpp"
 #include "feldspar/base/rng.hpp"
 #include "feldspar/laws/bond.hpp"
 #include "feldspar/laws/dilation.hpp"
-#include "../table7.hpp"
 
 namespace feldspar {
 namespace {
@@ -21,7 +21,7 @@ ContactMaterial material(ContactLaw law) {
 }
 
 struct Pulled {
-    double work_J = 0.0;      // done on the point
+    double work_J = 0.0;  // done on the point
     double peak_Pa = 0.0;
     BondState state;
     BondEvent event = BondEvent::none;
@@ -45,7 +45,8 @@ Pulled pull(const ContactMaterial& m, double reach_m, bool shear, int steps = 40
 
 class EveryLaw : public testing::TestWithParam<ContactLaw> {};
 INSTANTIATE_TEST_SUITE_P(Laws, EveryLaw,
-                         testing::Values(ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle),
+                         testing::Values(ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear,
+                                         ContactLaw::brittle),
                          [](const auto& tested) {
                              std::string text = name(tested.param);
                              std::erase(text, '-');
@@ -84,7 +85,7 @@ TEST_P(EveryLaw, ShearedToFailureDissipatesItsFractureEnergyAndPeaksAtItsCohesio
     EXPECT_EQ(p.event, BondEvent::broke_in_shear);
 }
 
-TEST_P(EveryLaw, TableValuesOfThePeakAreExactWithFineSteps) {   // model check: 8.50 and 29.75 MPa to 1e-4
+TEST_P(EveryLaw, TableValuesOfThePeakAreExactWithFineSteps) {  // model check: 8.50 and 29.75 MPa to 1e-4
     EXPECT_NEAR(pull(material(GetParam()), 1e-7, false, 100000).peak_Pa, 8.5e6, 8.5e6 * 1e-4);
     EXPECT_NEAR(pull(material(GetParam()), 1e-6, true, 100000).peak_Pa, 29.75e6, 29.75e6 * 1e-4);
 }
@@ -137,17 +138,17 @@ TEST_P(EveryLaw, BrokenPointIsPureFriction) {
     EXPECT_EQ(s.Fs_N, 0.0);
 }
 
-TEST(BondLaw, DamageIsTheSumOfBothDirections) {   // (C9), not the larger of the two
+TEST(BondLaw, DamageIsTheSumOfBothDirections) {  // (C9), not the larger of the two
     const BondLaw law = BondLaw::make(material(ContactLaw::bilinear));
     BondState s;
-    const double un = 0.5 * (law.normal.x0 + law.normal.x_y), us = 0.5 * (law.shear.x0 + law.shear.x_y);   // half of 0.75 each
+    const double un = 0.5 * (law.normal.x0 + law.normal.x_y), us = 0.5 * (law.shear.x0 + law.shear.x_y);  // half of 0.75 each
     for (int k = 0; k < 1000; ++k) update_bond(law, kArea, 1e-3 * un, 0.0, s);
     EXPECT_NEAR(s.damage, 0.375, 1e-9);
     for (int k = 0; k < 1000; ++k) update_bond(law, kArea, 0.0, 1e-3 * us, s);
     EXPECT_NEAR(s.damage, 0.75, 1e-9);
 }
 
-TEST(BondLaw, UnderPressureABrittlePointHoldsItsCohesionAndTheFriction) {   // (C8) with the friction part included
+TEST(BondLaw, UnderPressureABrittlePointHoldsItsCohesionAndTheFriction) {  // (C8) with the friction part included
     const ContactMaterial m = material(ContactLaw::brittle);
     const BondLaw law = BondLaw::make(m);
     const double pressure = 54e6, limit = m.tau_Pa + m.mu * pressure;
@@ -155,17 +156,17 @@ TEST(BondLaw, UnderPressureABrittlePointHoldsItsCohesionAndTheFriction) {   // (
     update_bond(law, kArea, -pressure / law.Kn_Pa_m, 0.0, s);
     double largest = 0.0;
     BondEvent event = BondEvent::none;
-    const double dus = 1e-4 * limit / law.Ks_Pa_m;   // 10000 steps to the limit
+    const double dus = 1e-4 * limit / law.Ks_Pa_m;  // 10000 steps to the limit
     for (int k = 0; k < 10100 && event == BondEvent::none; ++k) {
         event = update_bond(law, kArea, 0.0, dus, s);
         if (event == BondEvent::none) largest = std::max(largest, std::abs(s.Fs_N) / kArea);
     }
     EXPECT_EQ(event, BondEvent::broke_in_shear);
-    EXPECT_NEAR(largest / limit, 1.0, 1.1e-4);   // it breaks within the step that passes the limit
+    EXPECT_NEAR(largest / limit, 1.0, 1.1e-4);  // it breaks within the step that passes the limit
     EXPECT_NEAR(std::abs(s.Fs_N) / kArea / (m.mu * pressure), 1.0, 1e-9);
 }
 
-TEST_P(EveryLaw, SlidingUnderPressureIsFrictionAndTheRestIsFracture) {   // (C16)
+TEST_P(EveryLaw, SlidingUnderPressureIsFrictionAndTheRestIsFracture) {  // (C16)
     const ContactMaterial m = material(GetParam());
     const BondLaw law = BondLaw::make(m);
     const double ks = law.Ks_Pa_m * kArea;
@@ -181,8 +182,8 @@ TEST_P(EveryLaw, SlidingUnderPressureIsFrictionAndTheRestIsFracture) {   // (C16
             work -= 0.5 * (before + s.Fs_N) * reach / kSteps;
         }
         ASSERT_EQ(s.damage, 1.0);
-        // mu Fn over the sliding, which is the displacement without its elastic part. The brittle law loses its cohesion within the
-        // step after which it is broken, so that under pressure this loss is friction by (C16).
+        // mu Fn over the sliding, which is the displacement without its elastic part. The brittle law loses its cohesion within
+        // the step after which it is broken, so that under pressure this loss is friction by (C16).
         const double friction = m.mu * pressure * kArea, sliding = reach - friction / ks;
         double expected = friction * sliding;
         if (GetParam() == ContactLaw::brittle && pressure > 0.0) expected += 0.5 * m.tau_Pa * m.tau_Pa * kArea / law.Ks_Pa_m;
@@ -200,7 +201,7 @@ TEST(BondLaw, TensionUnloadsWithTheElasticSlopeOrToTheOrigin) {
         m.tension_unloading = option;
         const BondLaw law = BondLaw::make(m);
         BondState s;
-        for (int k = 0; k < 1000; ++k) update_bond(law, kArea, 1e-9, 0.0, s);   // well into softening
+        for (int k = 0; k < 1000; ++k) update_bond(law, kArea, 1e-9, 0.0, s);  // well into softening
         const double force = s.Fn_N, opening = s.un_m;
         ASSERT_LT(force, 0.0);
         ASSERT_GT(s.damage, 0.1);
@@ -220,7 +221,7 @@ TEST(BondLaw, ShearMeasureBeyondFrictionDelaysDamageUnderPressure) {
         m.shear_measure = measure;
         const BondLaw law = BondLaw::make(m);
         BondState s;
-        update_bond(law, kArea, -3e-7, 0.0, s);   // 54 MPa of compression
+        update_bond(law, kArea, -3e-7, 0.0, s);  // 54 MPa of compression
         for (int k = 0; k < 1000; ++k) update_bond(law, kArea, 0.0, 8e-10, s);
         return s.damage;
     };
@@ -238,11 +239,11 @@ TEST(Softening, BreakPointHasAQuarterOfTheStrength) {
 }
 
 TEST(Softening, WithoutEnergyToSoftenTheDirectionIsBrittle) {
-    EXPECT_TRUE(SofteningEnvelope::make(ContactLaw::bilinear, 8.5e6, 18e13, 0.19).brittle);   // 2 G / F below F / k
+    EXPECT_TRUE(SofteningEnvelope::make(ContactLaw::bilinear, 8.5e6, 18e13, 0.19).brittle);  // 2 G / F below F / k
     EXPECT_FALSE(SofteningEnvelope::make(ContactLaw::bilinear, 8.5e6, 18e13, 0.21).brittle);
 }
 
-// ------------------------------------------------------------------------------------------------------------------------- dilation
+// ---------------------------------------------------------------------------------------------------------------------- dilation
 
 constexpr double kTanPsi = 0.2, kLimit = 1e-4;
 
@@ -263,7 +264,7 @@ Sheared shear(double reach_m, double stiffness_Pa_m, const Dilation& dilation, i
     r.state.damage = 1.0;
     r.state.un_m = -kStress * kArea / kn;
     r.state.Fn_N = kStress * kArea;
-    double un = 0.0;   // since then
+    double un = 0.0;  // since then
     for (int k = 0; k < steps; ++k) {
         const double du = reach_m / steps, Fn_before = r.state.Fn_N, Fs_before = r.state.Fs_N;
         // The opening at which what presses it and the joint are in balance: both forces fall or grow with it.
@@ -302,11 +303,12 @@ TEST(Dilation, UnderAConstantStressIsTheTangentOfItsAngleUntilItsLimit) {
 }
 
 TEST(Dilation, AgainstASpringMakesTheNormalStressGrow) {
-    const double K = 2e9;   // Pa/m; the joint's own is 9e4 times that, and adds 1e-5 to the answer
+    const double K = 2e9;  // Pa/m; the joint's own is 9e4 times that, and adds 1e-5 to the answer
     const Sheared one = shear(0.3 * kLimit, K, {kTanPsi, kLimit}), two = shear(0.7 * kLimit, K, {kTanPsi, kLimit});
     const double slip = two.slip_m - one.slip_m;
     EXPECT_NEAR((two.normal_N - one.normal_N) / kArea / (K * kTanPsi * slip), 1.0, 1e-3);
-    EXPECT_NEAR((two.normal_N - one.normal_N) / kArea / (K * kTanPsi * 0.4 * kLimit), 1.0, 1e-3) << "shear displacement is slip but for the shear spring";
+    EXPECT_NEAR((two.normal_N - one.normal_N) / kArea / (K * kTanPsi * 0.4 * kLimit), 1.0, 1e-3)
+        << "shear displacement is slip but for the shear spring";
     EXPECT_NEAR(two.shear_N / two.normal_N, 0.5, 1e-9);
 }
 
@@ -330,7 +332,8 @@ TEST(Dilation, DissipatesWhatTheShearForceDoesNotLift) {
 
 TEST(Dilation, StopsWithinAStepAtItsLimitAndWorksBothWays) {
     // Steps of any size leave the same opening, since the step in which the limit is reached is divided there.
-    const double fine = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 6000).opening_m, coarse = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 7).opening_m;
+    const double fine = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 6000).opening_m,
+                 coarse = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 7).opening_m;
     EXPECT_NEAR(coarse / fine, 1.0, 1e-3);
     const BondLaw law = BondLaw::make(fixtures::table7());
     const Dilation d{kTanPsi, kLimit};

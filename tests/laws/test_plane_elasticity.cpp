@@ -1,7 +1,7 @@
 // The elastic law of the triangle: derivative of its energy over decades, invariance, plane stress and plane strain.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/laws/plane_elasticity.hpp"
 
@@ -48,7 +48,7 @@ TEST(PlaneElasticity, RotationChangesNothingButTheDirection) {
 TEST(PlaneElasticity, UniaxialStrainGivesHookesLaw) {
     const double E = 25.8e9, nu = 0.23, strain = 1e-7;
     const Mat2 stress = first_piola_stress(plane_elasticity(E, nu, PlaneState::stress), {strain, 0, 0, -nu * strain});
-    EXPECT_NEAR(stress.xx / (E * strain), 1.0, 1e-6);   // the finite strain itself is 1e-7
+    EXPECT_NEAR(stress.xx / (E * strain), 1.0, 1e-6);  // the finite strain itself is 1e-7
     EXPECT_NEAR(stress.yy / (E * strain), 0.0, 1e-6);
     const double lateral = -nu / (1.0 - nu) * strain;
     const Mat2 plane = first_piola_stress(plane_elasticity(E, nu, PlaneState::strain), {strain, 0, 0, lateral});
@@ -58,7 +58,7 @@ TEST(PlaneElasticity, UniaxialStrainGivesHookesLaw) {
 
 TEST(PlaneElasticity, CauchyStressIsForceOverTheDeformedSectionAndTurnsWithTheBody) {
     const PlaneElasticity D = plane_elasticity(25.8e9, 0.23, PlaneState::stress);
-    const double lx = 1.1, ly = 0.95;   // large, so that the sections differ from the undeformed ones
+    const double lx = 1.1, ly = 0.95;  // large, so that the sections differ from the undeformed ones
     const Mat2 P = first_piola_stress(D, {lx - 1.0, 0, 0, ly - 1.0});
     const double sx = P.xx / ly, sy = P.yy / lx;
     const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);

@@ -1,8 +1,12 @@
-// Specimens drawn at random: outlines, holes, notches, cuts, sizes of grains, fillings, minerals and joints. Each one is made and fills its outline, its cells name each other and its
-// triangles stand upright; or it is refused with an InputError that says why.
+// Specimens drawn at random: outlines, holes, notches, cuts, sizes of grains, fillings, minerals and joints. Each one is made and
+// fills its outline, its cells name each other and its triangles stand upright; or it is refused with an InputError that says
+// why.
 //
 //   FELDSPAR_CASES=2000 build/release/properties_test        more of them
 //   FELDSPAR_CASE=17 build/release/properties_test           this one alone
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -11,9 +15,6 @@
 #include <random>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "../table7.hpp"
 #include "feldspar/base/error.hpp"
@@ -44,7 +45,8 @@ std::vector<Vec2> star(Draw& draw, Vec2 middle, double size_m, int corners) {
     for (double& angle : angles) angle = draw.uniform(0.0, 2.0 * std::numbers::pi);
     std::sort(angles.begin(), angles.end());
     std::vector<Vec2> polygon;
-    for (const double angle : angles) polygon.push_back(middle + draw.uniform(0.15, 1.0) * size_m * Vec2{std::cos(angle), std::sin(angle)});
+    for (const double angle : angles)
+        polygon.push_back(middle + draw.uniform(0.15, 1.0) * size_m * Vec2{std::cos(angle), std::sin(angle)});
     if (draw.chance(0.3)) std::reverse(polygon.begin(), polygon.end());
     return polygon;
 }
@@ -61,7 +63,8 @@ OutlineSpec random_outline(Draw& draw) {
         outline.vertices_m = star(draw, {draw.uniform(-1.0, 1.0), draw.uniform(-1.0, 1.0)}, 0.02, draw.whole(3, 12));
         if (draw.chance(0.3)) {
             const int edge = draw.whole(0, static_cast<int>(outline.vertices_m.size()) - 1);
-            const Vec2 a = outline.vertices_m[static_cast<std::size_t>(edge)], b = outline.vertices_m[static_cast<std::size_t>(edge + 1) % outline.vertices_m.size()];
+            const Vec2 a = outline.vertices_m[static_cast<std::size_t>(edge)],
+                       b = outline.vertices_m[static_cast<std::size_t>(edge + 1) % outline.vertices_m.size()];
             outline.arcs = {{edge, 0.5 * (a + b) + draw.uniform(-0.4, 0.4) * Vec2{a.y - b.y, b.x - a.x}}};
         }
     }
@@ -69,13 +72,16 @@ OutlineSpec random_outline(Draw& draw) {
 }
 
 void add_random_cutouts(Draw& draw, const Box& around, OutlineSpec& outline) {
-    const Vec2 middle = 0.5 * (around.lower + around.upper), half = (draw.chance(0.8) ? 0.3 : 0.6) * (around.upper - around.lower);   // most of them well inside
+    const Vec2 middle = 0.5 * (around.lower + around.upper),
+               half = (draw.chance(0.8) ? 0.3 : 0.6) * (around.upper - around.lower);  // most of them well inside
     const Box box{middle - half, middle + half};
     const double size = std::min(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
     for (int holes = draw.chance(0.25) ? draw.whole(1, 2) : 0; holes > 0; --holes) {
         HoleSpec hole;
-        if (draw.chance(0.6)) hole = {draw.in_box(box), draw.uniform(0.2, 0.6) * size, {}, {}};
-        else hole.vertices_m = star(draw, draw.in_box(box), draw.uniform(0.1, 0.3) * size, draw.whole(3, 7));
+        if (draw.chance(0.6))
+            hole = {draw.in_box(box), draw.uniform(0.2, 0.6) * size, {}, {}};
+        else
+            hole.vertices_m = star(draw, draw.in_box(box), draw.uniform(0.1, 0.3) * size, draw.whole(3, 7));
         outline.holes.push_back(hole);
     }
     for (int notches = draw.chance(0.25) ? draw.whole(1, 2) : 0; notches > 0; --notches) {
@@ -130,10 +136,12 @@ Heterogeneity random_rock(Draw& draw, const Specimen& specimen) {
     double rest = 1.0;
     for (int left = draw.whole(1, 4); left > 0 && draw.chance(0.9); --left) {
         const double share = left == 1 ? rest : draw.uniform(0.0, rest);
-        rock.minerals.phases.push_back({fmt::format("mineral-{}", left), share, {draw.uniform(10e9, 90e9), draw.uniform(0.05, 0.4), 2700.0}, 0, -1});
+        rock.minerals.phases.push_back(
+            {fmt::format("mineral-{}", left), share, {draw.uniform(10e9, 90e9), draw.uniform(0.05, 0.4), 2700.0}, 0, -1});
         rest -= share;
     }
-    if (!rock.minerals.phases.empty()) rock.minerals.phases.back().share += rest > 0.0 && rock.minerals.phases.back().share < rest ? rest : 0.0;
+    if (!rock.minerals.phases.empty())
+        rock.minerals.phases.back().share += rest > 0.0 && rock.minerals.phases.back().share < rest ? rest : 0.0;
     double sum = 0.0;
     for (const Mineral& phase : rock.minerals.phases) sum += phase.share;
     for (Mineral& phase : rock.minerals.phases) phase.share /= sum;
@@ -143,7 +151,13 @@ Heterogeneity random_rock(Draw& draw, const Specimen& specimen) {
         joint.name = fmt::format("joint-{}", joints);
         joint.contact = fixtures::table7();
         if (draw.chance(0.3)) {
-            joint.set = JointSet{draw.uniform(-1.5, 1.5), draw.uniform(0.0, 0.3), draw.uniform(0.003, 0.02), draw.uniform(0.0, 1.0), draw.chance(0.5) ? 0.0 : draw.uniform(0.005, 0.02), 0.2, draw.uniform(0.3, 1.0)};
+            joint.set = JointSet{draw.uniform(-1.5, 1.5),
+                                 draw.uniform(0.0, 0.3),
+                                 draw.uniform(0.003, 0.02),
+                                 draw.uniform(0.0, 1.0),
+                                 draw.chance(0.5) ? 0.0 : draw.uniform(0.005, 0.02),
+                                 0.2,
+                                 draw.uniform(0.3, 1.0)};
         } else {
             joint.lines_m = {{draw.in_box(box), draw.in_box(box)}};
             if (draw.chance(0.4)) joint.lines_m.front().push_back(draw.in_box(box));
@@ -155,14 +169,16 @@ Heterogeneity random_rock(Draw& draw, const Specimen& specimen) {
 
 // An edge of a cell that has a neighbour is an edge of the neighbour, the other way round, and this names the cell back.
 void expect_neighbours_to_agree(const Tessellation& cells) {
-    std::map<std::pair<int, int>, std::pair<int, int>> cell_and_neighbour;   // of a directed edge
+    std::map<std::pair<int, int>, std::pair<int, int>> cell_and_neighbour;  // of a directed edge
     for (int c = 0; c < std::ssize(cells.cells); ++c) {
         const Cell& cell = cells.cells[static_cast<std::size_t>(c)];
         ASSERT_GE(cell.vertices.size(), 3U);
         for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
             const int from = cell.vertices[k], to = cell.vertices[(k + 1) % cell.vertices.size()];
-            EXPECT_TRUE(cell_and_neighbour.emplace(std::pair{from, to}, std::pair{c, cell.neighbours[k]}).second) << "two cells on one side of an edge";
-            EXPECT_EQ(cell.neighbours[k] < 0, cell.outline_edges[k] >= 0) << "an edge of cell " << c << " lies neither inside nor on the outline";
+            EXPECT_TRUE(cell_and_neighbour.emplace(std::pair{from, to}, std::pair{c, cell.neighbours[k]}).second)
+                << "two cells on one side of an edge";
+            EXPECT_EQ(cell.neighbours[k] < 0, cell.outline_edges[k] >= 0)
+                << "an edge of cell " << c << " lies neither inside nor on the outline";
         }
     }
     for (const auto& [edge, both] : cell_and_neighbour) {
@@ -184,16 +200,18 @@ void expect_to_fill(const Specimen& specimen) {
         EXPECT_GT(area, 0.0) << "cell " << c;
         all += area;
         double triangles = 0.0;
-        for (int t = specimen.mesh.triangle_begin[static_cast<std::size_t>(c)]; t < specimen.mesh.triangle_begin[static_cast<std::size_t>(c) + 1]; ++t) {
+        for (int t = specimen.mesh.triangle_begin[static_cast<std::size_t>(c)];
+             t < specimen.mesh.triangle_begin[static_cast<std::size_t>(c) + 1]; ++t) {
             std::vector<Vec2> triangle;
-            for (const int node : specimen.mesh.triangles[static_cast<std::size_t>(t)]) triangle.push_back(specimen.mesh.nodes[static_cast<std::size_t>(node)]);
+            for (const int node : specimen.mesh.triangles[static_cast<std::size_t>(t)])
+                triangle.push_back(specimen.mesh.nodes[static_cast<std::size_t>(node)]);
             EXPECT_GT(signed_area(triangle), 0.0) << "triangle " << t << " of cell " << c;
             triangles += signed_area(triangle);
         }
         EXPECT_NEAR(triangles / area, 1.0, 1e-9) << "cell " << c;
     }
     EXPECT_LT(specimen.quality.area_error, 1e-9);
-    if (!specimen.outline.is_disc) {   // of a disc chords stand for the circle
+    if (!specimen.outline.is_disc) {  // of a disc chords stand for the circle
         EXPECT_NEAR(all / specimen.outline.area_m2, 1.0, 1e-9);
     }
 }
@@ -216,7 +234,8 @@ void expect_rock_to_fit(const Specimen& specimen, const Heterogeneity& rock) {
         for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
             const int b = cell.neighbours[k];
             if (b < 0) continue;
-            const Vec2 from = specimen.cells.vertices[static_cast<std::size_t>(cell.vertices[k])], to = specimen.cells.vertices[static_cast<std::size_t>(cell.vertices[(k + 1) % cell.vertices.size()])];
+            const Vec2 from = specimen.cells.vertices[static_cast<std::size_t>(cell.vertices[k])],
+                       to = specimen.cells.vertices[static_cast<std::size_t>(cell.vertices[(k + 1) % cell.vertices.size()])];
             const GrainContact there = texture.contact(a, b, from, to), back = texture.contact(b, a, to, from);
             EXPECT_EQ(there.joint, back.joint) << "a joint has one face only";
             EXPECT_EQ(there.material.sigma_nt_Pa, back.material.sigma_nt_Pa);

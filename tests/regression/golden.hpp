@@ -3,6 +3,9 @@
 //   FELDSPAR_RECORD=1 ./regression_test     writes the files anew and prints every case that moved
 #pragma once
 
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -11,9 +14,6 @@
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "../temporary_folder.hpp"
 
@@ -50,19 +50,21 @@ inline const char* what_now() {
 class File {
 public:
     enum class Kind {
-        table,   ///< CSV: a line a case, the first column names it
-        texts    ///< a heading "==== case" and lines
+        table,  ///< CSV: a line a case, the first column names it
+        texts   ///< a heading "==== case" and lines
     };
 
     /// @param columns  of a table: names of all columns but the first
-    File(const std::string& name, Kind kind, std::string columns = {}) : path_(folder() / name), kind_(kind), columns_(std::move(columns)) {
+    File(const std::string& name, Kind kind, std::string columns = {})
+        : path_(folder() / name), kind_(kind), columns_(std::move(columns)) {
         for (const auto& [key, value] : read()) recorded_.emplace(key, value);
     }
     File(const File&) = delete;
     File& operator=(const File&) = delete;
     ~File() {
         if (!recording() || (moved_ == 0 && new_ == 0)) return;
-        std::string text = fmt::format("{}: {} of {} cases moved, {} are new", path_.filename().string(), moved_, recorded_.size(), new_);
+        std::string text =
+            fmt::format("{}: {} of {} cases moved, {} are new", path_.filename().string(), moved_, recorded_.size(), new_);
         for (const auto& [column, count] : moved_columns_) text += fmt::format("; {} moved in {}", column, count);
         fmt::print("{}\n", text);
     }
@@ -71,8 +73,10 @@ public:
     void expect(const std::string& key, const std::string& value) {
         const auto old = recorded_.find(key);
         if (old != recorded_.end() && old->second == value) return;
-        const std::string message = old == recorded_.end() ? fmt::format("new case in {}: {}\n{}", path_.filename().string(), key, shown(value))
-                                                           : fmt::format("moved in {}: {}\n{}", path_.filename().string(), key, difference(old->second, value));
+        const std::string message =
+            old == recorded_.end()
+                ? fmt::format("new case in {}: {}\n{}", path_.filename().string(), key, shown(value))
+                : fmt::format("moved in {}: {}\n{}", path_.filename().string(), key, difference(old->second, value));
         if (!recording()) {
             ADD_FAILURE() << message << what_now();
             return;
@@ -121,11 +125,14 @@ private:
 
     void write() const {
         std::string text = kind_ == Kind::table ? fmt::format("case,{}\n", columns_) : "";
-        for (const auto& [key, value] : recorded_) text += kind_ == Kind::table ? fmt::format("{},{}\n", key, value) : fmt::format("{}{}\n{}", mark, key, value);
+        for (const auto& [key, value] : recorded_)
+            text += kind_ == Kind::table ? fmt::format("{},{}\n", key, value) : fmt::format("{}{}\n{}", mark, key, value);
         write_text(path_, text);
     }
 
-    std::string shown(const std::string& value) const { return kind_ == Kind::table ? fmt::format("    {}\n    {}\n", columns_, value) : ""; }
+    std::string shown(const std::string& value) const {
+        return kind_ == Kind::table ? fmt::format("    {}\n    {}\n", columns_, value) : "";
+    }
 
     void count_columns(const std::string& old_value, const std::string& new_value) {
         const std::vector<std::string> names = split(columns_, ','), olds = split(old_value, ','), news = split(new_value, ',');
@@ -145,7 +152,8 @@ private:
             }
             return text;
         }
-        const auto lines_only_in = [](const std::vector<std::string>& lines, const std::vector<std::string>& others, const char* sign) {
+        const auto lines_only_in = [](const std::vector<std::string>& lines, const std::vector<std::string>& others,
+                                      const char* sign) {
             std::multiset<std::string> rest(others.begin(), others.end());
             std::string only;
             for (const std::string& line : lines) {
@@ -167,8 +175,8 @@ private:
     Kind kind_;
     std::string columns_;
     std::map<std::string, std::string> recorded_;
-    int moved_ = 0, new_ = 0;                    // while recording
-    std::map<std::string, int> moved_columns_;   // how many of them moved in this column
+    int moved_ = 0, new_ = 0;                   // while recording
+    std::map<std::string, int> moved_columns_;  // how many of them moved in this column
 };
 
 }  // namespace feldspar::golden

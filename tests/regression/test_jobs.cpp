@@ -1,14 +1,15 @@
-// Jobs as they are written out with every default, and the identities of runs. Both are recorded (golden.hpp). An identity that moves makes
-// every run that anyone has in a ledger count as not done, so a new key, a new default or another order of keys must be a decision.
+// Jobs as they are written out with every default, and the identities of runs. Both are recorded (golden.hpp). An identity that
+// moves makes every run that anyone has in a ledger count as not done, so a new key, a new default or another order of keys must
+// be a decision.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
 #include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <xxhash.h>
 
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/methods/method.hpp"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 const fs::path source = FELDSPAR_SOURCE_DIR;
 
 struct NamedJob {
-    std::string name;   // its path in the repository, or "template <kind>"
+    std::string name;  // its path in the repository, or "template <kind>"
     Job job;
 };
 
@@ -31,7 +32,8 @@ struct NamedJob {
 std::map<std::string, std::string> files_of(const std::string& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(source / folder))
-        if (entry.path().extension() == ".toml") files[fs::relative(entry.path(), source).generic_string()] = "\n" + read_text(entry.path());
+        if (entry.path().extension() == ".toml")
+            files[fs::relative(entry.path(), source).generic_string()] = "\n" + read_text(entry.path());
     return files;
 }
 
@@ -46,7 +48,8 @@ const std::vector<NamedJob>& jobs() {
         for (const char* folder : {"examples", "studies", "tests/regression"})
             for (const auto& [file, text] : files_of(folder))
                 if (has_a_specimen(text) && !stands_on_a_job(text)) found.push_back({file, read_job(source / file)});
-        for (const std::string_view kind : job_template_kinds()) found.push_back({fmt::format("template {}", kind), parse_job(job_template(kind), std::string(kind))});
+        for (const std::string_view kind : job_template_kinds())
+            found.push_back({fmt::format("template {}", kind), parse_job(job_template(kind), std::string(kind))});
         return found;
     }();
     return all;
@@ -54,7 +57,8 @@ const std::vector<NamedJob>& jobs() {
 
 // Without what depends on where the sources are.
 std::string without_source(std::string text) {
-    for (std::size_t at = 0; (at = text.find(source.string() + "/", at)) != std::string::npos;) text.erase(at, source.string().size() + 1);
+    for (std::size_t at = 0; (at = text.find(source.string() + "/", at)) != std::string::npos;)
+        text.erase(at, source.string().size() + 1);
     return text;
 }
 
@@ -70,7 +74,8 @@ TEST(ResolvedJobs, AreThoseRecorded) {
 }
 
 TEST(ResolvedJobs, ReadBackResolveToThemselves) {
-    for (const auto& [name, job] : jobs()) EXPECT_EQ(resolved_toml(parse_job(resolved_toml(job), job.name)), resolved_toml(job)) << name;
+    for (const auto& [name, job] : jobs())
+        EXPECT_EQ(resolved_toml(parse_job(resolved_toml(job), job.name)), resolved_toml(job)) << name;
 }
 
 // Of several runs: their number and a hash of all identities in their order.
@@ -92,8 +97,12 @@ TEST(RunIdentities, AreThoseRecorded) {
             for (const TestSpec& test : job.tests) {
                 const std::uint64_t seed = test.seeds.empty() ? job.seeds.front() : test.seeds.front();
                 if (!variant.runs(test, seed)) continue;
-                const std::string of_test = fmt::format("{}{}", feldspar::name(test.kind), test.kind == methods::biaxial || method_of(test).specimen.sheared ? fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6) : "");
-                expect(fmt::format("{} | {}{}{} | seed {}", name, variant.stem, variant.stem.empty() ? "" : " ", of_test, seed), "1," + make_run(job, variant, test, seed).id);
+                const std::string of_test = fmt::format("{}{}", feldspar::name(test.kind),
+                                                        test.kind == methods::biaxial || method_of(test).specimen.sheared
+                                                            ? fmt::format(" at {:.6g} MPa", test.sigma3_Pa / 1e6)
+                                                            : "");
+                expect(fmt::format("{} | {}{}{} | seed {}", name, variant.stem, variant.stem.empty() ? "" : " ", of_test, seed),
+                       "1," + make_run(job, variant, test, seed).id);
             }
         expect(name + " | all", all_of(study_of(job, job.name, "results").runs));
     }

@@ -1,12 +1,12 @@
-// Specimens as they are made from outline, grain sizes and seed: every stage's product as a hash, so that the first stage that moved is seen.
-// Recorded (golden.hpp).
-#include <set>
-#include <string>
-#include <vector>
-
+// Specimens as they are made from outline, grain sizes and seed: every stage's product as a hash, so that the first stage that
+// moved is seen. Recorded (golden.hpp).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <xxhash.h>
+
+#include <set>
+#include <string>
+#include <vector>
 
 #include "../verification/fixtures.hpp"
 #include "golden.hpp"
@@ -23,13 +23,15 @@ public:
     }
     Numbers& add(Vec2 value) { return add(value.x).add(value.y); }
     template <class List>
-        requires requires(const List& list) { list.begin(); }
+    requires requires(const List& list) { list.begin(); }
     Numbers& add(const List& list) {
         add(static_cast<double>(list.size()));
         for (const auto& item : list) add(item);
         return *this;
     }
-    std::string hash() const { return fmt::format("{:016x}", static_cast<std::uint64_t>(XXH3_64bits(values_.data(), values_.size() * sizeof(double)))); }
+    std::string hash() const {
+        return fmt::format("{:016x}", static_cast<std::uint64_t>(XXH3_64bits(values_.data(), values_.size() * sizeof(double))));
+    }
 
 private:
     std::vector<double> values_;
@@ -45,13 +47,20 @@ std::string hashes(const Specimen& s) {
     for (const InsideContact& c : s.filling.inside) filling.add(c.a).add(c.b);
     for (const AcrossContact& c : s.filling.across) filling.add(c.a).add(c.b).add(c.from).add(c.to);
     for (const OutlineShare& o : s.filling.outline) filling.add(o.particle).add(o.from).add(o.to);
-    return fmt::format("{},{},{},{},{},{}", s.quality.grains, s.quality.inner_particles, packing.hash(), cells.hash(), mesh.hash(), filling.hash());
+    return fmt::format("{},{},{},{},{},{}", s.quality.grains, s.quality.inner_particles, packing.hash(), cells.hash(),
+                       mesh.hash(), filling.hash());
 }
 
 TEST(Specimens, AreThoseRecorded) {
-    std::vector<std::pair<std::string, SpecimenSpec>> specs{{"rectangle uniform", fixtures::rectangle(0.02, 0.04)}, {"disc uniform", fixtures::disc(0.03)}};
+    std::vector<std::pair<std::string, SpecimenSpec>> specs{{"rectangle uniform", fixtures::rectangle(0.02, 0.04)},
+                                                            {"disc uniform", fixtures::disc(0.03)}};
     SpecimenSpec spec = fixtures::rectangle(0.02, 0.04);
-    spec.grain_sizes = {.kind = GrainSizeKind::log_normal, .minimum_m = 0.0015, .maximum_m = 0.004, .median_m = 0.0025, .log_standard_deviation = 0.3, .sieve = {}};
+    spec.grain_sizes = {.kind = GrainSizeKind::log_normal,
+                        .minimum_m = 0.0015,
+                        .maximum_m = 0.004,
+                        .median_m = 0.0025,
+                        .log_standard_deviation = 0.3,
+                        .sieve = {}};
     specs.emplace_back("rectangle log-normal", spec);
     spec.grain_sizes = {.kind = GrainSizeKind::sieve, .sieve = {{0.0015, 0.0}, {0.0025, 0.4}, {0.004, 1.0}}};
     specs.emplace_back("rectangle sieve", spec);
@@ -64,7 +73,8 @@ TEST(Specimens, AreThoseRecorded) {
     specs.emplace_back("rectangle finely meshed not merged", spec);
     spec = fixtures::rectangle(0.0, 0.0);
     spec.outline.shape = Shape::polygon;
-    spec.outline.vertices_m = {{0.0, 0.0}, {0.03, 0.0}, {0.03, 0.02}, {0.02, 0.012}, {0.0, 0.03}};   // with a corner that points inwards
+    spec.outline.vertices_m = {
+        {0.0, 0.0}, {0.03, 0.0}, {0.03, 0.02}, {0.02, 0.012}, {0.0, 0.03}};  // with a corner that points inwards
     specs.emplace_back("polygon uniform", spec);
     golden::File recorded("specimens.csv", golden::File::Kind::table, "grains,particles,packing,cells,mesh,filling");
     std::set<std::string> keys;

@@ -1,4 +1,5 @@
-// A disk that fails when it is told to: loaded before the C library (LD_PRELOAD), it lets a call on files below one directory fail.
+// A disk that fails when it is told to: loaded before the C library (LD_PRELOAD), it lets a call on files below one directory
+// fail.
 //
 //   FAILING_DISK_BELOW   the directory, absolute and without links; nothing fails if it is not set
 //   FAILING_DISK_KIND    write, short, fsync, rename, open, close, mkdir, truncate or unlink
@@ -31,7 +32,9 @@ struct Settings {
     long call = number("FAILING_DISK_CALL");
     int error = static_cast<int>(number("FAILING_DISK_ERROR"));
     bool onward = number("FAILING_DISK_ONWARD") != 0;
-    int log = getenv("FAILING_DISK_LOG") != nullptr ? static_cast<int>(syscall(SYS_openat, AT_FDCWD, getenv("FAILING_DISK_LOG"), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600)) : -1;
+    int log = getenv("FAILING_DISK_LOG") != nullptr ? static_cast<int>(syscall(SYS_openat, AT_FDCWD, getenv("FAILING_DISK_LOG"),
+                                                                               O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600))
+                                                    : -1;
 
     static const char* text(const char* name) { return getenv(name) != nullptr ? getenv(name) : ""; }
     static long number(const char* name) { return strtol(text(name), nullptr, 10); }
@@ -127,8 +130,9 @@ ssize_t write(int file, const void* data, std::size_t count) {
 ssize_t writev(int file, const iovec* parts, int count) {
     REAL(writev);
     if (!fails("write", file)) return real(file, parts, count);
-    for (int i = 0; i < count; ++i)   // of the first part that has something
-        if (parts[i].iov_len > 0) return torn(parts[i].iov_len, [&](std::size_t half) { return syscall(SYS_write, file, parts[i].iov_base, half); });
+    for (int i = 0; i < count; ++i)  // of the first part that has something
+        if (parts[i].iov_len > 0)
+            return torn(parts[i].iov_len, [&](std::size_t half) { return syscall(SYS_write, file, parts[i].iov_base, half); });
     return is_short() ? 0 : -1;
 }
 
@@ -169,25 +173,25 @@ int renameat(int from_directory, const char* from, int to_directory, const char*
     return fails("rename", to, to_directory) ? -1 : real(from_directory, from, to_directory, to);
 }
 
-#define OPEN(name)                                                       \
-    int name(const char* path, int flags, ...) {                         \
-        REAL(name);                                                      \
-        va_list more;                                                    \
-        va_start(more, flags);                                           \
+#define OPEN(name)                                                                           \
+    int name(const char* path, int flags, ...) {                                             \
+        REAL(name);                                                                          \
+        va_list more;                                                                        \
+        va_start(more, flags);                                                               \
         const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0; \
-        va_end(more);                                                    \
-        return for_writing(flags) && fails("open", path) ? -1 : real(path, flags, mode); \
+        va_end(more);                                                                        \
+        return for_writing(flags) && fails("open", path) ? -1 : real(path, flags, mode);     \
     }
 OPEN(open)
 OPEN(open64)
 
-#define OPENAT(name)                                                     \
-    int name(int directory, const char* path, int flags, ...) {          \
-        REAL(name);                                                      \
-        va_list more;                                                    \
-        va_start(more, flags);                                           \
-        const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0; \
-        va_end(more);                                                    \
+#define OPENAT(name)                                                                                           \
+    int name(int directory, const char* path, int flags, ...) {                                                \
+        REAL(name);                                                                                            \
+        va_list more;                                                                                          \
+        va_start(more, flags);                                                                                 \
+        const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0;                   \
+        va_end(more);                                                                                          \
         return for_writing(flags) && fails("open", path, directory) ? -1 : real(directory, path, flags, mode); \
     }
 OPENAT(openat)
@@ -249,7 +253,7 @@ int fallocate(int file, int mode, off_t from, off_t length) {
     return fails("truncate", file) ? -1 : real(file, mode, from, length);
 }
 
-int posix_fallocate(int file, off_t from, off_t length) {   // gives the error back instead of setting errno
+int posix_fallocate(int file, off_t from, off_t length) {  // gives the error back instead of setting errno
     REAL(posix_fallocate);
     return fails("truncate", file) ? errno : real(file, from, length);
 }

@@ -91,7 +91,11 @@ TEST(BadInput, DamagedPacking) {
 
 TEST(BadInput, AllMistakesAreToldAtOnceInTheOrderOfLines) {
     std::string job = small_job();
-    const std::vector<std::pair<std::string, std::string>> edits{{"\"40 mm\"", "40"}, {"porosity", "porosty"}, {"nu = 0.23", "nu = 0.5"}, {"\"8.5 MPa\"", "\"8.5 mPa\""}, {"\"10 %\"", "\"90 %\""}};
+    const std::vector<std::pair<std::string, std::string>> edits{{"\"40 mm\"", "40"},
+                                                                 {"porosity", "porosty"},
+                                                                 {"nu = 0.23", "nu = 0.5"},
+                                                                 {"\"8.5 MPa\"", "\"8.5 mPa\""},
+                                                                 {"\"10 %\"", "\"90 %\""}};
     for (const auto& [from, to] : edits) job = replaced(job, from, to);
     for (const char* command : {"run", "check", "envelope", "converge"}) {
         SCOPED_TRACE(command);
@@ -100,13 +104,15 @@ TEST(BadInput, AllMistakesAreToldAtOnceInTheOrderOfLines) {
         const Outcome outcome = run_program(place.path(), {command, "job.toml"});
         EXPECT_EQ(outcome.code, 2) << outcome.err;
         std::size_t at = 0;
-        for (const char* key : {"specimen.width", "specimen.grains.porosty", "material.grain.nu", "material.contact.sigma_nt", "numerics.accuracy"}) {
+        for (const char* key : {"specimen.width", "specimen.grains.porosty", "material.grain.nu", "material.contact.sigma_nt",
+                                "numerics.accuracy"}) {
             const std::size_t found = outcome.err.find(std::string(key) + ": ", at);
             ASSERT_NE(found, std::string::npos) << key << "\n" << outcome.err;
             at = found;
         }
         std::size_t places = 0;
-        for (std::size_t i = outcome.err.find("job.toml:"); i != std::string::npos; i = outcome.err.find("job.toml:", i + 1)) ++places;
+        for (std::size_t i = outcome.err.find("job.toml:"); i != std::string::npos; i = outcome.err.find("job.toml:", i + 1))
+            ++places;
         EXPECT_EQ(places, edits.size()) << outcome.err;
         EXPECT_EQ(place.entries(), (std::set<std::string>{"job.toml"}));
     }

@@ -13,7 +13,8 @@ TEST(CommandLine, HelpAndVersion) {
     EXPECT_EQ(help.code, 0);
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
     EXPECT_NE(help.out.find("feldspar run"), std::string::npos);
-    for (const char* command : {"run", "check", "view", "export", "new", "schema", "study", "envelope", "converge", "claims", "calibrate", "export-cells"}) {
+    for (const char* command : {"run", "check", "view", "export", "new", "schema", "study", "envelope", "converge", "claims",
+                                "calibrate", "export-cells"}) {
         const Outcome own = run_program(place.path(), {command, "--help"});
         EXPECT_EQ(own.code, 0);
         EXPECT_NE(own.out.find(std::string("Examples:\n  feldspar ")), std::string::npos) << own.out;
@@ -28,53 +29,54 @@ TEST(CommandLine, HelpAndVersion) {
 TEST(CommandLine, RefusesWhatItDoesNotKnow) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
-    const std::vector<std::vector<std::string>> cases{{},
-                                                      {"walk"},
-                                                      {"run"},
-                                                      {"check"},
-                                                      {"new"},
-                                                      {"new", "triaxial"},
-                                                      {"new", "biaxial", "--presets"},
-                                                      {"new", "--presets", "--out", "x.toml"},
-                                                      {"schema", "job.toml"},
-                                                      {"schema", "--out"},
-                                                      {"run", "job.toml", "--fast"},
-                                                      {"run", "job.toml", "--threads", "0"},
-                                                      {"run", "job.toml", "--threads", "many"},
-                                                      {"run", "job.toml", "--at-once", "0"},
-                                                      {"run", "job.toml", "--at-once", "-2"},
-                                                      {"run", "job.toml", "--at-once", "257"},
-                                                      {"run", "job.toml", "--at-once", "1.5"},
-                                                      {"run", "job.toml", "--at-once", "all"},
-                                                      {"run", "job.toml", "--at-once"},
-                                                      {"check", "job.toml", "--at-once", "0"},
-                                                      {"run", "job.toml", "--seed", "-1"},
-                                                      {"run", "job.toml", "--seed", "1.5"},
-                                                      {"run", "job.toml", "--seed", "1", "--seed", "1"},
-                                                      {"run", "job.toml", "--seed"},
-                                                      {"run", "job.toml", "--out"},
-                                                      {"run", "job.toml", "--out", ""},
-                                                      {"run", "job.toml", "other.toml"},
-                                                      {"check", "job.toml", "--out", "x"},
-                                                      {"run", "job.toml", "--keep", "some"},
-                                                      {"run", "job.toml", "--set", "material.contact.tau"},
-                                                      {"run", "job.toml", "--set", "material.contact.tua=1MPa"},
-                                                      {"run", "job.toml", "--fresh", "--continue"},
-                                                      {"run", "job.toml", "--continue"},
-                                                      {"export"},
-                                                      {"export", "job.toml"},
-                                                      {"export", "none", "--vtu"},
-                                                      {"export", ".", "--vtu"},
-                                                      {"view"},
-                                                      {"view", "none"},
-                                                      {"view", "job.toml"},
-                                                      {"completion", "csh"},
-                                                      {"manual", "walk"},
-                                                      {"export-cells", "job.toml"},
-                                                      {"export-cells", "--out", "x.tess"},
-                                                      {"export-cells", "job.toml", "--out", "x.vtk"},
-                                                      {"export-cells", "job.toml", "--out", "x.tess", "--seed", "1", "--seed", "2"},
-                                                      {"export-cells", "job.toml", "--out", "none/x.tess"}};
+    const std::vector<std::vector<std::string>> cases{
+        {},
+        {"walk"},
+        {"run"},
+        {"check"},
+        {"new"},
+        {"new", "triaxial"},
+        {"new", "biaxial", "--presets"},
+        {"new", "--presets", "--out", "x.toml"},
+        {"schema", "job.toml"},
+        {"schema", "--out"},
+        {"run", "job.toml", "--fast"},
+        {"run", "job.toml", "--threads", "0"},
+        {"run", "job.toml", "--threads", "many"},
+        {"run", "job.toml", "--at-once", "0"},
+        {"run", "job.toml", "--at-once", "-2"},
+        {"run", "job.toml", "--at-once", "257"},
+        {"run", "job.toml", "--at-once", "1.5"},
+        {"run", "job.toml", "--at-once", "all"},
+        {"run", "job.toml", "--at-once"},
+        {"check", "job.toml", "--at-once", "0"},
+        {"run", "job.toml", "--seed", "-1"},
+        {"run", "job.toml", "--seed", "1.5"},
+        {"run", "job.toml", "--seed", "1", "--seed", "1"},
+        {"run", "job.toml", "--seed"},
+        {"run", "job.toml", "--out"},
+        {"run", "job.toml", "--out", ""},
+        {"run", "job.toml", "other.toml"},
+        {"check", "job.toml", "--out", "x"},
+        {"run", "job.toml", "--keep", "some"},
+        {"run", "job.toml", "--set", "material.contact.tau"},
+        {"run", "job.toml", "--set", "material.contact.tua=1MPa"},
+        {"run", "job.toml", "--fresh", "--continue"},
+        {"run", "job.toml", "--continue"},
+        {"export"},
+        {"export", "job.toml"},
+        {"export", "none", "--vtu"},
+        {"export", ".", "--vtu"},
+        {"view"},
+        {"view", "none"},
+        {"view", "job.toml"},
+        {"completion", "csh"},
+        {"manual", "walk"},
+        {"export-cells", "job.toml"},
+        {"export-cells", "--out", "x.tess"},
+        {"export-cells", "job.toml", "--out", "x.vtk"},
+        {"export-cells", "job.toml", "--out", "x.tess", "--seed", "1", "--seed", "2"},
+        {"export-cells", "job.toml", "--out", "none/x.tess"}};
     for (const auto& arguments : cases) {
         std::string shown;
         for (const std::string& argument : arguments) shown += " '" + argument + "'";
@@ -101,7 +103,8 @@ TEST(CommandLine, SaysHowManyTestsAtOnceAreAllowed) {
 
 TEST(CommandLine, NewJobsAreSoundAndNeverOverwrite) {
     const TemporaryFolder place;
-    for (const char* kind : {"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory", "study", "calibration"}) {
+    for (const char* kind :
+         {"uniaxial-compression", "direct-tension", "biaxial", "brazilian", "laboratory", "study", "calibration"}) {
         const Outcome printed = run_program(place.path(), {"new", kind});
         EXPECT_EQ(printed.code, 0);
         const std::string file = std::string(kind) + ".toml";
@@ -136,7 +139,9 @@ TEST(CommandLine, NewJobsTakeTheNumbersOfARock) {
     const Outcome far = with({"new", "brazilian"}, {"--UCS", "200 MPa", "--E", "60 GPa", "--BTS", "3 MPa"});
     EXPECT_EQ(far.code, 0);
     EXPECT_NE(far.err.find("warning: UCS/BTS of 66.7 is out of reach"), std::string::npos) << far.err;
-    const std::vector<std::vector<std::string>> bad{{"--UCS", "9MPa", "--BTS", "120MPa"}, {"--UCS", "120"}, {"--UCS", "0 MPa"}, {"--E", "30 GPa"}, {"--rock", "cheese"}, {"--UCS", "120MPa", "--nu", "1.5"}};
+    const std::vector<std::vector<std::string>> bad{
+        {"--UCS", "9MPa", "--BTS", "120MPa"}, {"--UCS", "120"}, {"--UCS", "0 MPa"}, {"--E", "30 GPa"}, {"--rock", "cheese"},
+        {"--UCS", "120MPa", "--nu", "1.5"}};
     for (const std::vector<std::string>& numbers_of_none : bad) {
         const Outcome refused = with({"new", "laboratory", "--out", "none.toml"}, numbers_of_none);
         EXPECT_EQ(refused.code, 2);
@@ -153,7 +158,8 @@ TEST(CommandLine, PrintsThePresets) {
     const TemporaryFolder place;
     const Outcome printed = run_program(place.path(), {"new", "--presets"});
     EXPECT_EQ(printed.code, 0);
-    for (const char* part : {"augig-inner-particles", "augig-table7", "Table 2", "1.08e4 GPa/m", "lac-du-bonnet-granite", "Potyondy, Cundall 2004", "Schultz 1995"})
+    for (const char* part : {"augig-inner-particles", "augig-table7", "Table 2", "1.08e4 GPa/m", "lac-du-bonnet-granite",
+                             "Potyondy, Cundall 2004", "Schultz 1995"})
         EXPECT_NE(printed.out.find(part), std::string::npos) << part;
 }
 
@@ -195,7 +201,9 @@ TEST(CommandLine, WritesCellsThatAJobReadsAgain) {
     write_text(place / "again.toml", written.out.substr(snippet) + small_job().substr(rest));
     const Outcome back = run_program(place.path(), {"export-cells", "again.toml", "--out", "again.tess"});
     ASSERT_EQ(back.code, 0) << back.err;
-    const auto mesh = [](const std::string& tess) { return tess.substr(tess.find("**vertex")); };   // seeds and their weights are circles of the cells' areas now
+    const auto mesh = [](const std::string& tess) {
+        return tess.substr(tess.find("**vertex"));
+    };  // seeds and their weights are circles of the cells' areas now
     EXPECT_EQ(mesh(read_text(place / "again.tess")), mesh(text));
 }
 
@@ -240,13 +248,18 @@ TEST(CommandLine, CheckPrintsAndWritesNothing) {
 
 TEST(CommandLine, AFlattenedDiscIsCheckedRunAndReported) {
     const TemporaryFolder place;
-    write_text(place / "job.toml", small_job("[[test]]\nkind = \"brazilian\"\ndiameter = \"60 mm\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\"\n", "[1]"));
+    write_text(place / "job.toml",
+               small_job("[[test]]\nkind = \"brazilian\"\ndiameter = \"60 mm\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\"\n",
+                         "[1]"));
     const Outcome checked = run_program(place.path(), {"check", "job.toml"});
     EXPECT_EQ(checked.code, 0) << checked.err;
-    EXPECT_NE(checked.out.find("flats of the disc     25 degrees, 13 mm wide, 58.6 mm apart; stress = k 2P / (pi D t), k = 0."), std::string::npos) << checked.out;
+    EXPECT_NE(checked.out.find("flats of the disc     25 degrees, 13 mm wide, 58.6 mm apart; stress = k 2P / (pi D t), k = 0."),
+              std::string::npos)
+        << checked.out;
     const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "out"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    for (const char* part : {"valid (ISRM)", "first dip", "arc top", "first crack r/R", "25.0 deg", "k: stresses are k 2P / (pi D t)"})
+    for (const char* part :
+         {"valid (ISRM)", "first dip", "arc top", "first crack r/R", "25.0 deg", "k: stresses are k 2P / (pi D t)"})
         EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
     const auto brazilian = nlohmann::json::parse(read_text(place / "out/summary.json")).at("tests").at(0).at("brazilian");
     EXPECT_NEAR(brazilian.at("flat_angle_deg").get<double>(), 25.0, 1e-9);
@@ -357,7 +370,8 @@ TEST(CommandLine, ResultsSayWhichCardMadeThem) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
     ASSERT_EQ(run_program(place.path(), {"run", "job.toml", "--out", "here"}).code, 0);
-    const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "there", "--device", "gpu"}, with_emulated_card);
+    const Outcome outcome =
+        run_program(place.path(), {"run", "job.toml", "--out", "there", "--device", "gpu"}, with_emulated_card);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     const auto summary_of = [&](const char* run) { return nlohmann::json::parse(read_text(place / run / "summary.json")); };
     const auto here = summary_of("here"), there = summary_of("there");
@@ -372,13 +386,15 @@ TEST(CommandLine, SuggestsCommandsAndOptions) {
     const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases{
         {{"rnu", "job.toml"}, {"'rnu' is not a command", "did you mean 'run'?", "'feldspar --help'"}},
         {{"chekc", "job.toml"}, {"did you mean 'check'?"}},
-        {{"run", "job.toml", "--treads", "2"}, {"'--treads' is not an option of 'feldspar run'", "did you mean '--threads'?", "'feldspar run --help'"}},
+        {{"run", "job.toml", "--treads", "2"},
+         {"'--treads' is not an option of 'feldspar run'", "did you mean '--threads'?", "'feldspar run --help'"}},
         {{"run", "job.toml", "--seeed=1"}, {"'--seeed' is not an option", "'--seed'"}},
         {{"study", "table", "x.toml", "--run"}, {"'--run' is not an option of 'feldspar study table'", "'--runs'"}},
         {{"run"}, {"'feldspar run' needs JOB.toml"}},
         {{"export-cells", "job.toml"}, {"'feldspar export-cells' needs --out FILE"}},
         {{"run", "job.toml", "--test", "UTS"}, {"the job has no test 'UTS'"}},
-        {{"run", "job.toml", "--set", "material.contact.mu=0.4", "--set", "material.contact.tua=3MPa"}, {"--set 'material.contact.tua=3MPa'", "did you mean 'tau'?"}},
+        {{"run", "job.toml", "--set", "material.contact.mu=0.4", "--set", "material.contact.tua=3MPa"},
+         {"--set 'material.contact.tua=3MPa'", "did you mean 'tau'?"}},
         {{"run", "job.toml", "--keep", "nothing"}, {"nothing"}},
     };
     for (const auto& [arguments, parts] : cases) {
@@ -394,7 +410,8 @@ TEST(CommandLine, AJobComesFromStandardInput) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"direct-tension\"\n"));
     const auto from_file = [&] { dup2(open((place / "job.toml").c_str(), O_RDONLY), STDIN_FILENO); };
-    const Outcome outcome = run_program(place.path(), {"run", "-", "--out", "out", "--set", "numerics.accuracy=9%", "--quiet", "--keep", "numbers"}, from_file);
+    const Outcome outcome = run_program(
+        place.path(), {"run", "-", "--out", "out", "--set", "numerics.accuracy=9%", "--quiet", "--keep", "numbers"}, from_file);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "out\n");
     std::istringstream lines(outcome.err);
@@ -409,7 +426,8 @@ TEST(CommandLine, AJobComesFromStandardInput) {
     EXPECT_TRUE(fs::exists(place / "out/report.html"));
 
     write_text(place / "wrong.toml", "[specimen]\nshap = 1\n");
-    const Outcome wrong = run_program(place.path(), {"check", "-"}, [&] { dup2(open((place / "wrong.toml").c_str(), O_RDONLY), STDIN_FILENO); });
+    const Outcome wrong =
+        run_program(place.path(), {"check", "-"}, [&] { dup2(open((place / "wrong.toml").c_str(), O_RDONLY), STDIN_FILENO); });
     EXPECT_EQ(wrong.code, 2);
     EXPECT_NE(wrong.err.find("standard input:2:1"), std::string::npos) << wrong.err;
 }
@@ -441,7 +459,9 @@ TEST(CommandLine, FieldsAreExportedFromTheRun) {
     EXPECT_FALSE(fs::exists(place / "out/direct-tension-s1.pvd"));
     const Outcome outcome = run_program(place.path(), {"export", "out", "--vtu", "--test", "BTS"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    for (const char* file : {"brazilian-s1.pvd", "brazilian-s1.py", "brazilian-s1/snapshot-000.vtm", "brazilian-s1/contacts-000.vtu"}) EXPECT_TRUE(fs::exists(place / "out/paraview" / file)) << file;
+    for (const char* file :
+         {"brazilian-s1.pvd", "brazilian-s1.py", "brazilian-s1/snapshot-000.vtm", "brazilian-s1/contacts-000.vtu"})
+        EXPECT_TRUE(fs::exists(place / "out/paraview" / file)) << file;
     EXPECT_FALSE(fs::exists(place / "out/paraview/direct-tension-s1.pvd"));
     const Outcome again = run_program(place.path(), {"export", "out", "--vtu"});
     EXPECT_EQ(again.code, 0) << again.err;
@@ -461,7 +481,8 @@ TEST(CommandLine, ViewFindsTheNewestReport) {
         fs::create_directories(place / run);
         write_text(place / run / "report.html", "x\n");
     }
-    fs::last_write_time(place / "results/a-1/report.html", fs::last_write_time(place / "results/a-2/report.html") + std::chrono::seconds(5));
+    fs::last_write_time(place / "results/a-1/report.html",
+                        fs::last_write_time(place / "results/a-2/report.html") + std::chrono::seconds(5));
     const auto no_display = [] {
         unsetenv("DISPLAY");
         unsetenv("WAYLAND_DISPLAY");
@@ -484,10 +505,12 @@ TEST(CommandLine, PagesAndCompletionsKnowEveryCommand) {
         EXPECT_NE(names.find(std::string("feldspar-") + command + "\n"), std::string::npos) << names;
         const Outcome page = run_program(place.path(), {"manual", command});
         EXPECT_EQ(page.code, 0);
-        for (const char* part : {".SH NAME\n", ".SH SYNOPSIS\n", ".SH OPTIONS\n", ".SH EXAMPLES\n", ".SH EXIT STATUS\n"}) EXPECT_NE(page.out.find(part), std::string::npos) << part << page.out;
-        for (const char* shell : {"bash", "zsh", "fish"}) EXPECT_NE(run_program(place.path(), {"completion", shell}).out.find(command), std::string::npos) << shell;
+        for (const char* part : {".SH NAME\n", ".SH SYNOPSIS\n", ".SH OPTIONS\n", ".SH EXAMPLES\n", ".SH EXIT STATUS\n"})
+            EXPECT_NE(page.out.find(part), std::string::npos) << part << page.out;
+        for (const char* shell : {"bash", "zsh", "fish"})
+            EXPECT_NE(run_program(place.path(), {"completion", shell}).out.find(command), std::string::npos) << shell;
     }
-    EXPECT_EQ(names.find("element"), std::string::npos);   // not the user's to call
+    EXPECT_EQ(names.find("element"), std::string::npos);  // not the user's to call
     EXPECT_NE(run_program(place.path(), {"manual", "study", "status"}).out.find("feldspar study status"), std::string::npos);
     EXPECT_NE(run_program(place.path(), {"new", "UCS"}).out.find("uniaxial-compression"), std::string::npos);
 }

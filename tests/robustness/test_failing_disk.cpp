@@ -1,18 +1,19 @@
-// Whatever call on the disk fails, and however: the program ends by itself, says which file and why, leaves only whole files, and the
-// same command goes on afterwards to the results of an undisturbed run. The calls fail by failing_disk.cpp, loaded into the program.
+// Whatever call on the disk fails, and however: the program ends by itself, says which file and why, leaves only whole files, and
+// the same command goes on afterwards to the results of an undisturbed run. The calls fail by failing_disk.cpp, loaded into the
+// program.
 //
-// FELDSPAR_ALL_FAULTS=1 lets every call fail in turn, in every way; 5 takes every fifth of these. Without it some of the first calls for each kind of
-// file, in one way each.
+// FELDSPAR_ALL_FAULTS=1 lets every call fail in turn, in every way; 5 takes every fifth of these. Without it some of the first
+// calls for each kind of file, in one way each.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <iostream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "program.hpp"
 
@@ -23,17 +24,19 @@ using Json = nlohmann::json;
 
 struct Fault {
     std::string kind;
-    int call = 0;   ///< of this kind, from 1
+    int call = 0;  ///< of this kind, from 1
     int error = EIO;
-    bool onward = false;   ///< all later ones too
+    bool onward = false;  ///< all later ones too
 };
 
-std::string text_of(const Fault& fault) { return fmt::format("{} {}{}: {}", fault.kind, fault.call, fault.onward ? " and onward" : "", std::strerror(fault.error)); }
+std::string text_of(const Fault& fault) {
+    return fmt::format("{} {}{}: {}", fault.kind, fault.call, fault.onward ? " and onward" : "", std::strerror(fault.error));
+}
 
 // A call on a file below the directory that the disk watches.
 struct Call {
     std::string kind;
-    fs::path path;   ///< below that directory
+    fs::path path;  ///< below that directory
     bool failed = false;
 };
 
@@ -51,7 +54,7 @@ public:
             setenv("FAILING_DISK_CALL", std::to_string(fault.call).c_str(), 1);
             setenv("FAILING_DISK_ERROR", std::to_string(fault.error).c_str(), 1);
             setenv("FAILING_DISK_ONWARD", fault.onward ? "1" : "0", 1);
-            alarm(100);   // seconds; a program that hangs is ended and found out
+            alarm(100);  // seconds; a program that hangs is ended and found out
         };
     }
 
@@ -77,12 +80,15 @@ private:
 // What kind of file a path is: names of processes, runs and snapshots are left out.
 std::string class_of(const fs::path& path) {
     std::string text = path.string();
-    for (const char* varying : {R"(\.[0-9]+-[0-9]+-[^.]+\.part$)", "[0-9a-f]{32}", "[0-9]+"}) text = std::regex_replace(text, std::regex(varying), "");
+    for (const char* varying : {R"(\.[0-9]+-[0-9]+-[^.]+\.part$)", "[0-9a-f]{32}", "[0-9]+"})
+        text = std::regex_replace(text, std::regex(varying), "");
     return text;
 }
 
 // Every so-manieth of all faults; 0 if only some are asked for.
-std::size_t all_faults() { return std::getenv("FELDSPAR_ALL_FAULTS") != nullptr ? std::stoul(std::getenv("FELDSPAR_ALL_FAULTS")) : 0; }
+std::size_t all_faults() {
+    return std::getenv("FELDSPAR_ALL_FAULTS") != nullptr ? std::stoul(std::getenv("FELDSPAR_ALL_FAULTS")) : 0;
+}
 
 // The calls that are to fail, of those of a run without faults.
 std::vector<Fault> faults_of(const std::vector<Call>& calls) {
@@ -101,8 +107,8 @@ std::vector<Fault> faults_of(const std::vector<Call>& calls) {
                     if (kind != "short" || (!onward && error == EIO)) faults.push_back({kind, number, error, onward});
         }
     }
-    std::vector<Fault> some;   // each file with another kind, error and duration
-    for (std::size_t i = 0; i < faults.size(); i += all_faults() > 0 ? all_faults() : 17) some.push_back(faults[i]);
+    std::vector<Fault> some;  // each file with another kind, error and duration
+    for (std::size_t i = 0; i<faults.size(); i += all_faults()> 0 ? all_faults() : 17) some.push_back(faults[i]);
     return some;
 }
 
@@ -114,7 +120,8 @@ std::string last_line(const std::string& text) {
 
 std::uint64_t little_endian(const std::string& bytes, std::size_t at) {
     std::uint64_t number = 0;
-    for (std::size_t i = 0; i < 8; ++i) number |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes.at(at + i))) << (8 * i);
+    for (std::size_t i = 0; i < 8; ++i)
+        number |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes.at(at + i))) << (8 * i);
     return number;
 }
 
@@ -132,7 +139,7 @@ void expect_whole_files(const fs::path& results) {
         EXPECT_TRUE((kind != ".vtu" && kind != ".vtm" && kind != ".pvd") || last_line(text) == "</VTKFile>");
         if (kind == ".csv") {
             EXPECT_TRUE(text.ends_with('\n'));
-            std::set<std::ptrdiff_t> columns;   // equally many in each row
+            std::set<std::ptrdiff_t> columns;  // equally many in each row
             std::istringstream lines(text);
             for (std::string line; std::getline(lines, line);)
                 if (!line.starts_with("#")) columns.insert(std::count(line.begin(), line.end(), ','));
@@ -141,7 +148,7 @@ void expect_whole_files(const fs::path& results) {
         if (kind == ".h5") {
             ASSERT_GT(text.size(), 96U);
             EXPECT_EQ(text.substr(0, 8), "\x89HDF\r\n\x1a\n");
-            EXPECT_EQ(little_endian(text, text[8] < 2 ? 40 : 28), text.size());   // where the file ends, as it says itself
+            EXPECT_EQ(little_endian(text, text[8] < 2 ? 40 : 28), text.size());  // where the file ends, as it says itself
         }
     }
 }
@@ -167,7 +174,8 @@ std::map<std::string, Json> numbers_below(const fs::path& results) {
     std::map<std::string, Json> found;
     for (const auto& entry : fs::recursive_directory_iterator(results)) {
         const std::string name = fs::relative(entry.path(), results).string();
-        if (entry.path().filename() == "run.json") found[name] = without_times(Json::parse(read_text(entry.path())).at("numbers"));
+        if (entry.path().filename() == "run.json")
+            found[name] = without_times(Json::parse(read_text(entry.path())).at("numbers"));
         if (entry.path().filename() == "summary.json")
             for (const Json& test : Json::parse(read_text(entry.path())).at("tests")) found[name].push_back(without_times(test));
     }
@@ -176,7 +184,8 @@ std::map<std::string, Json> numbers_below(const fs::path& results) {
 
 std::vector<std::string> files_below(const fs::path& results) {
     std::vector<std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(results)) files.push_back(fs::relative(entry.path(), results).string());
+    for (const auto& entry : fs::recursive_directory_iterator(results))
+        files.push_back(fs::relative(entry.path(), results).string());
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -184,15 +193,18 @@ std::vector<std::string> files_below(const fs::path& results) {
 // The reason is told where it cost something: the state before the newest one is spare, and SQLite's own files are made again.
 bool must_be_told(const Call& call) {
     const std::string path = call.path.string();
-    if (path == "ledger.sqlite" && call.kind == "close") return false;   // it was flushed before
+    if (path == "ledger.sqlite" && call.kind == "close") return false;  // it was flushed before
     return call.kind != "unlink" && call.kind != "truncate" && !path.ends_with(".before") && path.find(".sqlite-") == path.npos;
 }
 
 class FailingDisk : public testing::Test {
 protected:
     void write_inputs(const TemporaryFolder& place) const {
-        write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\nsnapshots = 2\n", study_ ? "[1]" : "[1, 2]"));
-        write_text(place / "study.toml", "job = \"job.toml\"\nkeep = \"all\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.3, 0.4]\n");
+        write_text(place / "job.toml",
+                   small_job("[[test]]\nkind = \"uniaxial-compression\"\nsnapshots = 2\n", study_ ? "[1]" : "[1, 2]"));
+        write_text(
+            place / "study.toml",
+            "job = \"job.toml\"\nkeep = \"all\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.3, 0.4]\n");
     }
     std::vector<std::string> command() const {
         if (study_) return {"study", "study.toml", "--results", "results", "--checkpoint-every", "20 ms", "--threads", "1"};
@@ -206,7 +218,7 @@ protected:
         const Outcome undisturbed = run_program(whole.path(), command(), watched.with({"none", 0, 0, false}));
         ASSERT_EQ(undisturbed.code, 0) << undisturbed.err;
         const std::vector<Fault> faults = faults_of(watched.calls());
-        ASSERT_GT(faults.size(), 15U);   // one a kind of call and file; far fewer would say that calls are not seen
+        ASSERT_GT(faults.size(), 15U);  // one a kind of call and file; far fewer would say that calls are not seen
         int injected = 0, ended = 0;
         for (const Fault& fault : faults) {
             const TemporaryFolder place;
@@ -215,7 +227,8 @@ protected:
             const Outcome outcome = run_program(place.path(), command(), disk.with(fault));
             std::vector<Call> failed = disk.calls();
             std::erase_if(failed, [](const Call& call) { return !call.failed; });
-            SCOPED_TRACE(text_of(fault) + (failed.empty() ? " (not met)" : ", on '" + failed.front().path.string() + "'") + "\n" + outcome.err);
+            SCOPED_TRACE(text_of(fault) + (failed.empty() ? " (not met)" : ", on '" + failed.front().path.string() + "'") + "\n" +
+                         outcome.err);
             injected += failed.empty() ? 0 : 1;
             ended += outcome.code != 0 ? 1 : 0;
             judge(fault, failed, outcome, place / "results");
@@ -230,19 +243,23 @@ protected:
     bool study_ = false;
 
 private:
-    int failures_in_a_row() const { return ::testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count(); }
+    int failures_in_a_row() const {
+        return ::testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count();
+    }
 
     void judge(const Fault& fault, const std::vector<Call>& failed, const Outcome& outcome, const fs::path& results) const {
         const bool before_the_run = !failed.empty() && (failed.front().kind == "mkdir" || outcome.out.empty());
         EXPECT_TRUE(outcome.code == 0 || outcome.code == 4 || (before_the_run && outcome.code == 2)) << outcome.code;
         EXPECT_TRUE(!failed.empty() || outcome.code == 0);
         if (outcome.code != 0 || (fault.kind != "short" && std::any_of(failed.begin(), failed.end(), must_be_told))) {
-            EXPECT_TRUE(outcome.err.find(std::strerror(fault.error)) != std::string::npos || outcome.err.find("ledger.sqlite") != std::string::npos) << "the reason is not told";
+            EXPECT_TRUE(outcome.err.find(std::strerror(fault.error)) != std::string::npos ||
+                        outcome.err.find("ledger.sqlite") != std::string::npos)
+                << "the reason is not told";
             EXPECT_NE(outcome.err.find("results"), std::string::npos) << "the file is not told";
         }
         EXPECT_TRUE(outcome.code == 0 || outcome.err.find("feldspar: ") != std::string::npos);
         EXPECT_TRUE(outcome.code == 0 || fault.kind != "short");
-        if (fault.kind != "unlink") expect_whole_files(results);   // what cannot be removed stays
+        if (fault.kind != "unlink") expect_whole_files(results);  // what cannot be removed stays
         if (!study_ || !fs::exists(results / "ledger.sqlite")) return;
         const Outcome status = run_program(results.parent_path(), {"study", "status", "study.toml", "--results", "results"});
         EXPECT_EQ(status.code, 0) << status.err;
@@ -267,7 +284,9 @@ TEST_F(FailingDisk, UnderARun) { sweep(); }
 
 // Files that a command makes where the user wants them.
 TEST_F(FailingDisk, UnderFilesThatCommandsMake) {
-    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"new", "uniaxial-compression", "--out", "made/job.toml"}, std::vector<std::string>{"export-cells", "job.toml", "--out", "made/cells.tess"}}) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"new", "uniaxial-compression", "--out", "made/job.toml"},
+          std::vector<std::string>{"export-cells", "job.toml", "--out", "made/cells.tess"}}) {
         for (const char* kind : {"open", "write", "short", "fsync", "close"}) {
             const TemporaryFolder place;
             write_inputs(place);

@@ -1,20 +1,21 @@
-// What else can go wrong around a program that runs: impatient users, readers that go away, disks that may not be written, results that
-// vanish, ledgers that are damaged or locked, and too little memory. It never crashes, says what is wrong, and goes on afterwards.
+// What else can go wrong around a program that runs: impatient users, readers that go away, disks that may not be written,
+// results that vanish, ledgers that are damaged or locked, and too little memory. It never crashes, says what is wrong, and goes
+// on afterwards.
+#include <fmt/format.h>
 #include <sys/mount.h>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <sstream>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "program.hpp"
 
 namespace feldspar::testing_program {
 namespace {
 
-const std::string two_values = "job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.3, 0.4]\n";
+const std::string two_values =
+    "job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.3, 0.4]\n";
 const std::vector<std::string> study_command{"study", "study.toml", "--results", "results", "--threads", "1"};
 
 // Lines of the study's table but those that say when.
@@ -28,16 +29,17 @@ std::string table_of(const TemporaryFolder& place) {
 
 TEST(Faults, CtrlCTwiceEndsAtOnceAndTheRunGoesOn) {
     const TemporaryFolder place;
-    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2, 3, 4]", "kind = \"adaptive\"\naccuracy = \"2 %\"\n"));
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2, 3, 4]",
+                                             "kind = \"adaptive\"\naccuracy = \"2 %\"\n"));
     const std::vector<std::string> command{"run", "job.toml", "--out", "results", "--checkpoint-every", "20 ms"};
-    for (int milliseconds : {0, 1, 5, 20}) {   // between the two
+    for (int milliseconds : {0, 1, 5, 20}) {  // between the two
         Program program(place.path(), command);
         ASSERT_TRUE(program.wait_until([&] { return fs::exists(place / "results/checkpoints/job"); })) << program.err_so_far();
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
         program.send(SIGINT);
         std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
         program.send(SIGINT);
-        const int code = program.finish().code;   // 130 either way: by itself, or by the signal
+        const int code = program.finish().code;  // 130 either way: by itself, or by the signal
         EXPECT_TRUE(code == 130 || code == 0) << code;
         if (code == 0) break;
     }
@@ -83,11 +85,16 @@ TEST(Faults, AReadOnlyDiskIsToldAndTheRunGoesOnWhenItIsNotAnyMore) {
     const TemporaryFolder place;
     const fs::path disk = place / "disk";
     fs::create_directory(disk);
-    if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=64m") != 0) GTEST_SKIP() << "cannot mount a small disk: " << std::strerror(errno);
-    const auto remount = [&](unsigned long how) { ASSERT_EQ(mount("tmpfs", disk.c_str(), "tmpfs", MS_REMOUNT | how, "size=64m"), 0); };
-    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2]", "kind = \"adaptive\"\naccuracy = \"2 %\"\n"));
+    if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=64m") != 0)
+        GTEST_SKIP() << "cannot mount a small disk: " << std::strerror(errno);
+    const auto remount = [&](unsigned long how) {
+        ASSERT_EQ(mount("tmpfs", disk.c_str(), "tmpfs", MS_REMOUNT | how, "size=64m"), 0);
+    };
+    write_text(place / "job.toml",
+               small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2]", "kind = \"adaptive\"\naccuracy = \"2 %\"\n"));
     write_text(place / "study.toml", two_values);
-    const std::vector<std::string> command{"run", "job.toml", "--out", "disk/results", "--checkpoint-every", "20 ms"}, study{"study", "study.toml", "--results", "disk/study", "--threads", "1"};
+    const std::vector<std::string> command{"run", "job.toml", "--out", "disk/results", "--checkpoint-every", "20 ms"},
+        study{"study", "study.toml", "--results", "disk/study", "--threads", "1"};
     remount(MS_RDONLY);
     const Outcome refused = run_program(place.path(), command);
     EXPECT_EQ(refused.code, 2) << refused.err;
@@ -98,7 +105,8 @@ TEST(Faults, AReadOnlyDiskIsToldAndTheRunGoesOnWhenItIsNotAnyMore) {
     remount(0);
     {
         Program program(place.path(), command);
-        ASSERT_TRUE(program.wait_until([&] { return fs::exists(disk / "results/checkpoints/uniaxial-compression-s1.state"); })) << program.err_so_far();
+        ASSERT_TRUE(program.wait_until([&] { return fs::exists(disk / "results/checkpoints/uniaxial-compression-s1.state"); }))
+            << program.err_so_far();
         program.send(SIGKILL);
         (void)program.finish();
     }
@@ -118,12 +126,14 @@ TEST(Faults, ResultsThatAreRemovedUnderTheProgramEndItWithFour) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]"));
     write_text(place / "study.toml", replaced(two_values, "values = [0.3, 0.4]", "values = [0.2, 0.25, 0.3, 0.35, 0.4, 0.45]"));
-    for (const auto& [command, there] : {std::pair{std::vector<std::string>{"run", "job.toml", "--out", "results"}, "results/summary.json"}, std::pair{study_command, "results/ledger.sqlite-wal"}}) {
+    for (const auto& [command, there] :
+         {std::pair{std::vector<std::string>{"run", "job.toml", "--out", "results"}, "results/summary.json"},
+          std::pair{study_command, "results/ledger.sqlite-wal"}}) {
         SCOPED_TRACE(command.front());
         Program program(place.path(), command);
         ASSERT_TRUE(program.wait_until([&, file = there] { return fs::exists(place / file); })) << program.err_so_far();
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        for (int attempt = 0; attempt < 20 && fs::exists(place / "results"); ++attempt) {   // files come while they go
+        for (int attempt = 0; attempt < 20 && fs::exists(place / "results"); ++attempt) {  // files come while they go
             std::error_code ignored;
             fs::remove_all(place / "results", ignored);
         }
@@ -159,11 +169,12 @@ protected:
             ++told_;
             EXPECT_TRUE(outcome.code == 4 || outcome.code == 2) << outcome.code << outcome.err;
             EXPECT_NE(outcome.err.find("results/ledger.sqlite"), std::string::npos) << outcome.err;
-            EXPECT_NE(outcome.err.find("move the file away, and the same command makes it again"), std::string::npos) << outcome.err;
+            EXPECT_NE(outcome.err.find("move the file away, and the same command makes it again"), std::string::npos)
+                << outcome.err;
             for (const char* ending : {"", "-wal", "-shm"}) fs::remove(place_ / (std::string("results/ledger.sqlite") + ending));
             const Outcome again = run_program(place_.path(), study_command);
             EXPECT_EQ(again.code, 0) << again.err;
-            EXPECT_NE(again.out.find("0 runs done now, 3 before"), std::string::npos) << again.out;   // nothing is computed twice
+            EXPECT_NE(again.out.find("0 runs done now, 3 before"), std::string::npos) << again.out;  // nothing is computed twice
             EXPECT_EQ(table_of(place_), table_);
         }
     }
@@ -177,8 +188,9 @@ TEST_F(DamagedLedger, BytesThatChanged) {
     std::mt19937 random(3);
     for (int i = 0; i < 40; ++i) {
         std::string bytes = whole_;
-        const std::size_t at = i < 20 ? static_cast<std::size_t>(i * 5) : random() % bytes.size();   // the head, then anywhere
-        for (std::size_t j = at; j < std::min(at + 1 + random() % 8, bytes.size()); ++j) bytes[j] = static_cast<char>(bytes[j] ^ static_cast<char>(1 + random() % 255));
+        const std::size_t at = i < 20 ? static_cast<std::size_t>(i * 5) : random() % bytes.size();  // the head, then anywhere
+        for (std::size_t j = at; j < std::min(at + 1 + random() % 8, bytes.size()); ++j)
+            bytes[j] = static_cast<char>(bytes[j] ^ static_cast<char>(1 + random() % 255));
         SCOPED_TRACE(fmt::format("from byte {}", at));
         judge(bytes);
     }
@@ -198,8 +210,10 @@ TEST_F(DamagedLedger, ARecordThatIsDamagedTooIsMadeAgain) {
     for (int kind = 0; kind < 2; ++kind) {
         for (const auto& entry : runs()) {
             std::string record = read_text(entry.path() / "run.json");
-            if (kind == 0) record.resize(record.size() / 2);
-            else record[record.find("strength_Pa") + 15] ^= 1;   // another digit
+            if (kind == 0)
+                record.resize(record.size() / 2);
+            else
+                record[record.find("strength_Pa") + 15] ^= 1;  // another digit
             write_text(entry.path() / "run.json", record);
         }
         for (const char* ending : {"", "-wal", "-shm"}) fs::remove(place_ / (std::string("results/ledger.sqlite") + ending));
@@ -218,7 +232,8 @@ TEST_F(DamagedLedger, AStateOfARunThatIsDoneIsRemoved) {
     fs::remove(place_ / "results/ledger.sqlite");
     const Outcome outcome = run_program(place_.path(), study_command);
     EXPECT_NE(outcome.out.find("0 runs done now, 3 before"), std::string::npos) << outcome.out << outcome.err;
-    for (const auto& entry : fs::recursive_directory_iterator(place_ / "results")) EXPECT_FALSE(entry.path().filename().string().starts_with("test.state")) << entry.path();
+    for (const auto& entry : fs::recursive_directory_iterator(place_ / "results"))
+        EXPECT_FALSE(entry.path().filename().string().starts_with("test.state")) << entry.path();
 }
 
 // Another program writes; the study waits for it.
@@ -228,11 +243,14 @@ TEST_F(DamagedLedger, LockedForAWhile) {
     struct flock lock {};
     lock.l_type = F_WRLCK;
     lock.l_whence = SEEK_SET;
-    lock.l_start = 0x40000000;   // where SQLite locks
+    lock.l_start = 0x40000000;  // where SQLite locks
     lock.l_len = 512;
     ASSERT_EQ(fcntl(file, F_SETLK, &lock), 0);
     Program program(place_.path(), study_command);
-    EXPECT_FALSE(program.wait_until([until = std::chrono::steady_clock::now() + std::chrono::milliseconds(700)] { return std::chrono::steady_clock::now() > until; }) == false) << program.err_so_far();
+    EXPECT_FALSE(program.wait_until([until = std::chrono::steady_clock::now() + std::chrono::milliseconds(700)] {
+        return std::chrono::steady_clock::now() > until;
+    }) == false)
+        << program.err_so_far();
     close(file);
     const Outcome outcome = program.finish();
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -251,7 +269,7 @@ TEST(Faults, TooLittleMemoryIsSaid) {
                 const rlimit limit{bytes, bytes};
                 setrlimit(kind, &limit);
             };
-            if (run_program(place.path(), {"--version"}, limited).code != 0) continue;   // the system cannot even load the program
+            if (run_program(place.path(), {"--version"}, limited).code != 0) continue;  // the system cannot even load the program
             std::error_code ignored;
             fs::remove_all(place / "results", ignored);
             const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "results", "--threads", "2"}, limited);

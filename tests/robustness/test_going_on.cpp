@@ -1,11 +1,11 @@
 // A run that is killed, interrupted or damaged goes on where it was, and leaves the results of one that was never disturbed.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <random>
-
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "program.hpp"
 
@@ -16,8 +16,9 @@ using Json = nlohmann::json;
 
 // Two tests on two packings, some seconds of work.
 std::string some_job() {
-    return replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = \"5 MPa\"\n", "[1, 2]", "accuracy = \"2 %\"\n"), "minimum = \"7 mm\", maximum = \"11 mm\"",
-                    "minimum = \"5 mm\", maximum = \"9 mm\"");
+    return replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\nsigma3 = \"5 MPa\"\n",
+                              "[1, 2]", "accuracy = \"2 %\"\n"),
+                    "minimum = \"7 mm\", maximum = \"11 mm\"", "minimum = \"5 mm\", maximum = \"9 mm\"");
 }
 
 // All lines of the histories but those that say when and where, by file.
@@ -60,8 +61,10 @@ protected:
         EXPECT_FALSE(fs::exists(results / "checkpoints"));
         expect_no_half_files(results);
         std::vector<std::string> files, expected;
-        for (const auto& entry : fs::recursive_directory_iterator(results)) files.push_back(fs::relative(entry.path(), results).string());
-        for (const auto& entry : fs::recursive_directory_iterator(*undisturbed_ / "results")) expected.push_back(fs::relative(entry.path(), *undisturbed_ / "results").string());
+        for (const auto& entry : fs::recursive_directory_iterator(results))
+            files.push_back(fs::relative(entry.path(), results).string());
+        for (const auto& entry : fs::recursive_directory_iterator(*undisturbed_ / "results"))
+            expected.push_back(fs::relative(entry.path(), *undisturbed_ / "results").string());
         std::sort(files.begin(), files.end());
         std::sort(expected.begin(), expected.end());
         EXPECT_EQ(files, expected);
@@ -102,14 +105,17 @@ TEST_F(GoingOn, AfterAnySignalAtAnyMoment) {
     std::mt19937 random(20);
     int attempts = 0, ended = 0;
     for (; attempts < 60; ++attempts) {
-        Program program(place_.path(), {"run", "job.toml", "--out", "results", "--checkpoint-every", "30 ms", "--threads", attempts % 2 == 0 ? "1" : "2"});
+        Program program(place_.path(), {"run", "job.toml", "--out", "results", "--checkpoint-every", "30 ms", "--threads",
+                                        attempts % 2 == 0 ? "1" : "2"});
         const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(20 + random() % 500);
         const bool reached = program.wait_until([&] { return std::chrono::steady_clock::now() > until; });
         if (reached) program.send(std::array{SIGKILL, SIGTERM, SIGINT, SIGHUP}[random() % 4]);
         const Outcome outcome = program.finish();
         if (outcome.code == 0) break;
         ++ended;
-        ASSERT_TRUE(outcome.code == 128 + SIGKILL || outcome.code == 130 || outcome.code == 128 + SIGTERM || outcome.code == 128 + SIGINT || outcome.code == 128 + SIGHUP) << outcome.code << outcome.err;
+        ASSERT_TRUE(outcome.code == 128 + SIGKILL || outcome.code == 130 || outcome.code == 128 + SIGTERM ||
+                    outcome.code == 128 + SIGINT || outcome.code == 128 + SIGHUP)
+            << outcome.code << outcome.err;
     }
     EXPECT_GT(ended, 1);
     EXPECT_LT(attempts, 60);
@@ -118,20 +124,25 @@ TEST_F(GoingOn, AfterAnySignalAtAnyMoment) {
 
 TEST_F(GoingOn, WithoutOutInTheNewestDirectoryOfTheJob) {
     Program program(place_.path(), {"run", "job.toml", "--checkpoint-every", "20 ms"});
-    ASSERT_TRUE(program.wait_until([&] { return fs::exists(place_ / "results/job-1/checkpoints/uniaxial-compression-s1.state"); })) << program.err_so_far();
+    ASSERT_TRUE(program.wait_until([&] {
+        return fs::exists(place_ / "results/job-1/checkpoints/uniaxial-compression-s1.state");
+    })) << program.err_so_far();
     program.send(SIGKILL);
     (void)program.finish();
     const Outcome outcome = run_program(place_.path(), {"run", "job.toml"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("going on with the unfinished run in results/job-1"), std::string::npos) << outcome.err;
     expect_like_undisturbed(place_ / "results/job-1");
-    EXPECT_EQ(run_program(place_.path(), {"run", "job.toml", "--test", "biaxial"}).code, 0);   // another job: a directory of its own
+    EXPECT_EQ(run_program(place_.path(), {"run", "job.toml", "--test", "biaxial"}).code,
+              0);  // another job: a directory of its own
     EXPECT_TRUE(fs::exists(place_ / "results/job-2/summary.json"));
 }
 
 TEST_F(GoingOn, FreshBeginsAnew) {
     Program program(place_.path(), {"run", "job.toml", "--checkpoint-every", "20 ms"});
-    ASSERT_TRUE(program.wait_until([&] { return fs::exists(place_ / "results/job-1/checkpoints/uniaxial-compression-s1.state"); })) << program.err_so_far();
+    ASSERT_TRUE(program.wait_until([&] {
+        return fs::exists(place_ / "results/job-1/checkpoints/uniaxial-compression-s1.state");
+    })) << program.err_so_far();
     program.send(SIGTERM);
     EXPECT_EQ(program.finish().code, 130);
     const Outcome outcome = run_program(place_.path(), {"run", "job.toml", "--fresh"});
@@ -142,7 +153,8 @@ TEST_F(GoingOn, FreshBeginsAnew) {
 
 TEST_F(GoingOn, OnRequestStatesAreKept) {
     Program program(place_.path(), {"run", "job.toml", "--out", "results", "--checkpoint-every", "never"});
-    ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; })) << program.err_so_far();
+    ASSERT_TRUE(program.wait_until([&] { return program.err_so_far().find("loading") != std::string::npos; }))
+        << program.err_so_far();
     EXPECT_TRUE(states().empty());
     program.send(SIGUSR1);
     EXPECT_TRUE(program.wait_until([&] { return !states().empty(); })) << program.err_so_far();
@@ -176,7 +188,8 @@ TEST_F(GoingOn, TwoProgramsDoNotShareADirectory) {
 TEST_F(GoingOn, ADamagedStateCostsSomeTimeOnly) {
     leave_a_state();
     Program program(place_.path(), {"run", "job.toml", "--out", "results", "--checkpoint-every", "20 ms"});
-    ASSERT_TRUE(program.wait_until([&] { return !states().empty() && fs::exists(states().front().string() + ".before"); })) << program.err_so_far();
+    ASSERT_TRUE(program.wait_until([&] { return !states().empty() && fs::exists(states().front().string() + ".before"); }))
+        << program.err_so_far();
     program.send(SIGKILL);
     (void)program.finish();
     for (const fs::path& state : states()) {
@@ -192,7 +205,8 @@ TEST_F(GoingOn, ADamagedStateCostsSomeTimeOnly) {
 TEST_F(GoingOn, StatesThatAreAllDamagedAreSaidAndTheTestBeginsAnew) {
     leave_a_state();
     const std::string name = states().front().filename().string();
-    for (const char* ending : {"", ".before"}) write_text(place_ / ("results/checkpoints/" + name + ending), "feldspar checkpoint 1\nnonsense");
+    for (const char* ending : {"", ".before"})
+        write_text(place_ / ("results/checkpoints/" + name + ending), "feldspar checkpoint 1\nnonsense");
     const Outcome outcome = go_on();
     EXPECT_EQ(outcome.code, 0);
     EXPECT_NE(outcome.err.find("is not used, and its test begins anew: it is damaged"), std::string::npos) << outcome.err;
@@ -204,7 +218,7 @@ TEST_F(GoingOn, StatesOfOtherInstructionsAreSaid) {
     leave_a_state();
     setenv("FELDSPAR_KERNELS", "avx2", 1);
     const Outcome outcome = go_on();
-    if (outcome.code != 2) {   // else this processor has no AVX2
+    if (outcome.code != 2) {  // else this processor has no AVX2
         EXPECT_EQ(outcome.code, 0);
         EXPECT_NE(outcome.err.find("FELDSPAR_KERNELS=portable goes on with it"), std::string::npos) << outcome.err;
     }
@@ -213,28 +227,34 @@ TEST_F(GoingOn, StatesOfOtherInstructionsAreSaid) {
 
 TEST_F(GoingOn, WithoutSpaceForStatesTheTestsGoOn) {
     // states are the largest files on the way; a limit beyond the histories stops them first
-    const Outcome outcome = run_program(place_.path(), {"run", "job.toml", "--out", "results", "--checkpoint-every", "10 ms"}, [] {
-        const rlimit limit{300'000, 300'000};
-        setrlimit(RLIMIT_FSIZE, &limit);
-    });
-    EXPECT_NE(outcome.err.find("the state of this test cannot be kept, and it goes on without"), std::string::npos) << outcome.err;
+    const Outcome outcome =
+        run_program(place_.path(), {"run", "job.toml", "--out", "results", "--checkpoint-every", "10 ms"}, [] {
+            const rlimit limit{300'000, 300'000};
+            setrlimit(RLIMIT_FSIZE, &limit);
+        });
+    EXPECT_NE(outcome.err.find("the state of this test cannot be kept, and it goes on without"), std::string::npos)
+        << outcome.err;
     expect_no_half_files(place_ / "results");
 }
 
 TEST_F(GoingOn, StudiesGoOnWithTheirTests) {
-    write_text(place_ / "study.toml", "job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.3, 0.4]\n");
+    write_text(place_ / "study.toml",
+               "job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.3, 0.4]\n");
     std::mt19937 random(7);
-    const auto run = [&](const std::string& results) { return std::vector<std::string>{"study", "study.toml", "--results", results, "--checkpoint-every", "30 ms"}; };
+    const auto run = [&](const std::string& results) {
+        return std::vector<std::string>{"study", "study.toml", "--results", results, "--checkpoint-every", "30 ms"};
+    };
     ASSERT_EQ(run_program(place_.path(), run("whole")).code, 0);
     int ended = 0;
     for (; ended < 60; ++ended) {
         Program program(place_.path(), run("pieces"));
         const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(200 + random() % 1500);
-        if (program.wait_until([&] { return std::chrono::steady_clock::now() > until; })) program.send(ended % 2 == 0 ? SIGKILL : SIGTERM);
+        if (program.wait_until([&] { return std::chrono::steady_clock::now() > until; }))
+            program.send(ended % 2 == 0 ? SIGKILL : SIGTERM);
         if (program.finish().code == 0) break;
     }
     EXPECT_GT(ended, 0);
-    const auto table = [&](const std::string& results) {   // all but times
+    const auto table = [&](const std::string& results) {  // all but times
         std::string kept;
         std::istringstream text(run_program(place_.path(), {"study", "table", "study.toml", "--results", results}).out);
         for (std::string line; std::getline(text, line);)
@@ -243,7 +263,8 @@ TEST_F(GoingOn, StudiesGoOnWithTheirTests) {
     };
     EXPECT_EQ(table("pieces"), table("whole"));
     EXPECT_GT(table("whole").size(), 100U);
-    for (const auto& entry : fs::recursive_directory_iterator(place_ / "pieces")) EXPECT_FALSE(entry.path().filename().string().starts_with("test.state")) << entry.path();
+    for (const auto& entry : fs::recursive_directory_iterator(place_ / "pieces"))
+        EXPECT_FALSE(entry.path().filename().string().starts_with("test.state")) << entry.path();
 }
 
 }  // namespace

@@ -1,11 +1,12 @@
-// Text of a user's, or of a file that somebody has sent: it stands in pages, tables, scripts and on the terminal, and commands none of them. Nothing is written outside the results'
-// directory, or through a link that another user has put into a shared one.
+// Text of a user's, or of a file that somebody has sent: it stands in pages, tables, scripts and on the terminal, and commands
+// none of them. Nothing is written outside the results' directory, or through a link that another user has put into a shared one.
 #include "program.hpp"
 
 namespace feldspar::testing_program {
 namespace {
 
-const std::string hostile = R"(</script><img src=x onerror='alert(1)'>\" onload=\"alert(2) {{data}} \u001b[31m)";   // as it stands in TOML
+const std::string hostile =
+    R"(</script><img src=x onerror='alert(1)'>\" onload=\"alert(2) {{data}} \u001b[31m)";  // as it stands in TOML
 
 int count_of(const std::string& text, const std::string& what) {
     int count = 0;
@@ -24,13 +25,16 @@ void expect_harmless_page(const fs::path& file) {
 
 TEST(HostileText, OfAJobCommandsNoPageTableOrTerminal) {
     TemporaryFolder place;
-    for (const std::string& name : {hostile, std::string("../../elsewhere")}) {   // names of files come of it
+    for (const std::string& name : {hostile, std::string("../../elsewhere")}) {  // names of files come of it
         place.write("job.toml", small_job() + "[[variant]]\nname = \"" + name + "\"\n");
         const Outcome refused = run_program(place.path(), {"run", "job.toml", "--out", "out"});
         EXPECT_EQ(refused.code, 2);
         EXPECT_EQ(refused.err.find('\x1b'), std::string::npos);
     }
-    place.write("job.toml", "# " + hostile + "\n" + replaced(small_job(), "thickness", "labels = [{ name = \"" + hostile + "\", at = [\"0 mm\", \"40 mm\"], within = \"10 mm\" }]\nthickness"));
+    place.write("job.toml", "# " + hostile + "\n" +
+                                replaced(small_job(), "thickness",
+                                         "labels = [{ name = \"" + hostile +
+                                             "\", at = [\"0 mm\", \"40 mm\"], within = \"10 mm\" }]\nthickness"));
     const Outcome outcome = run_program(place.path(), {"run", "job.toml", "--out", "out"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ((outcome.out + outcome.err).find('\x1b'), std::string::npos);
@@ -47,8 +51,11 @@ TEST(HostileText, OfAJobCommandsNoPageTableOrTerminal) {
 TEST(HostileText, OfAStudyCommandsNoPageOrSpreadsheet) {
     TemporaryFolder place;
     place.write("job.toml", small_job());
-    place.write("study.toml", "job = \"job.toml\"\ntitle = \"" + hostile + "\"\n[[axis]]\nname = \"=1+1\"\n[[axis.value]]\nlabel = \"=HYPERLINK(1)\"\n[[axis.value]]\nlabel = \"" + hostile +
-                                  "\"\nset = { material.contact.mu = 0.5 }\n[[axis.value]]\nlabel = \"-5 %\"\nset = { material.contact.mu = 0.38 }\n");
+    place.write(
+        "study.toml",
+        "job = \"job.toml\"\ntitle = \"" + hostile +
+            "\"\n[[axis]]\nname = \"=1+1\"\n[[axis.value]]\nlabel = \"=HYPERLINK(1)\"\n[[axis.value]]\nlabel = \"" + hostile +
+            "\"\nset = { material.contact.mu = 0.5 }\n[[axis.value]]\nlabel = \"-5 %\"\nset = { material.contact.mu = 0.38 }\n");
     const Outcome outcome = run_program(place.path(), {"study", "study.toml"});
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ((outcome.out + outcome.err).find('\x1b'), std::string::npos);
@@ -80,7 +87,7 @@ TEST(SharedDirectories, FilesAreNotWrittenThroughLinks) {
     place.write("victim", "precious");
     const pid_t child = fork();
     ASSERT_GE(child, 0);
-    if (child == 0) {   // exec keeps the number of the process, by which the file that is written aside is named
+    if (child == 0) {  // exec keeps the number of the process, by which the file that is written aside is named
         if (chdir(place.path().c_str()) != 0) _exit(126);
         std::error_code error;
         fs::create_symlink("victim", ".feldspar-" + std::to_string(getpid()) + "-0.part", error);

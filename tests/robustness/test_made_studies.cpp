@@ -13,7 +13,9 @@ std::string laboratory() { return "[laboratory]\nUCS = \"120 MPa\"\nconfined = [
 TEST(Envelope, RunsSavesAndGoesOn) {
     const TemporaryFolder place;
     // seven grains wide: with four, a confined specimen may never reach a peak
-    const std::string job = replaced(replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", fast), "\"7 mm\"", "\"4 mm\""), "\"11 mm\"", "\"7 mm\"");
+    const std::string job =
+        replaced(replaced(small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", fast), "\"7 mm\"", "\"4 mm\""),
+                 "\"11 mm\"", "\"7 mm\"");
     write_text(place / "job.toml", job + laboratory());
     const std::vector<std::string> command{"envelope", "job.toml", "--seeds", "2", "--sigma3", "3 MPa", "9 MPa"};
     const Outcome first = run_program(place.path(), command);
@@ -34,7 +36,7 @@ TEST(Envelope, RunsSavesAndGoesOn) {
     EXPECT_EQ(page.find("{{"), std::string::npos);
     EXPECT_EQ(read_text(results / "envelope.csv").rfind("# Strength envelope of job", 0), 0u);
 
-    const Outcome again = run_program(place.path(), command);   // nothing is run twice
+    const Outcome again = run_program(place.path(), command);  // nothing is run twice
     EXPECT_NE(again.out.find("0 runs done now, 10 before"), std::string::npos) << again.out;
     expect_no_half_files(place / "results");
 }
@@ -42,7 +44,8 @@ TEST(Envelope, RunsSavesAndGoesOn) {
 TEST(Envelope, RefusesWhatItCannotDo) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
-    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{"--sigma3", "5 mm"}, {"--sigma3", "0 MPa"}, {"--seeds", "0"}, {"--variant", "rigid"}}) {
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"--sigma3", "5 mm"}, {"--sigma3", "0 MPa"}, {"--seeds", "0"}, {"--variant", "rigid"}}) {
         std::vector<std::string> command{"envelope", "job.toml"};
         command.insert(command.end(), arguments.begin(), arguments.end());
         const Outcome outcome = run_program(place.path(), command);
@@ -54,7 +57,9 @@ TEST(Envelope, RefusesWhatItCannotDo) {
 
 TEST(Converge, RunsAndJudges) {
     const TemporaryFolder place;
-    write_text(place / "job.toml", replaced(replaced(small_job("[[test]]\nkind = \"direct-tension\"\n", "[1]", fast), "\"7 mm\"", "\"5 mm\""), "\"11 mm\"", "\"5.3 mm\""));
+    write_text(place / "job.toml",
+               replaced(replaced(small_job("[[test]]\nkind = \"direct-tension\"\n", "[1]", fast), "\"7 mm\"", "\"5 mm\""),
+                        "\"11 mm\"", "\"5.3 mm\""));
     const Outcome outcome = run_program(place.path(), {"converge", "job.toml", "--seeds", "2"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     const fs::path results = place / "results/job-converge";

@@ -2,9 +2,8 @@
 #include <pty.h>
 #include <sys/ioctl.h>
 
-#include <nlohmann/json.hpp>
-
 #include <map>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "program.hpp"
@@ -64,7 +63,7 @@ TEST(Studies, KilledInTheMiddleOneFinishesWithExactlyTheMissingRuns) {
     EXPECT_EQ(again.code, 0) << again.err;
     EXPECT_EQ(done_now(again), runs_of_two_axes - static_cast<int>(before)) << again.out;
     EXPECT_EQ(run_program(whole.path(), {"study", "study.toml", "--threads", "1"}).code, 0);
-    EXPECT_EQ(finished(killed), finished(whole));   // to the last bit
+    EXPECT_EQ(finished(killed), finished(whole));  // to the last bit
     EXPECT_EQ(finished(whole).size(), static_cast<std::size_t>(runs_of_two_axes));
     expect_no_half_files(killed / "results");
 }
@@ -72,11 +71,12 @@ TEST(Studies, KilledInTheMiddleOneFinishesWithExactlyTheMissingRuns) {
 TEST(Studies, TwoAtOnceShareALedger) {
     const TemporaryFolder place;
     write_study(place);
-    Program first(place.path(), {"study", "study.toml", "--threads", "1"}), second(place.path(), {"study", "study.toml", "--threads", "1"});
+    Program first(place.path(), {"study", "study.toml", "--threads", "1"}),
+        second(place.path(), {"study", "study.toml", "--threads", "1"});
     const Outcome one = first.finish(), other = second.finish();
     EXPECT_EQ(one.code, 0) << one.err;
     EXPECT_EQ(other.code, 0) << other.err;
-    EXPECT_EQ(done_now(one) + done_now(other), runs_of_two_axes) << one.out << other.out;   // none twice
+    EXPECT_EQ(done_now(one) + done_now(other), runs_of_two_axes) << one.out << other.out;  // none twice
     const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
     EXPECT_NE(status.out.find("24 runs: 24 done, 0 running, 0 failed, 0 to do"), std::string::npos) << status.out;
 }
@@ -97,7 +97,8 @@ TEST(Studies, CtrlCLeavesTheRestToTheNextTime) {
 TEST(Studies, RunsThatFailForGoodAreNotRepeatedUnlessAskedFor) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
-    write_text(place / "study.toml", "job = \"job.toml\"\n[[axis]]\nname = \"mass\"\nkey = \"numerics.mass_factor\"\nvalues = [0.001, 2]\n");
+    write_text(place / "study.toml",
+               "job = \"job.toml\"\n[[axis]]\nname = \"mass\"\nkey = \"numerics.mass_factor\"\nvalues = [0.001, 2]\n");
     const auto study = [&](std::vector<std::string> more) {
         more.insert(more.begin(), {"study", "study.toml", "--threads", "1"});
         return run_program(place.path(), more);
@@ -109,8 +110,9 @@ TEST(Studies, RunsThatFailForGoodAreNotRepeatedUnlessAskedFor) {
     EXPECT_EQ(second.code, 3) << second.err;
     EXPECT_NE(second.err.find("1 done already, 1 failed before and not repeated"), std::string::npos) << second.err;
     EXPECT_NE(second.out.find("0 runs done now, 1 before, 0 failed;"), std::string::npos) << second.out;
-    EXPECT_NE(second.out.find("1 failed before and were not repeated; --retry-failed runs them again"), std::string::npos) << second.out;
-    EXPECT_NE(read_text(place / "results/study/study.html").find("mass_factor"), std::string::npos);   // its reason is shown still
+    EXPECT_NE(second.out.find("1 failed before and were not repeated; --retry-failed runs them again"), std::string::npos)
+        << second.out;
+    EXPECT_NE(read_text(place / "results/study/study.html").find("mass_factor"), std::string::npos);  // its reason is shown still
     const Outcome status = run_program(place.path(), {"study", "status", "study.toml"});
     EXPECT_NE(status.out.find("1 done, 0 running, 1 failed, 0 to do"), std::string::npos) << status.out;
     EXPECT_NE(status.out.find("1 of the failed runs will not be repeated"), std::string::npos) << status.out;
@@ -121,7 +123,8 @@ TEST(Studies, RunsThatFailForGoodAreNotRepeatedUnlessAskedFor) {
 
 TEST(Studies, ThoseThatCommandsMakeOfAJobKeepFailuresToo) {
     const TemporaryFolder place;
-    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", "kind = \"paper\"\nmass_factor = 0.001\n"));
+    write_text(place / "job.toml",
+               small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", "kind = \"paper\"\nmass_factor = 0.001\n"));
     for (const std::string command : {"envelope", "converge"}) {
         SCOPED_TRACE(command);
         const auto call = [&](std::vector<std::string> more) {
@@ -175,11 +178,13 @@ TEST(Studies, AMistakeLeavesNoFile) {
     EXPECT_FALSE(fs::exists(place / "results"));
 }
 
-// What a terminal would obey in a name is shown by it: in the lines that are rewritten, in those that stay, and in what is printed.
+// What a terminal would obey in a name is shown by it: in the lines that are rewritten, in those that stay, and in what is
+// printed.
 TEST(Studies, NamesDoNotCommandTheTerminal) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
-    write_text(place / "study.toml", "job = \"job.toml\"\nseeds = [1]\n[[axis]]\nname = \"mu\"\n[[axis.value]]\nlabel = \"re\\u001b[31md\\nline\"\n");
+    write_text(place / "study.toml",
+               "job = \"job.toml\"\nseeds = [1]\n[[axis]]\nname = \"mu\"\n[[axis.value]]\nlabel = \"re\\u001b[31md\\nline\"\n");
     int master = -1, slave = -1;
     const winsize size{50, 400, 0, 0};
     ASSERT_EQ(openpty(&master, &slave, nullptr, nullptr, &size), 0);
@@ -187,7 +192,8 @@ TEST(Studies, NamesDoNotCommandTheTerminal) {
     std::string shown;
     const auto read_terminal = [&] {
         char bytes[4096];
-        for (ssize_t count = 0; (count = read(master, bytes, sizeof bytes)) > 0;) shown.append(bytes, static_cast<std::size_t>(count));
+        for (ssize_t count = 0; (count = read(master, bytes, sizeof bytes)) > 0;)
+            shown.append(bytes, static_cast<std::size_t>(count));
         return false;
     };
     Program program(place.path(), {"study", "study.toml"}, [&] { dup2(slave, STDERR_FILENO); });
@@ -197,7 +203,7 @@ TEST(Studies, NamesDoNotCommandTheTerminal) {
     close(master);
     close(slave);
     EXPECT_EQ(outcome.code, 0) << shown;
-    EXPECT_NE(shown.find("[re\\x1b[31md\\x0aline: uniaxial-compression, seed 1]"), std::string::npos) << shown;   // rewritten
+    EXPECT_NE(shown.find("[re\\x1b[31md\\x0aline: uniaxial-compression, seed 1]"), std::string::npos) << shown;  // rewritten
     EXPECT_NE(shown.find("1/1 re\\x1b[31md"), std::string::npos) << shown;                                       // stays
     EXPECT_NE(outcome.out.find("re\\x1b[31md\\x0aline"), std::string::npos) << outcome.out;
     EXPECT_EQ(shown.find("\x1b[31m"), std::string::npos) << shown;

@@ -1,4 +1,5 @@
-// A study on a cluster without a cluster: stand-ins for Slurm's programs run the scripts at once, or only put them into their queue.
+// A study on a cluster without a cluster: stand-ins for Slurm's programs run the scripts at once, or only put them into their
+// queue.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -50,8 +51,9 @@ public:
 
     // Two runs a value of the fracture energy, and whatever else is given.
     void write_study(const std::string& more) const {
-        write_text(place_ / "study.toml", "job = \"job.toml\"\nseeds = [1, 2]\n" + more +
-                                              "[[axis]]\nname = \"Gfn\"\nkey = \"material.contact.Gfn\"\nvalues = [\"20 N/m\", \"30 N/m\"]\n");
+        write_text(place_ / "study.toml",
+                   "job = \"job.toml\"\nseeds = [1, 2]\n" + more +
+                       "[[axis]]\nname = \"Gfn\"\nkey = \"material.contact.Gfn\"\nvalues = [\"20 N/m\", \"30 N/m\"]\n");
     }
 
     Outcome study(std::vector<std::string> arguments) const {
@@ -76,9 +78,7 @@ public:
     const fs::path& path() const { return place_.path(); }
     void tell(const std::string& what, const std::string& text = "") const { write_text(tools() / what, text); }
     void untell(const std::string& what) const { fs::remove(tools() / what); }
-    int calls() const {
-        return static_cast<int>(line_count(read_text(tools() / "calls")));
-    }
+    int calls() const { return static_cast<int>(line_count(read_text(tools() / "calls"))); }
 
 private:
     TemporaryFolder place_;
@@ -90,7 +90,7 @@ std::map<std::string, json> records_in(const fs::path& results) {
     for (const auto& entry : fs::directory_iterator(results / "runs")) {
         if (!fs::exists(entry.path() / "run.json")) continue;
         json record = json::parse(read_text(entry.path() / "run.json"));
-        record.erase("checksum");   // also of what is taken out here
+        record.erase("checksum");  // also of what is taken out here
         for (const char* key : {"wall_s", "ms_per_step", "threads"}) record["numbers"].erase(key);
         for (const char* key : {"started", "command_line"}) record["texts"].erase(key);
         records[entry.path().filename().string()] = record;
@@ -128,7 +128,7 @@ TEST(StudyOnSlurm, ElementsLeaveTheLedgerAlone) {
     EXPECT_EQ(element.code, 0) << element.err;
     EXPECT_EQ(read_text(cluster / "there/ledger.sqlite"), before);
     EXPECT_EQ(records_in(cluster / "there").size(), 1u);
-    const Outcome again = cluster.study({"element", "there/slurm/1", "0"});   // requeued
+    const Outcome again = cluster.study({"element", "there/slurm/1", "0"});  // requeued
     EXPECT_EQ(again.code, 0) << again.err;
     EXPECT_NE(again.err.find("0 done now, 1 before"), std::string::npos) << again.err;
     EXPECT_EQ(cluster.study({"element", "there/slurm/1", "4"}).code, 2);
@@ -147,7 +147,7 @@ TEST(StudyOnSlurm, QueuedRunsAreNotSubmittedTwice) {
     const Outcome status = cluster.study({"status", "study.toml", "--results", "there"});
     EXPECT_NE(status.out.find("Slurm job 1: 0/4 runs; elements: 0 running, 4 waiting"), std::string::npos) << status.out;
 
-    cluster.tell("queue", "1 2 RUNNING\n1 3 RUNNING\n2 N/A PENDING\n");   // two elements have gone, without a result
+    cluster.tell("queue", "1 2 RUNNING\n1 3 RUNNING\n2 N/A PENDING\n");  // two elements have gone, without a result
     cluster.untell("hold");
     const Outcome rest = cluster.submit();
     EXPECT_EQ(rest.code, 0) << rest.err;
@@ -169,7 +169,8 @@ TEST(StudyOnSlurm, LostRunsAreReportedAndSubmittedAgain) {
     EXPECT_NE(gathered.out.find("1 run of element 1_0: it reached its time limit"), std::string::npos) << gathered.out;
     EXPECT_NE(gathered.out.find("1 run of element 1_1: it was cancelled"), std::string::npos) << gathered.out;
     EXPECT_NE(gathered.out.find("1 run of element 1_3: it was asked to stop"), std::string::npos) << gathered.out;
-    EXPECT_NE(gathered.out.find("0 runs taken into the ledger, 0 in the queue, 0 failed, 4 not done"), std::string::npos) << gathered.out;
+    EXPECT_NE(gathered.out.find("0 runs taken into the ledger, 0 in the queue, 0 failed, 4 not done"), std::string::npos)
+        << gathered.out;
     cluster.untell("hold");
     const Outcome again = cluster.submit({"--wait"});
     EXPECT_EQ(again.code, 0) << again.err << again.out;
@@ -180,14 +181,16 @@ TEST(StudyOnSlurm, LostRunsAreReportedAndSubmittedAgain) {
 
 TEST(StudyOnSlurm, FailuresCarryTheirReason) {
     const Cluster cluster;
-    cluster.write_study("[[axis]]\nname = \"masses\"\n[[axis.value]]\nlabel = \"sound\"\nset = {}\n"
-                        "[[axis.value]]\nlabel = \"unstable\"\nset = { numerics.mass_factor = 0.01 }\nseeds = [1]\n");
+    cluster.write_study(
+        "[[axis]]\nname = \"masses\"\n[[axis.value]]\nlabel = \"sound\"\nset = {}\n"
+        "[[axis.value]]\nlabel = \"unstable\"\nset = { numerics.mass_factor = 0.01 }\nseeds = [1]\n");
     const Outcome first = cluster.submit({"--wait"});
     EXPECT_EQ(first.code, 3) << first.err << first.out;
     EXPECT_NE(first.out.find("failed: uniaxial-compression, seed 1 (run "), std::string::npos) << first.out;
     EXPECT_NE(first.out.find("mass_factor"), std::string::npos) << first.out;
-    EXPECT_NE(read_text(cluster / "there/slurm/1/gather.out").find("2 failed"), std::string::npos) << read_text(cluster / "there/slurm/1/gather.out");
-    const Outcome again = cluster.submit();   // they would fail again
+    EXPECT_NE(read_text(cluster / "there/slurm/1/gather.out").find("2 failed"), std::string::npos)
+        << read_text(cluster / "there/slurm/1/gather.out");
+    const Outcome again = cluster.submit();  // they would fail again
     EXPECT_NE(again.out.find("2 runs failed before and not repeated"), std::string::npos) << again.out;
     EXPECT_NE(again.out.find("Nothing to submit"), std::string::npos) << again.out;
     const Outcome asked = cluster.submit({"--retry-failed"});
@@ -196,7 +199,8 @@ TEST(StudyOnSlurm, FailuresCarryTheirReason) {
 
 TEST(StudyOnSlurm, AnElementEndsCleanlyWhenAsked) {
     const Cluster cluster;
-    write_text(cluster / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", "kind = \"paper\"\nspeed = \"1e-12 m\"\n"));
+    write_text(cluster / "job.toml",
+               small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", "kind = \"paper\"\nspeed = \"1e-12 m\"\n"));
     cluster.tell("hold");
     ASSERT_EQ(cluster.submit().code, 0);
     Program element(cluster.path(), {"study", "element", "there/slurm/1", "0"}, [&] { cluster.enter(); });
@@ -222,7 +226,8 @@ TEST(StudyOnSlurm, ARefusalIsPassedOn) {
 
 TEST(StudyOnSlurm, WithoutSlurmItSaysSo) {
     const Cluster cluster;
-    const Outcome outcome = run_program(cluster.path(), {"study", "study.toml", "--on", "slurm"}, [] { setenv("PATH", "/nowhere", 1); });
+    const Outcome outcome =
+        run_program(cluster.path(), {"study", "study.toml", "--on", "slurm"}, [] { setenv("PATH", "/nowhere", 1); });
     EXPECT_EQ(outcome.code, 2);
     EXPECT_NE(outcome.err.find("no program 'sbatch' on the PATH"), std::string::npos) << outcome.err;
     EXPECT_EQ(cluster.study({"study.toml", "--partition", "x"}).code, 2) << "only together with --on slurm";

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../table7.hpp"
 #include "feldspar/lab/experiment.hpp"
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/methods/method.hpp"
@@ -16,7 +17,6 @@
 #include "feldspar/specimen/mesh_grains.hpp"
 #include "feldspar/specimen/specimen.hpp"
 #include "feldspar/step/step.hpp"
-#include "../table7.hpp"
 
 namespace feldspar::fixtures {
 
@@ -34,7 +34,8 @@ inline Heterogeneity uneven_rock() {
     rock.minerals.pairs = {pair};
     rock.scatter[Scattered::strength] = {.kind = DistributionKind::weibull, .weibull_modulus = 2.0};
     rock.scatter[Scattered::stiffness] = {.kind = DistributionKind::log_normal, .variation = 0.3};
-    rock.scatter[Scattered::E] = {.kind = DistributionKind::normal, .variation = 0.1, .lowest = 0.05, .correlation_length_m = 0.005};
+    rock.scatter[Scattered::E] = {
+        .kind = DistributionKind::normal, .variation = 0.1, .lowest = 0.05, .correlation_length_m = 0.005};
     rock.initial_cracks = {.broken = 0.1, .opening_m = 1e-7};
     JointSpec joint;
     joint.name = "joint";
@@ -133,7 +134,8 @@ inline ContactMaterial table1(GrainKind grains, ContactLaw law = ContactLaw::bil
     return c;
 }
 
-inline ModelSpec model(GrainKind grains, ContactKind contact = ContactKind::lobatto3, ContactNormal normal = ContactNormal::centres) {
+inline ModelSpec model(GrainKind grains, ContactKind contact = ContactKind::lobatto3,
+                       ContactNormal normal = ContactNormal::centres) {
     ModelSpec m;
     m.kind = grains;
     m.contact = grains == GrainKind::inner_particles ? ContactKind::point : contact;
@@ -179,8 +181,8 @@ inline RunControl threads(int count) {
     return control;
 }
 
-/// Steps a vibrating body until `amplitude()` has changed its sign five times. @return the mean time between two of these changes,
-/// half a period, with each placed between its two steps; nothing if it does not vibrate
+/// Steps a vibrating body until `amplitude()` has changed its sign five times. @return the mean time between two of these
+/// changes, half a period, with each placed between its two steps; nothing if it does not vibrate
 template <class Amplitude>
 std::optional<double> half_period(Assembly& assembly, Team& team, const StepSettings& settings, Amplitude amplitude) {
     PlatenWork work;

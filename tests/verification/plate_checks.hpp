@@ -1,12 +1,12 @@
 // What holds for the plates of a Brazilian test whatever the grains are.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "fixtures.hpp"
 
@@ -20,8 +20,8 @@ inline std::vector<const Contact*> contacts_of(const Assembly& assembly, int pla
     return found;
 }
 
-/// The plates on a small disc have the stiffness and friction that are asked for, act over the diameters of the bodies, each of which
-/// they touch once, and start where the first is touched.
+/// The plates on a small disc have the stiffness and friction that are asked for, act over the diameters of the bodies, each of
+/// which they touch once, and start where the first is touched.
 inline void expect_plates_on_a_disc(const ModelSpec& model) {
     TestSetup s = fixtures::setup(fixtures::disc(0.03), methods::brazilian, model);
     s.test.plate_stiffness_factor = 0.5;
@@ -41,7 +41,7 @@ inline void expect_plates_on_a_disc(const ModelSpec& model) {
             const double diameter = 2.0 * e.assembly.bodies[contact->a.body].radius_m;
             EXPECT_DOUBLE_EQ(point.area_m2, diameter * e.assembly.thickness_m);
             EXPECT_EQ(e.assembly.bonds.at(point.state).damage, 1.0);
-            EXPECT_EQ(++touched[contact->a.body], 1);   // a body touches once
+            EXPECT_EQ(++touched[contact->a.body], 1);  // a body touches once
             smallest = std::min(smallest, e.assembly.bonds.at(point.state).un_m);
         }
         EXPECT_NEAR(smallest, 0.0, 1e-15);

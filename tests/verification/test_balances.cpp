@@ -1,7 +1,7 @@
 // Energy of whole tests through failure, for every kind of test and of numerics, on small specimens.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "fixtures.hpp"
 
@@ -19,7 +19,8 @@ struct Case {
 
 std::string label(const testing::TestParamInfo<Case>& info) {
     std::string text = std::string(name(info.param.kind)) + "_" + name(info.param.numerics) + "_" + name(info.param.law);
-    if (info.param.grains != GrainKind::flexible) text += "_" + fixtures::label(fixtures::model(info.param.grains, info.param.contact, info.param.normal));
+    if (info.param.grains != GrainKind::flexible)
+        text += "_" + fixtures::label(fixtures::model(info.param.grains, info.param.contact, info.param.normal));
     std::erase(text, '-');
     return text;
 }
@@ -43,7 +44,8 @@ INSTANTIATE_TEST_SUITE_P(RigidGrains, EnergyBalance, testing::ValuesIn([] {
                              using enum ContactLaw;
                              constexpr GrainKind rigid = GrainKind::rigid;
                              std::vector<Case> cases;
-                             for (const MethodId kind : std::initializer_list<MethodId>{uniaxial_compression, direct_tension, biaxial, methods::brazilian})
+                             for (const MethodId kind : std::initializer_list<MethodId>{uniaxial_compression, direct_tension,
+                                                                                        biaxial, methods::brazilian})
                                  for (const ContactLaw law : {brittle, bilinear}) cases.push_back({kind, adaptive, law, rigid});
                              cases.push_back({uniaxial_compression, paper, bilinear, rigid});
                              cases.push_back({uniaxial_compression, dynamic, brittle, rigid});
@@ -52,23 +54,26 @@ INSTANTIATE_TEST_SUITE_P(RigidGrains, EnergyBalance, testing::ValuesIn([] {
                              return cases;
                          }()),
                          label);
-INSTANTIATE_TEST_SUITE_P(InnerParticles, EnergyBalance, testing::ValuesIn([] {
-                             using namespace methods;
-                             constexpr NumericsKind adaptive = NumericsKind::adaptive;
-                             constexpr GrainKind inner = GrainKind::inner_particles;
-                             std::vector<Case> cases;
-                             for (const MethodId kind : std::initializer_list<MethodId>{uniaxial_compression, direct_tension, biaxial, brazilian})
-                                 cases.push_back({kind, adaptive, kind == direct_tension ? ContactLaw::bilinear : ContactLaw::brittle, inner});
-                             cases.push_back({direct_tension, adaptive, ContactLaw::bilinear, inner, ContactKind::point, ContactNormal::edge});
-                             return cases;
-                         }()),
-                         label);
+INSTANTIATE_TEST_SUITE_P(
+    InnerParticles, EnergyBalance, testing::ValuesIn([] {
+        using namespace methods;
+        constexpr NumericsKind adaptive = NumericsKind::adaptive;
+        constexpr GrainKind inner = GrainKind::inner_particles;
+        std::vector<Case> cases;
+        for (const MethodId kind : std::initializer_list<MethodId>{uniaxial_compression, direct_tension, biaxial, brazilian})
+            cases.push_back({kind, adaptive, kind == direct_tension ? ContactLaw::bilinear : ContactLaw::brittle, inner});
+        cases.push_back({direct_tension, adaptive, ContactLaw::bilinear, inner, ContactKind::point, ContactNormal::edge});
+        return cases;
+    }()),
+    label);
 
 TEST_P(EnergyBalance, ClosesThroughFailure) {
     const Case c = GetParam();
     const bool disc = c.kind == methods::brazilian;
-    const bool inner = c.grains == GrainKind::inner_particles;   // ten times as many bodies: a smaller specimen
-    const SpecimenSpec spec = disc ? fixtures::disc(inner ? 0.02 : 0.03) : inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04);
+    const bool inner = c.grains == GrainKind::inner_particles;  // ten times as many bodies: a smaller specimen
+    const SpecimenSpec spec = disc    ? fixtures::disc(inner ? 0.02 : 0.03)
+                              : inner ? fixtures::rectangle(0.014, 0.028)
+                                      : fixtures::rectangle(0.02, 0.04);
     TestSetup s = fixtures::setup(spec, c.kind, fixtures::model(c.grains, c.contact, c.normal), c.law);
     s.contact.law = c.law;
     s.test.membrane_plates = inner ? 4 : 8;
@@ -76,20 +81,20 @@ TEST_P(EnergyBalance, ClosesThroughFailure) {
     s.numerics.accuracy = 0.02;
     if (c.numerics == NumericsKind::paper) s.numerics.speed_m = 2e-8;
     if (c.numerics == NumericsKind::dynamic) s.numerics.speed_m = 0.5;
-    if (c.kind == methods::direct_tension) s.test.stop_fraction = 0.3;   // softening alone reaches the usual 0.8
+    if (c.kind == methods::direct_tension) s.test.stop_fraction = 0.3;  // softening alone reaches the usual 0.8
     if (c.kind == methods::biaxial) s.test.sigma3_Pa = 5e6;
     const TestResult r = run_test(s, fixtures::threads(c.grains == GrainKind::flexible ? 2 : 1));
     EXPECT_TRUE(r.properties.peak_reached) << r.stop_reason;
     EXPECT_GT(r.cracks.size(), 0U);
     EXPECT_LT(r.energy_residual, 5e-3);
     EXPECT_GT(r.energy_at_end.fracture, 0.0);
-    EXPECT_GE(r.energy_at_end.friction, -1e-9 * r.energy_at_end.supplied());   // rounding of elastic points
+    EXPECT_GE(r.energy_at_end.friction, -1e-9 * r.energy_at_end.supplied());  // rounding of elastic points
     double strongest = 0.0;
     for (const HistoryRow& row : r.history) strongest = std::max(strongest, std::abs(row.axial_stress_Pa));
     EXPECT_GT(strongest, 1e6);
 }
 
-TEST(EnergyOfOneMoment, ClosesToRoundingErrorsOfTheLawWhateverTheSpeedDoes) {   // (L13)
+TEST(EnergyOfOneMoment, ClosesToRoundingErrorsOfTheLawWhateverTheSpeedDoes) {  // (L13)
     // Measured 1.6e-5 and 8.0e-5. With bodies that do not follow a change of speed, or with the works half a step ahead of the
     // energies, it is 2e-3: that the bound of the tests above lets pass.
     for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {

@@ -1,7 +1,8 @@
-// Bent beams against beam theory with its corrections for short beams, and notched ones against what finite elements say of the notch's mouth.
-#include <cmath>
-
+// Bent beams against beam theory with its corrections for short beams, and notched ones against what finite elements say of the
+// notch's mouth.
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/methods/beam.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -50,7 +51,7 @@ double modulus(const ModelSpec& model, const ContactMaterial& contact) {
     return e.stress(reactions(e.assembly).loading) / e.gauge.axial(e.assembly);
 }
 
-TEST(Bending, DeflectionIsThatOfAShortBeam) {   // (P37)
+TEST(Bending, DeflectionIsThatOfAShortBeam) {  // (P37)
     const double E = modulus({}, fixtures::table7());
     for (const double span : {kSpan, 6.0 * kHeight}) {
         const Elastic e = elastic(beam(0.0, span), span, {}, fixtures::table7());
@@ -62,8 +63,9 @@ TEST(Bending, DeflectionIsThatOfAShortBeam) {   // (P37)
     }
 }
 
-// The moment between the loading rollers is constant: the lower side is stretched by sigma / E there, and nothing of the load's own stresses is felt.
-TEST(Bending, BetweenFourPointsTheFibreHasTheClosedFormsStrainAndTheBeamItsDeflection) {   // (P57), (P58)
+// The moment between the loading rollers is constant: the lower side is stretched by sigma / E there, and nothing of the load's
+// own stresses is felt.
+TEST(Bending, BetweenFourPointsTheFibreHasTheClosedFormsStrainAndTheBeamItsDeflection) {  // (P57), (P58)
     const double E = modulus({}, fixtures::table7()), S = 6.0 * kHeight, Si = 0.5 * S, arm = 0.5 * (S - Si), h = kHeight;
     TestSetup s = fixtures::setup(fixtures::make(beam(0.0, S)), methods::four_point_bend);
     s.test.own["span"] = {S};
@@ -77,18 +79,19 @@ TEST(Bending, BetweenFourPointsTheFibreHasTheClosedFormsStrainAndTheBeamItsDefle
     GaugeSpec fibre;
     fibre.name = "fibre";
     fibre.kind = GaugeKind::strain;
-    fibre.points = {{{middle + quarter, 0.0}, {1.0 / (2.0 * quarter), 0.0}}, {{middle - quarter, 0.0}, {-1.0 / (2.0 * quarter), 0.0}}};
+    fibre.points = {{{middle + quarter, 0.0}, {1.0 / (2.0 * quarter), 0.0}},
+                    {{middle - quarter, 0.0}, {-1.0 / (2.0 * quarter), 0.0}}};
     const double strain = Gauges(e.assembly, *s.specimen, {fibre}).read(e.assembly, {})[0];
-    EXPECT_NEAR(strain * E / e.stress(r.loading), 1.0, 0.03);   // ten grains between the points
+    EXPECT_NEAR(strain * E / e.stress(r.loading), 1.0, 0.03);  // ten grains between the points
     const double factor = arm * (3.0 * S * S - 4.0 * arm * arm) / (4.0 * h * h * h) + 1.2 * 1.23 * arm / h;
     EXPECT_NEAR(r.loading / e.gauges.read(e.assembly, {})[0] * factor / 0.08 / E, 1.0, 0.02);
 }
 
-TEST(Bending, MouthOfANotchOpensAsFiniteElementsSay) {   // (P39)
+TEST(Bending, MouthOfANotchOpensAsFiniteElementsSay) {  // (P39)
     const double E = modulus({}, fixtures::table7());
-    // A tip among grains of a thirteenth of the height: single packings differ by 2 %. Half a height is then a ligament of seven grains, and a body of few
-    // grains across is stiffer than the large one of `E` (two percent already at seven: ARealBarRingsWithTheClosedFormFrequency): 3 to 4 %. So a beam
-    // of twice the height has to show that this goes away.
+    // A tip among grains of a thirteenth of the height: single packings differ by 2 %. Half a height is then a ligament of seven
+    // grains, and a body of few grains across is stiffer than the large one of `E` (two percent already at seven:
+    // ARealBarRingsWithTheClosedFormFrequency): 3 to 4 %. So a beam of twice the height has to show that this goes away.
     struct Case {
         double x, times_height;
         int packings;
@@ -112,12 +115,14 @@ TEST(Bending, MouthOfANotchOpensAsFiniteElementsSay) {   // (P39)
     }
 }
 
-TEST(Bending, NotchFactorIsThatOfTheTables) {   // (P38): finite elements with point rollers, span 4 h
-    for (const auto& [x, f] : {std::pair{0.3, 1.514}, {0.4, 1.971}, {0.5, 2.644}, {0.6, 3.748}}) EXPECT_NEAR(notch_factor(x, 0.25) / f, 1.0, 0.008) << x;
+TEST(Bending, NotchFactorIsThatOfTheTables) {  // (P38): finite elements with point rollers, span 4 h
+    for (const auto& [x, f] : {std::pair{0.3, 1.514}, {0.4, 1.971}, {0.5, 2.644}, {0.6, 3.748}})
+        EXPECT_NEAR(notch_factor(x, 0.25) / f, 1.0, 0.008) << x;
     EXPECT_NEAR(mouth_factor(0.3), 12.55, 0.02 * 12.55);
     EXPECT_NEAR(mouth_factor(0.5), 35.61, 0.02 * 35.61);
     // A short notch feels the stress of (P36): K = 1.1215 sigma sqrt(pi a).
-    for (const double h_S : {0.125, 0.25}) EXPECT_NEAR(notch_factor(1e-6, h_S) / (1.1215 * std::sqrt(M_PI * 1e-6) * 1.5 * flexural_factor(h_S)), 1.0, 0.005);
+    for (const double h_S : {0.125, 0.25})
+        EXPECT_NEAR(notch_factor(1e-6, h_S) / (1.1215 * std::sqrt(M_PI * 1e-6) * 1.5 * flexural_factor(h_S)), 1.0, 0.005);
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // Where the points of a contact lie, which way they open and shear, and that their forces turn with the body.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include <gtest/gtest.h>
-
 #include "feldspar/base/rng.hpp"
 #include "feldspar/model/assemble.hpp"
-#include "feldspar/model/masses.hpp"
 #include "feldspar/model/fixtures.hpp"
+#include "feldspar/model/masses.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 
@@ -49,7 +49,7 @@ TEST(ContactKinematics, ForcesOfLoadedContactsTurnWithTheBody) {
     }
 }
 
-TEST(ContactKinematics, PointsOpenAlongTheLineOfCentresAndShearAcrossIt) {   // (C1), (C5)
+TEST(ContactKinematics, PointsOpenAlongTheLineOfCentresAndShearAcrossIt) {  // (C1), (C5)
     Assembly assembly = small_body();
     constexpr double kBy = 1e-9;
     for (int c = 0; c < static_cast<int>(assembly.contacts.size()); ++c) {
@@ -62,14 +62,14 @@ TEST(ContactKinematics, PointsOpenAlongTheLineOfCentresAndShearAcrossIt) {   // 
             for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) assembly.set_bond(p, {});
             contact_forces(assembly, {c, c + 1}, StepSettings{}, 0);
             for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
-                EXPECT_NEAR(assembly.bond(p).un_m, shear ? 0.0 : kBy, 1e-12 * kBy);   // shape functions sum to 1 to rounding
+                EXPECT_NEAR(assembly.bond(p).un_m, shear ? 0.0 : kBy, 1e-12 * kBy);  // shape functions sum to 1 to rounding
                 EXPECT_NEAR(assembly.bond(p).us_m, shear ? kBy : 0.0, 1e-12 * kBy);
             }
         }
     }
 }
 
-TEST(ContactKinematics, LobattoPointsLieOnTheEdgeAndIntegrateCubicsOverIt) {   // (C2), (C3) and the areas
+TEST(ContactKinematics, LobattoPointsLieOnTheEdgeAndIntegrateCubicsOverIt) {  // (C2), (C3) and the areas
     const Assembly assembly = small_body();
     for (const Contact& contact : assembly.contacts) {
         ASSERT_EQ(contact.points, 3);
@@ -80,7 +80,7 @@ TEST(ContactKinematics, LobattoPointsLieOnTheEdgeAndIntegrateCubicsOverIt) {   /
         for (int i = 0; i < 3; ++i) {
             const ContactPoint& point = assembly.points[contact.first_point + i];
             const Vec2 x = frame.reference_point + point.along_m * frame.edge_tangent;
-            EXPECT_LT(norm(x - (p0 + (0.5 * i) * (p1 - p0))), 1e-14);   // rounding of 0.04 m
+            EXPECT_LT(norm(x - (p0 + (0.5 * i) * (p1 - p0))), 1e-14);  // rounding of 0.04 m
             const double from_end = norm(x - p0) / length;
             for (int power = 0; power < 4; ++power) moments[power] += point.area_m2 * std::pow(from_end, power);
         }
@@ -88,10 +88,11 @@ TEST(ContactKinematics, LobattoPointsLieOnTheEdgeAndIntegrateCubicsOverIt) {   /
     }
 }
 
-TEST(ContactKinematics, OnePointLiesAsDeepInOneCircleAsInTheOther) {   // s - RA = (d - s) - RB, for PCM and for new contacts
+TEST(ContactKinematics, OnePointLiesAsDeepInOneCircleAsInTheOther) {  // s - RA = (d - s) - RB, for PCM and for new contacts
     Assembly assembly = small_body(ContactKind::point);
     const int bonded = static_cast<int>(assembly.contacts.size());
-    for (int c = 0; c < bonded; ++c) add_new_contact(assembly, assembly.contacts[c].a.body, assembly.contacts[c].b.body, 0.0, 0.0);
+    for (int c = 0; c < bonded; ++c)
+        add_new_contact(assembly, assembly.contacts[c].a.body, assembly.contacts[c].b.body, 0.0, 0.0);
     for (const Contact& contact : assembly.contacts) {
         ASSERT_EQ(contact.points, 1);
         const ContactFrame frame = contact_frame(assembly, contact);

@@ -1,7 +1,7 @@
 // A test of the user's own, made of the fixtures of a method, is that method; gauges read what they say.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/quantities.hpp"
@@ -47,14 +47,18 @@ TestSetup pulled(const ModelSpec& model, MethodId kind) {
     force.kind = GaugeKind::force;
     force.fixture = "upper end";
     force.direction = {0.0, -1.0};
-    s.test.custom.gauges = {force, between("extension", {0.01, 0.005}, {0.01, 0.035}, GaugeKind::displacement), between("strain", {0.01, 0.005}, {0.01, 0.035}, GaugeKind::strain)};
+    s.test.custom.gauges = {force, between("extension", {0.01, 0.005}, {0.01, 0.035}, GaugeKind::displacement),
+                            between("strain", {0.01, 0.005}, {0.01, 0.035}, GaugeKind::strain)};
     return s;
 }
 
-std::vector<ModelSpec> models() { return {ModelSpec{}, fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}; }
+std::vector<ModelSpec> models() {
+    return {ModelSpec{}, fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)};
+}
 
 class CustomTests : public testing::TestWithParam<ModelSpec> {};
-INSTANTIATE_TEST_SUITE_P(Models, CustomTests, testing::ValuesIn(models()), [](const auto& tested) { return fixtures::label(tested.param); });
+INSTANTIATE_TEST_SUITE_P(Models, CustomTests, testing::ValuesIn(models()),
+                         [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(CustomTests, OfTheFixturesOfDirectTensionHaveItsStiffnessAndItsFirstDamage) {
     const RunControl control = fixtures::threads(1);
@@ -68,14 +72,16 @@ TEST_P(CustomTests, OfTheFixturesOfDirectTensionHaveItsStiffnessAndItsFirstDamag
     EXPECT_DOUBLE_EQ(a.length_m, b.length_m);
     EXPECT_DOUBLE_EQ(a.section_m2, b.section_m2);
     const double load_a = loading_reaction(a.assembly), load_b = loading_reaction(b.assembly);
-    EXPECT_NEAR(load_a / a.platen_travel_m / (load_b / b.platen_travel_m), 1.0, 1e-3);   // what the relaxations leave moving
-    // Both stop at some share of the first damage: 0.98 of it, or where a further round would no longer change it by more than 5 %.
+    EXPECT_NEAR(load_a / a.platen_travel_m / (load_b / b.platen_travel_m), 1.0, 1e-3);  // what the relaxations leave moving
+    // Both stop at some share of the first damage: 0.98 of it, or where a further round would no longer change it by more than 5
+    // %.
     EXPECT_NEAR(load_a / load_b, 1.0, 0.06);
 
     const std::vector<double> read = a.gauges.read(a.assembly);
-    EXPECT_NEAR(read[0] / load_a, 1.0, 1e-9);   // the specimen pulls the upper end down
+    EXPECT_NEAR(read[0] / load_a, 1.0, 1e-9);  // the specimen pulls the upper end down
     EXPECT_NEAR(read[2] / (read[1] / 0.03), 1.0, 1e-12);
-    EXPECT_NEAR(read[2] / -a.gauge.axial(a.assembly), 1.0, 0.1);   // two points of a body some seven grains wide, against all in its middle
+    EXPECT_NEAR(read[2] / -a.gauge.axial(a.assembly), 1.0,
+                0.1);  // two points of a body some seven grains wide, against all in its middle
     // The time in which rates are measured is a wave's for a bar, up to its lateral motion and its plates.
     EXPECT_NEAR(a.travel_time / b.travel_time, 1.0, 0.15);
 }
@@ -84,8 +90,9 @@ TEST(TestsOfTheUsersOwn, DefineNoPropertyOfTheRock) {
     TestResult result;
     result.test.kind = methods::custom;
     for (const TestQuantity& quantity : test_quantities())
-        for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage, QuantityGroup::post_peak, QuantityGroup::brazilian,
-                                          QuantityGroup::flattened, QuantityGroup::of_method})
+        for (const QuantityGroup group :
+             {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage, QuantityGroup::post_peak,
+              QuantityGroup::brazilian, QuantityGroup::flattened, QuantityGroup::of_method})
             if (quantity.group == group) {
                 EXPECT_TRUE(std::isnan(quantity.value(result))) << quantity.name;
             }
@@ -118,7 +125,7 @@ TEST(Gauges, ReadNoExtensionFromAMotionOfTheWholeBody) {
         const TestSetup s = pulled(model, methods::custom);
         Experiment e(s, control);
         const Vec2 shift = {3e-6, -2e-6};
-        const double turn = 1e-7;   // small: what it adds to lengths is of second order
+        const double turn = 1e-7;  // small: what it adds to lengths is of second order
         Nodes& nodes = e.assembly.nodes;
         for (const Body& body : e.assembly.bodies)
             for (const int n : body.nodes()) {

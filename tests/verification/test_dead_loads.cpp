@@ -1,9 +1,10 @@
-// Pressures and weight that act before the loading and beside it: a column under gravity, a block that slides, plates under a force and behind a spring.
+// Pressures and weight that act before the loading and beside it: a column under gravity, a block that slides, plates under a
+// force and behind a spring.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/elastic_start.hpp"
@@ -57,8 +58,11 @@ TestSetup setup(const ModelSpec& model, double height_m, std::vector<FixtureSpec
 double weight_N(double height_m) { return kDensity * kGravity * kWidth * height_m * kThickness; }
 
 class DeadLoads : public testing::TestWithParam<ModelSpec> {};
-std::vector<ModelSpec> models() { return {ModelSpec{}, fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}; }
-INSTANTIATE_TEST_SUITE_P(Models, DeadLoads, testing::ValuesIn(models()), [](const auto& tested) { return fixtures::label(tested.param); });
+std::vector<ModelSpec> models() {
+    return {ModelSpec{}, fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)};
+}
+INSTANTIATE_TEST_SUITE_P(Models, DeadLoads, testing::ValuesIn(models()),
+                         [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(DeadLoads, OfAColumnAreItsWeightAndTheStressThatGrowsDownwards) {
     constexpr double height_m = 0.06;
@@ -70,10 +74,10 @@ TEST_P(DeadLoads, OfAColumnAreItsWeightAndTheStressThatGrowsDownwards) {
     const Relaxation rest = relax(e.assembly, e.team, Strength::unlimited, 1e-6, 50000, nullptr);
     ASSERT_TRUE(rest.converged);
     const Vec2 on_table = felt_by(e.assembly, e.assembly.fixtures.front());
-    EXPECT_NEAR(on_table.y / -weight_N(height_m), 1.0, 1e-4);   // what the relaxation leaves moving
+    EXPECT_NEAR(on_table.y / -weight_N(height_m), 1.0, 1e-4);  // what the relaxation leaves moving
     EXPECT_NEAR(dead_resultant(e.assembly).y / -weight_N(height_m), 1.0, 1e-9);
-    // Over the whole body the mean stress is rho g times the height of its centre, to the bit but for what moves: (1/A) of the virtual work of a
-    // uniform vertical strain.
+    // Over the whole body the mean stress is rho g times the height of its centre, to the bit but for what moves: (1/A) of the
+    // virtual work of a uniform vertical strain.
     GaugeSpec mean;
     mean.name = "mean";
     mean.kind = GaugeKind::mean_stress;
@@ -91,11 +95,12 @@ TEST_P(DeadLoads, LetABlockSlideAtFrictionTimesTheNormalForce) {
     const RunControl control = fixtures::threads(1);
     for (const bool weighs : {true, false}) {
         const double normal_N = weighs ? weight_N(kHeight) : 20e3;
-        std::vector<FixtureSpec> list{plate("table", "bottom", {0.0, -1.0}, kMu), plate("pusher", "left", {-1.0, 0.0}, 0.0, {1.0, 0.0})};
+        std::vector<FixtureSpec> list{plate("table", "bottom", {0.0, -1.0}, kMu),
+                                      plate("pusher", "left", {-1.0, 0.0}, 0.0, {1.0, 0.0})};
         if (!weighs) list.push_back(pressed(plate("lid", "top", {0.0, 1.0}), normal_N));
         TestSetup s = setup(GetParam(), kHeight, std::move(list), weighs);
         s.test.custom.gauges = {force_on("table", {0.0, -1.0}), force_on("table", {1.0, 0.0})};
-        s.test.maximum_strain = weighs ? 2e-5 : 2e-3;   // it slides from about a third of that on
+        s.test.maximum_strain = weighs ? 2e-5 : 2e-3;  // it slides from about a third of that on
         s.test.control = LoadControl::displacement;
         const TestResult r = run_test(s, control);
         EXPECT_EQ(r.cracks.size(), 0U);
@@ -108,12 +113,15 @@ TEST_P(DeadLoads, LetABlockSlideAtFrictionTimesTheNormalForce) {
     }
 }
 
-TEST_P(DeadLoads, BehindASpringGrowWithTheWayOfThePlate) {   // (L21)
+TEST_P(DeadLoads, BehindASpringGrowWithTheWayOfThePlate) {  // (L21)
     const RunControl control = fixtures::threads(1);
     constexpr double force_N = 20e3, spring_Pa_m = 2e12;
     // Pressed from the left, the specimen widens upwards against the lid.
-    TestSetup s = setup(GetParam(), kHeight, {plate("table", "bottom", {0.0, -1.0}, kMu), plate("wall", "right", {1.0, 0.0}), plate("pusher", "left", {-1.0, 0.0}, 0.0, {1.0, 0.0}),
-                                              pressed(plate("lid", "top", {0.0, 1.0}), force_N, spring_Pa_m)}, false);
+    TestSetup s = setup(
+        GetParam(), kHeight,
+        {plate("table", "bottom", {0.0, -1.0}, kMu), plate("wall", "right", {1.0, 0.0}),
+         plate("pusher", "left", {-1.0, 0.0}, 0.0, {1.0, 0.0}), pressed(plate("lid", "top", {0.0, 1.0}), force_N, spring_Pa_m)},
+        false);
     s.test.custom.gauges = {force_on("lid", {0.0, 1.0}), way_of("lid", {0.0, 1.0})};
     s.test.maximum_stress_Pa = 30e6;
     const TestResult r = run_test(s, control);
@@ -144,13 +152,16 @@ TEST(DirectShear, HasItsNormalStressAndItsShearForceInBalance) {
             return std::nan("");
         };
         ASSERT_TRUE(r.properties.peak_reached);
-        const HistoryRow& peak = *std::max_element(r.history.begin(), r.history.end(), [](const HistoryRow& a, const HistoryRow& b) { return a.axial_stress_Pa < b.axial_stress_Pa; });
+        const HistoryRow& peak =
+            *std::max_element(r.history.begin(), r.history.end(),
+                              [](const HistoryRow& a, const HistoryRow& b) { return a.axial_stress_Pa < b.axial_stress_Pa; });
         EXPECT_GT(value("shear_strength"), 5e6);
         EXPECT_NEAR(peak.stress_bottom_Pa / peak.stress_top_Pa, 1.0, 0.02);
         const double left = r.length_m / (r.length_m - peak.platen_displacement_m);
         EXPECT_NEAR(value("shear_strength") / (left * r.properties.peak_stress_Pa), 1.0, 1e-3);
         const double given = 5e6 + stiffness_Pa_m * (peak.gauges[0] - r.history[1].gauges[0]);
-        EXPECT_NEAR(value("shear_normal_stress") / (left * given), 1.0, 0.01) << stiffness_Pa_m;   // what a plate that moves lacks of balance
+        EXPECT_NEAR(value("shear_normal_stress") / (left * given), 1.0, 0.01)
+            << stiffness_Pa_m;  // what a plate that moves lacks of balance
         EXPECT_LT(r.energy_residual, 2e-3);
     }
 }
@@ -159,14 +170,15 @@ TEST(DirectShear, UnderANormalStressThatDamagesTheRockBeginsWithoutAComputedStar
     const RunControl control = fixtures::threads(1);
     TestSetup s = fixtures::setup(fixtures::rectangle(0.04, 0.02), methods::direct_shear, ModelSpec{});
     s.test = usual_test(methods::direct_shear);
-    s.test.sigma3_Pa = 60e6;   // half of the strength in compression
+    s.test.sigma3_Pa = 60e6;  // half of the strength in compression
     s.test.maximum_stress_Pa = 20e6;
     const TestResult r = run_test(s, control);
-    EXPECT_TRUE(std::none_of(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::elastic; }));
+    EXPECT_TRUE(
+        std::none_of(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::elastic; }));
     EXPECT_EQ(r.stop_reason, "the stress has reached its maximum of 20 MPa");
     for (const HistoryRow& row : r.history)
         if (row.phase == Phase::loading) {
-            EXPECT_NEAR(row.gauges[1] / (60e6 * r.section_m2), 1.0, 0.02);   // the ramp comes to rest within a hundredth
+            EXPECT_NEAR(row.gauges[1] / (60e6 * r.section_m2), 1.0, 0.02);  // the ramp comes to rest within a hundredth
         }
     EXPECT_LT(r.energy_residual, 2e-3);
 }
@@ -183,8 +195,8 @@ TEST(EndPlates, WithFrictionHoldTheEndsOfASquatSpecimen) {
         spread[rubs] = r.properties.nu_initial;
         EXPECT_LT(r.energy_residual, 2e-3);
     }
-    EXPECT_GT(strength[1], 1.3 * strength[0]);   // half as high as wide, so it is confined from end to end; measured 1.68
-    EXPECT_LT(spread[1], 0.8 * spread[0]);       // measured 0.145 and 0.231
+    EXPECT_GT(strength[1], 1.3 * strength[0]);  // half as high as wide, so it is confined from end to end; measured 1.68
+    EXPECT_LT(spread[1], 0.8 * spread[0]);      // measured 0.145 and 0.231
 }
 
 }  // namespace

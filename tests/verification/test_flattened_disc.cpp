@@ -1,21 +1,21 @@
-// The coefficient k of a flattened disc (P31) by finite elements: a quarter of an elastic disc under plane stress, its flat on an elastic foundation
-// with Coulomb friction, as plates press. The fits of flattened_disc.cpp were made to these.
+// The coefficient k of a flattened disc (P31) by finite elements: a quarter of an elastic disc under plane stress, its flat on an
+// elastic foundation with Coulomb friction, as plates press. The fits of flattened_disc.cpp were made to these.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <Eigen/Sparse>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include <Eigen/LU>
-#include <Eigen/Sparse>
-#include <gtest/gtest.h>
-
 #include "feldspar/methods/flattened_disc.hpp"
 
 namespace feldspar {
 namespace {
 
-constexpr double nu = 0.23;                     // E and R are 1
+constexpr double nu = 0.23;  // E and R are 1
 constexpr int flat_cells = 12, arc_cells = 16, rings = 20;
 constexpr int around = 2 * (flat_cells + arc_cells) + 1;
 constexpr std::array<double, 3> gauss{-0.774596669241483377, 0.0, 0.774596669241483377}, weight{5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
@@ -25,14 +25,16 @@ struct Shape {
 };
 Shape quadratic(double x) { return {{0.5 * x * (x - 1.0), 1.0 - x * x, 0.5 * x * (x + 1.0)}, {x - 0.5, -2.0 * x, x + 0.5}}; }
 
-// Quadrilaterals of nine nodes, from the centre to the rim and from the load's axis to the one across it; finer towards the flat's corner.
+// Quadrilaterals of nine nodes, from the centre to the rim and from the load's axis to the one across it; finer towards the
+// flat's corner.
 class QuarterDisc {
 public:
-    QuarterDisc(double angle_rad, const FlatLoading& loading) : loading_(loading), half_angle_(0.5 * angle_rad), half_width_(std::sin(half_angle_)) {
+    QuarterDisc(double angle_rad, const FlatLoading& loading)
+        : loading_(loading), half_angle_(0.5 * angle_rad), half_width_(std::sin(half_angle_)) {
         const double height = std::cos(half_angle_);
         for (int j = 0; j <= 2 * rings; ++j)
             for (int i = 0; i < around; ++i) {
-                if (j == 0 && i > 0) break;   // the centre is one node
+                if (j == 0 && i > 0) break;  // the centre is one node
                 const double theta = angle_at(i), ring = 0.5 * (radius_at(j / 2) + radius_at((j + 1) / 2));
                 const bool flat = i <= 2 * flat_cells;
                 x_.push_back(ring * (flat ? height * std::tan(theta) : std::sin(theta)));
@@ -43,13 +45,13 @@ public:
     // Griffith's stress in the centre over 2P / (pi D t).
     double coefficient() {
         assemble_body();
-        std::vector<double> stick(3 * flat_cells, 1.0);   // share of the shear stiffness that does not slip, at each Gauss point
+        std::vector<double> stick(3 * flat_cells, 1.0);  // share of the shear stiffness that does not slip, at each Gauss point
         const bool slips = loading_.hardness > 0.0 && loading_.eta > 0.0 && loading_.mu < 1e3;
         for (int pass = 0; pass < (slips ? 40 : 1); ++pass) {
             solve(stick);
             if (slips) release(stick);
         }
-        double sx = 0.0, sy = 0.0, total = 0.0;   // mean around the centre
+        double sx = 0.0, sy = 0.0, total = 0.0;  // mean around the centre
         for (int i = 0; i < flat_cells + arc_cells; ++i)
             for (int g = 0; g < 3; ++g) {
                 const Cell cell = cell_at(i, 0, gauss[g], -0.5);
@@ -61,7 +63,7 @@ public:
                 sy += w * stress[1];
                 total += w;
             }
-        const double unit = load() / std::numbers::pi;   // 2P / (pi D) of a load P on the whole flat
+        const double unit = load() / std::numbers::pi;  // 2P / (pi D) of a load P on the whole flat
         sx /= total * unit;
         sy /= total * unit;
         return 3.0 * sx + sy >= 0.0 ? sx : (sx - sy) * (sx - sy) / (-8.0 * (sx + sy));
@@ -77,7 +79,8 @@ private:
     static double radius_at(int ring) { return 1.0 - std::pow(1.0 - static_cast<double>(ring) / rings, 1.8); }
     double corner_at(int cell) const {
         if (cell <= flat_cells) return half_angle_ * (1.0 - std::pow(1.0 - static_cast<double>(cell) / flat_cells, 2.0));
-        return half_angle_ + (0.5 * std::numbers::pi - half_angle_) * std::pow(static_cast<double>(cell - flat_cells) / arc_cells, 2.5);
+        return half_angle_ +
+               (0.5 * std::numbers::pi - half_angle_) * std::pow(static_cast<double>(cell - flat_cells) / arc_cells, 2.5);
     }
     double angle_at(int i) const { return 0.5 * (corner_at(i / 2) + corner_at((i + 1) / 2)); }
     static int node_at(int i, int j) { return j == 0 ? 0 : 1 + (j - 1) * around + i; }
@@ -117,9 +120,10 @@ private:
                     K += weight[g % 3] * weight[g / 3] * cell.jacobian * cell.B.transpose() * elasticity() * cell.B;
                 }
                 for (int r = 0; r < 18; ++r)
-                    for (int c = 0; c < 18; ++c) body_.emplace_back(2 * cell.node[r / 2] + r % 2, 2 * cell.node[c / 2] + c % 2, K(r, c));
+                    for (int c = 0; c < 18; ++c)
+                        body_.emplace_back(2 * cell.node[r / 2] + r % 2, 2 * cell.node[c / 2] + c % 2, K(r, c));
             }
-        constexpr double held = 1e8;   // symmetry
+        constexpr double held = 1e8;  // symmetry
         for (int n = 0; n < static_cast<int>(x_.size()); ++n) {
             if (std::abs(x_[n]) < 1e-12) body_.emplace_back(2 * n, 2 * n, held);
             if (std::abs(y_[n]) < 1e-12) body_.emplace_back(2 * n + 1, 2 * n + 1, held);
@@ -198,15 +202,17 @@ private:
 // The tolerance is what the fits leave.
 TEST(FlattenedDisc, HasTheCoefficientOfFiniteElements) {
     for (const double degrees : {10.0, 20.0, 30.0, 40.0})
-        for (const FlatLoading& loading : {FlatLoading{}, FlatLoading{0.43}, FlatLoading{5.0}, FlatLoading{1e4}, FlatLoading{0.43, 0.28, 0.4},
-                                           FlatLoading{48.0, 0.28, 0.1}, FlatLoading{48.0, 0.28, 0.4}, FlatLoading{1e3, 1.0, 1e9}}) {
+        for (const FlatLoading& loading :
+             {FlatLoading{}, FlatLoading{0.43}, FlatLoading{5.0}, FlatLoading{1e4}, FlatLoading{0.43, 0.28, 0.4},
+              FlatLoading{48.0, 0.28, 0.1}, FlatLoading{48.0, 0.28, 0.4}, FlatLoading{1e3, 1.0, 1e9}}) {
             const double angle = degrees * std::numbers::pi / 180.0;
             EXPECT_NEAR(flat_coefficient(angle, loading), QuarterDisc(angle, loading).coefficient(), 3e-3)
                 << degrees << " degrees, hardness " << loading.hardness << ", eta " << loading.eta << ", mu " << loading.mu;
         }
 }
 
-TEST(FlattenedDisc, UnderAUniformPressureFiniteElementsGiveThePublishedValues) {   // Wang and others 2004: 0.9644 at 20 degrees, 0.921 at 30
+TEST(FlattenedDisc,
+     UnderAUniformPressureFiniteElementsGiveThePublishedValues) {  // Wang and others 2004: 0.9644 at 20 degrees, 0.921 at 30
     EXPECT_NEAR(QuarterDisc(20.0 * std::numbers::pi / 180.0, {}).coefficient(), 0.9644, 5e-4);
     EXPECT_NEAR(QuarterDisc(30.0 * std::numbers::pi / 180.0, {}).coefficient(), 0.921, 1e-3);
 }

@@ -1,7 +1,7 @@
 // A plate with a round hole against finite elements of the elastic plate.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/methods/round_hole.hpp"
 #include "fixtures.hpp"
@@ -36,21 +36,24 @@ Elastic elastic(const SpecimenSpec& spec, const ModelSpec& model = {}, double si
     return {read[0], read[1], e.stress(reactions(e.assembly).loading)};
 }
 
-TEST(Hole, StressesAtItsEdgeAreThoseOfFiniteElements) {   // (P49)
+TEST(Hole, StressesAtItsEdgeAreThoseOfFiniteElements) {  // (P49)
     struct Case {
         double a_W, a_d, side, pole, tolerance;
     };
-    // Measured: within 0.8 % up to a third of the width, at 3 to 6 grains in the radius, two packings each. Half of the width: -4 % at the sides
-    // whatever the grains, because the boundary is so near that fields of higher order than (P43) matter.
-    for (const Case& c : {Case{0.25, 3.0, 3.251, -1.189, 0.02}, {1.0 / 3.0, 3.0, 3.488, -1.327, 0.02}, {1.0 / 3.0, 4.5, 3.488, -1.327, 0.015}, {0.5, 4.5, 4.370, -1.688, 0.05}}) {
+    // Measured: within 0.8 % up to a third of the width, at 3 to 6 grains in the radius, two packings each. Half of the width: -4
+    // % at the sides whatever the grains, because the boundary is so near that fields of higher order than (P43) matter.
+    for (const Case& c : {Case{0.25, 3.0, 3.251, -1.189, 0.02},
+                          {1.0 / 3.0, 3.0, 3.488, -1.327, 0.02},
+                          {1.0 / 3.0, 4.5, 3.488, -1.327, 0.015},
+                          {0.5, 4.5, 4.370, -1.688, 0.05}}) {
         const Elastic e = elastic(plate(c.a_d, c.a_W));
         EXPECT_NEAR(e.side() / c.side, 1.0, c.tolerance) << c.a_W << " " << c.a_d;
         EXPECT_NEAR(e.pole() / c.pole, 1.0, c.tolerance) << c.a_W << " " << c.a_d;
     }
 }
 
-// Rigid grains have one stress each. Means over eight packings, measured: 1.7 to 2.9 % high at the sides and 3.0 to 5.1 % at the poles, at 3 to 6 grains in the
-// radius; single packings scatter by 4 and 8 %.
+// Rigid grains have one stress each. Means over eight packings, measured: 1.7 to 2.9 % high at the sides and 3.0 to 5.1 % at the
+// poles, at 3 to 6 grains in the radius; single packings scatter by 4 and 8 %.
 TEST(Hole, StressesInRigidGrainsAreNearThoseOfFiniteElements) {
     constexpr int kPackings = 8;
     double side = 0.0, pole = 0.0;
@@ -66,7 +69,8 @@ TEST(Hole, StressesInRigidGrainsAreNearThoseOfFiniteElements) {
 TEST(Hole, APressureOnThePlatesSidesTakesItsOwnShareOfTheStressAtTheSides) {
     const double sigma3 = 5e6;
     const Elastic e = elastic(plate(3.0, 0.25), {}, sigma3);
-    // 3.251 sigma1 - c sigma3: c is 1 in a wide plate (Kirsch), and at a/W = 0.25 between that and the 1.189 of a plate as much narrower along the pressure.
+    // 3.251 sigma1 - c sigma3: c is 1 in a wide plate (Kirsch), and at a/W = 0.25 between that and the 1.189 of a plate as much
+    // narrower along the pressure.
     const double c = (3.251 * e.axial_Pa - e.side_Pa) / sigma3;
     EXPECT_GT(c, 0.95);
     EXPECT_LT(c, 1.2);

@@ -1,14 +1,14 @@
 // Rigid motions do nothing, homogeneous strains do what the closed form says, contacts conserve momentum.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/attachment.hpp"
-#include "feldspar/model/masses.hpp"
 #include "feldspar/model/fixtures.hpp"
+#include "feldspar/model/masses.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 
@@ -34,7 +34,8 @@ double force_scale(const Assembly& assembly) { return 25.8e9 * assembly.thicknes
 TEST(Kinematics, RigidRotationMakesNoForceInTheTriangles) {
     Assembly assembly = small_body();
     Team team(1);
-    for (int n = 0; n < assembly.nodes.count(); ++n) assembly.nodes.displacement[n] = turned(assembly.nodes.reference[n], 0.3) - assembly.nodes.reference[n];
+    for (int n = 0; n < assembly.nodes.count(); ++n)
+        assembly.nodes.displacement[n] = turned(assembly.nodes.reference[n], 0.3) - assembly.nodes.reference[n];
     evaluate_forces(assembly, team, Strength::real);
     EXPECT_LT(largest_force(assembly) / force_scale(assembly), 1e-9);
 }
@@ -52,9 +53,10 @@ TEST(Kinematics, RigidRotationInAThousandStepsOpensNoContact) {
         contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, settings, k);
     }
     double largest = 0.0;
-    for (int p = 0; p < std::ssize(assembly.points); ++p) largest = std::max({largest, std::abs(assembly.bond(p).un_m), std::abs(assembly.bond(p).us_m)});
+    for (int p = 0; p < std::ssize(assembly.points); ++p)
+        largest = std::max({largest, std::abs(assembly.bond(p).un_m), std::abs(assembly.bond(p).us_m)});
     EXPECT_LT(largest, 1e-15);
-    EXPECT_GT(largest, 0.0);   // the points did move: an exact zero would mean that nothing was computed
+    EXPECT_GT(largest, 0.0);  // the points did move: an exact zero would mean that nothing was computed
 }
 
 TEST(Kinematics, HomogeneousStrainLeavesInteriorNodesAtRestAndHasItsClosedFormEnergy) {
@@ -73,10 +75,10 @@ TEST(Kinematics, HomogeneousStrainLeavesInteriorNodesAtRestAndHasItsClosedFormEn
         for (int i = vertices; i < grain.node_count; ++i) largest = std::max(largest, norm(assembly.nodes.force[grain.node(i)]));
     }
     for (const Triangle& t : assembly.triangles) volume += t.volume_m3;
-    EXPECT_LT(largest / (25.8e9 * 2e-6 * assembly.thickness_m * 1e-3), 1e-8);   // over the forces that cancel
+    EXPECT_LT(largest / (25.8e9 * 2e-6 * assembly.thickness_m * 1e-3), 1e-8);  // over the forces that cancel
     const PlaneElasticity D = plane_elasticity(25.8e9, 0.23, PlaneState::stress);
     const double density = 0.5 * (D.D11 * (xx * xx + yy * yy) + 2.0 * D.D12 * xx * yy + 2.0 * (D.D11 - D.D12) * xy * xy);
-    EXPECT_NEAR(stored_energy(assembly, 0.0).grains_J / (density * volume), 1.0, 1e-5);   // the strain itself is 2e-6
+    EXPECT_NEAR(stored_energy(assembly, 0.0).grains_J / (density * volume), 1.0, 1e-5);  // the strain itself is 2e-6
 }
 
 TEST(Kinematics, ContactForcesConserveLinearAndAngularMomentum) {
@@ -84,7 +86,7 @@ TEST(Kinematics, ContactForcesConserveLinearAndAngularMomentum) {
     RandomStream random(7, "momentum");
     for (int n = 0; n < assembly.nodes.count(); ++n) {
         const Vec2 X = assembly.nodes.reference[n];
-        const Vec2 strain = {1e-4 * random.normal(), 1e-4 * random.normal()};   // large enough that shapes are extrapolated
+        const Vec2 strain = {1e-4 * random.normal(), 1e-4 * random.normal()};  // large enough that shapes are extrapolated
         assembly.nodes.displacement[n] = turned(X, 0.1) - X + 1e-3 * strain;
         assembly.nodes.velocity[n] = {1e-9 * random.normal(), 1e-9 * random.normal()};
     }
@@ -100,11 +102,12 @@ TEST(Kinematics, ContactForcesConserveLinearAndAngularMomentum) {
         for (int i = 0; i < 3; ++i) {
             const Vec2 fa = on_a[i], fb = on_b[i];
             sum += fa + fb;
-            moment += cross(assembly.nodes.position(contact.a.node[i]), fa) + cross(assembly.nodes.position(contact.b.node[i]), fb);
+            moment +=
+                cross(assembly.nodes.position(contact.a.node[i]), fa) + cross(assembly.nodes.position(contact.b.node[i]), fb);
             size += norm(fa) + norm(fb);
         }
         EXPECT_LT(norm(sum), 1e-12 * size);
-        EXPECT_LT(std::abs(moment), 1e-11 * size * 0.04);   // lever arms of up to the body's height
+        EXPECT_LT(std::abs(moment), 1e-11 * size * 0.04);  // lever arms of up to the body's height
     }
 }
 
@@ -114,7 +117,7 @@ TEST(Kinematics, FallBackShapesAreUsedOnlyFarFromTheStartAndTheirMomentLossIsMea
     EXPECT_EQ(fallback_moment_loss(assembly), 0.0);
     const Contact& contact = assembly.contacts[0];
     for (const int n : assembly.bodies[contact.b.body].nodes())
-        assembly.nodes.displacement[n] = {1.5e-3, 1.0e-3};   // half a grain away
+        assembly.nodes.displacement[n] = {1.5e-3, 1.0e-3};  // half a grain away
     EXPECT_GT(choose_shape_functions(assembly, 0.0).fallback_sides, 0);
     ASSERT_TRUE(assembly.contacts[0].initial_shape);
     for (int n = 0; n < assembly.nodes.count(); ++n) assembly.nodes.velocity[n] = {1e-9 * (n % 7), -1e-9 * (n % 5)};

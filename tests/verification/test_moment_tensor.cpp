@@ -1,8 +1,9 @@
-// Moment tensor of a crack by what its faces moved, and by the forces on the grains around it (docs/theory/properties.md, (P66), (P71)).
+// Moment tensor of a crack by what its faces moved, and by the forces on the grains around it (docs/theory/properties.md, (P66),
+// (P71)).
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/lab/grain_fields.hpp"
 #include "feldspar/model/packs.hpp"
@@ -13,11 +14,11 @@ namespace {
 
 // A specimen in direct tension, elastic, per metre of platen travel; one of its contacts may be broken.
 struct Pulled {
-    std::vector<Mat2> moments;   // of each grain, sum of arm times force
-    Vec2 jump;                   // across the contact, mean over its points
+    std::vector<Mat2> moments;  // of each grain, sum of arm times force
+    Vec2 jump;                  // across the contact, mean over its points
     Vec2 normal, place;
     double area_m2 = 0.0;
-    int a = 0, b = 0;            // its grains
+    int a = 0, b = 0;  // its grains
 };
 
 Pulled pull(const TestSetup& setup, int broken, bool breaks) {
@@ -27,7 +28,8 @@ Pulled pull(const TestSetup& setup, int broken, bool breaks) {
     Assembly& assembly = e.assembly;
     const Contact& contact = assembly.contacts[broken];
     if (breaks) {
-        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) assembly.bonds.damage[assembly.points[p].state] = 1.0;
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
+            assembly.bonds.damage[assembly.points[p].state] = 1.0;
         sort_out_packs(assembly);
     }
     prepare(e);
@@ -40,7 +42,8 @@ Pulled pull(const TestSetup& setup, int broken, bool breaks) {
     for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
         const double area = assembly.points[p].area_m2;
         pulled.area_m2 += area;
-        pulled.jump += (area * per_travel) * (assembly.bond(p).un_m * pulled.normal + assembly.bond(p).us_m * rot90(pulled.normal));
+        pulled.jump +=
+            (area * per_travel) * (assembly.bond(p).un_m * pulled.normal + assembly.bond(p).us_m * rot90(pulled.normal));
     }
     pulled.jump = (1.0 / pulled.area_m2) * pulled.jump;
     pulled.a = assembly.bodies[contact.a.body].grain;
@@ -57,11 +60,13 @@ double isotropy(const Mat2& m) {
     return 100.0 * 2.0 * mean / (2.0 * std::abs(mean) + 2.0 * radius);
 }
 
-// A contact that breaks in an elastic body: the stress that its grains lose has the directions and the R of the displacements' tensor, and is smaller by what the
-// surroundings give way, which is a quarter of it or so: of rigid surroundings nothing, of none at all everything.
+// A contact that breaks in an elastic body: the stress that its grains lose has the directions and the R of the displacements'
+// tensor, and is smaller by what the surroundings give way, which is a quarter of it or so: of rigid surroundings nothing, of
+// none at all everything.
 TEST(MomentTensor, ByContactForcesIsThatByDisplacementsLessWhatTheSurroundingsGiveWay) {
     const TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.03, 0.06)), methods::direct_tension);
-    const double G = setup.grain.E_Pa / (2.0 * (1.0 + setup.grain.nu)), lambda = 2.0 * G * setup.grain.nu / (1.0 - setup.grain.nu);   // plane stress
+    const double G = setup.grain.E_Pa / (2.0 * (1.0 + setup.grain.nu)),
+                 lambda = 2.0 * G * setup.grain.nu / (1.0 - setup.grain.nu);  // plane stress
     const RunControl control = fixtures::threads(1);
     const Experiment e(setup, control);
     int seen = 0;
@@ -69,19 +74,23 @@ TEST(MomentTensor, ByContactForcesIsThatByDisplacementsLessWhatTheSurroundingsGi
     for (int c = 0; c < static_cast<int>(e.assembly.contacts.size()) && seen < 10; c += 7) {
         const Contact& contact = e.assembly.contacts[c];
         const Vec2 place = e.assembly.origins[c].from;
-        if (contact.plate || std::abs(place.x - 0.015) > 0.008 || std::abs(place.y - 0.03) > 0.015) continue;   // away from the edges
-        if (std::abs(contact_frame(e.assembly, contact).n.y) < 0.7) continue;   // those that the load opens
+        if (contact.plate || std::abs(place.x - 0.015) > 0.008 || std::abs(place.y - 0.03) > 0.015)
+            continue;                                                          // away from the edges
+        if (std::abs(contact_frame(e.assembly, contact).n.y) < 0.7) continue;  // those that the load opens
         const Pulled whole = pull(setup, c, false), cracked = pull(setup, c, true);
         const Vec2 n = cracked.normal, d = cracked.jump;
         const double A = cracked.area_m2, opening = dot(d, n), shear = A * G * (d.x * n.y + d.y * n.x);
-        const Mat2 moved{A * (lambda * opening + 2.0 * G * d.x * n.x), shear, shear, A * (lambda * opening + 2.0 * G * d.y * n.y)};
-        Mat2 lost{};   // the contact between the two grains cancels in their sum
+        const Mat2 moved{A * (lambda * opening + 2.0 * G * d.x * n.x), shear, shear,
+                         A * (lambda * opening + 2.0 * G * d.y * n.y)};
+        Mat2 lost{};  // the contact between the two grains cancels in their sum
         for (const int g : {cracked.a, cracked.b}) {
             lost.xx += whole.moments[g].xx - cracked.moments[g].xx;
             lost.xy += whole.moments[g].xy - cracked.moments[g].xy;
             lost.yy += whole.moments[g].yy - cracked.moments[g].yy;
         }
-        const double along = (moved.xx * lost.xx + 2.0 * moved.xy * lost.xy + moved.yy * lost.yy) / (2.0 * scalar(moved) * scalar(lost)), ratio = scalar(lost) / scalar(moved);
+        const double along = (moved.xx * lost.xx + 2.0 * moved.xy * lost.xy + moved.yy * lost.yy) /
+                             (2.0 * scalar(moved) * scalar(lost)),
+                     ratio = scalar(lost) / scalar(moved);
         EXPECT_GT(along, 0.98) << "contact " << c;
         EXPECT_NEAR(isotropy(lost), isotropy(moved), 6.0) << "contact " << c;
         EXPECT_GT(ratio, 0.5) << "contact " << c;
@@ -90,7 +99,7 @@ TEST(MomentTensor, ByContactForcesIsThatByDisplacementsLessWhatTheSurroundingsGi
         ++seen;
     }
     ASSERT_EQ(seen, 10);
-    EXPECT_NEAR(mean_ratio / seen, 0.75, 0.05);   // measured
+    EXPECT_NEAR(mean_ratio / seen, 0.75, 0.05);  // measured
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // Detachment and return: an open broken contact is dropped, and comes back as friction when the circles overlap.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/model/assemble.hpp"
-#include "feldspar/model/masses.hpp"
 #include "feldspar/model/fixtures.hpp"
+#include "feldspar/model/masses.hpp"
 #include "feldspar/step/step.hpp"
 #include "fixtures.hpp"
 
@@ -50,14 +50,14 @@ TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
     ContactFinder::Changes changes = finder.update(assembly, 1.0);
     EXPECT_EQ(changes.dropped, 1);
     EXPECT_EQ(changes.made, 0);
-    lift(assembly, 1e-9);   // circles of radius kSide / 2 just apart
+    lift(assembly, 1e-9);  // circles of radius kSide / 2 just apart
     EXPECT_EQ(finder.update(assembly, 1.0).made, 0);
     const Array<double> mass_before = assembly.nodes.mass;
     std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{3e-9, 4e-9});
     lift(assembly, -1e-8);
     changes = finder.update(assembly, 1.0);
     EXPECT_EQ(changes.made, 1);
-    EXPECT_EQ(finder.update(assembly, 1.0).made, 0);   // only once
+    EXPECT_EQ(finder.update(assembly, 1.0).made, 0);  // only once
     ASSERT_EQ(assembly.contacts.size(), 2U);
     const ContactPoint& point = assembly.points.back();
     EXPECT_NEAR(assembly.bonds.at(point.state).un_m, -1e-8, 1e-12);
@@ -65,7 +65,7 @@ TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
     // The step stays stable: 0.25 (sum |N|)^2 kn = kn for a point on the edges, where |N| sums to 2; and what that costs is told.
     double added = 0.0;
     for (int n = 0; n < assembly.nodes.count(); ++n) added += assembly.nodes.mass[n] - mass_before[n];
-    EXPECT_NEAR(added / (18e13 * point.area_m2), 1.0, 1e-4);   // the overlap shifts the point by 1e-8 of 3e-3 m
+    EXPECT_NEAR(added / (18e13 * point.area_m2), 1.0, 1e-4);  // the overlap shifts the point by 1e-8 of 3e-3 m
     EXPECT_NEAR(changes.kinetic_J / (0.5 * added * 25e-18), 1.0, 1e-9);
     std::fill(assembly.nodes.velocity.begin(), assembly.nodes.velocity.end(), Vec2{});
     Team team(1);
@@ -75,7 +75,8 @@ TEST(NewContacts, ABrokenOpenContactIsDroppedAndReturnsAsFriction) {
 }
 
 TEST(NewContacts, PaperSizeSpecimenStartsWithoutAnyToMake) {
-    Assembly assembly = assemble(*fixtures::make(fixtures::rectangle(0.08, 0.16)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    Assembly assembly =
+        assemble(*fixtures::make(fixtures::rectangle(0.08, 0.16)), ModelSpec{}, fixtures::granite(), fixtures::table7());
     ContactFinder finder(assembly, kSkin);
     EXPECT_EQ(finder.update(assembly, 1.0).made, 0);
 }

@@ -20,7 +20,8 @@ TestSetup column() {
 }
 
 bool says(const TestResult& result, const std::string& words) {
-    return std::any_of(result.properties.remarks.begin(), result.properties.remarks.end(), [&](const std::string& remark) { return remark.find(words) != std::string::npos; });
+    return std::any_of(result.properties.remarks.begin(), result.properties.remarks.end(),
+                       [&](const std::string& remark) { return remark.find(words) != std::string::npos; });
 }
 
 std::string all(const TestResult& result) {
@@ -33,7 +34,7 @@ std::string all(const TestResult& result) {
 
 TEST(OddStrength, AStressThatBreaksNothingIsExplained) {
     TestSetup s = column();
-    s.test.maximum_stress_Pa = 12e6;   // a tenth of the strength
+    s.test.maximum_stress_Pa = 12e6;  // a tenth of the strength
     const TestResult result = run_test(s, {});
     ASSERT_TRUE(result.cracks.empty());
     EXPECT_FALSE(result.properties.peak_reached);
@@ -47,7 +48,7 @@ TEST(OddStrength, AStressThatBreaksNothingIsExplained) {
     EXPECT_GE(result.nearest.place.x, -0.02);
     EXPECT_LE(result.nearest.place.y, 0.04);
     EXPECT_TRUE(says(result, " % of its strength in ")) << all(result);
-    s.test.maximum_stress_Pa = 30e6;   // softening begins a good while before the first crack
+    s.test.maximum_stress_Pa = 30e6;  // softening begins a good while before the first crack
     const TestResult softened = run_test(s, {});
     ASSERT_TRUE(softened.cracks.empty());
     EXPECT_GT(softened.nearest.damage, 0.0);
@@ -57,7 +58,7 @@ TEST(OddStrength, AStressThatBreaksNothingIsExplained) {
 
 TEST(OddStrength, AStrainThatBreaksNothingIsExplained) {
     TestSetup s = column();
-    s.test.maximum_strain = 5e-4;   // 12 MPa
+    s.test.maximum_strain = 5e-4;  // 12 MPa
     const TestResult result = run_test(s, {});
     ASSERT_TRUE(result.cracks.empty());
     EXPECT_TRUE(says(result, "Nothing broke: the axial strain has reached its maximum of 0.0005.")) << all(result);
@@ -84,7 +85,9 @@ TEST(OddStrength, ContactsThatCannotBreakBrittlyAreNamed) {
     const TestResult result = run_test(s, {});
     EXPECT_TRUE(says(result, "Gfn = 5000 N/m makes contacts that cannot break brittly")) << all(result);
     EXPECT_TRUE(says(result, "12 to 38 N/m")) << all(result);
-    EXPECT_NEAR(softening_over_grain(result), s.grain.E_Pa * 5000.0 / (s.contact.sigma_nt_Pa * s.contact.sigma_nt_Pa) / s.specimen->quality.mean_diameter_m, 1e-9);
+    EXPECT_NEAR(softening_over_grain(result),
+                s.grain.E_Pa * 5000.0 / (s.contact.sigma_nt_Pa * s.contact.sigma_nt_Pa) / s.specimen->quality.mean_diameter_m,
+                1e-9);
 }
 
 TEST(OddStrength, AnOrdinaryTestSaysNothing) {
@@ -102,7 +105,7 @@ TEST(OddStrength, AnOrdinaryTestSaysNothing) {
 TEST(OddStrength, ContactsThatAreWeakFromTheStartFailEarly) {
     TestSetup s = column();
     const TestResult usual = run_test(s, {});
-    TestResult early = usual;   // the same record, of contacts of which more is expected
+    TestResult early = usual;  // the same record, of contacts of which more is expected
     early.contact.sigma_nt_Pa *= 4.0;
     early.contact.tau_Pa *= 4.0;
     early.contact.Gfn_J_m2 *= 16.0;
@@ -111,6 +114,6 @@ TEST(OddStrength, ContactsThatAreWeakFromTheStartFailEarly) {
     ASSERT_EQ(why.size(), 1u);
     EXPECT_NE(why.front().find("It failed early"), std::string::npos) << why.front();
     EXPECT_NE(why.front().find("the first crack, in "), std::string::npos) << why.front();
-    early.rock.initial_cracks.broken = 0.2;   // nothing is expected of a rock that is broken before the test
+    early.rock.initial_cracks.broken = 0.2;  // nothing is expected of a rock that is broken before the test
     EXPECT_TRUE(why_odd(early, early.properties).empty());
 }

@@ -1,8 +1,8 @@
 // How rigid grains and inner particles are loaded: plates at the ends and on a disc, and the membrane.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/lab/grain_fields.hpp"
@@ -18,17 +18,19 @@ namespace {
 constexpr double kSide = 0.003, kArea = kSide * 0.08, kKn = 1.08e13, kEta = 0.3;
 
 struct PlateForce {
-    double pressed_N = 0.0, dragged_N = 0.0;   // on the grain: away from the plate, against the grain's motion along it
-    double reaction_N = 0.0;                   // on the plate
+    double pressed_N = 0.0, dragged_N = 0.0;  // on the grain: away from the plate, against the grain's motion along it
+    double reaction_N = 0.0;                  // on the plate
 };
 
 // The upper of two rigid grains moves by `towards_m` towards the top plate, then by `along_m` along it.
 PlateForce push(const PlateContact& plates, double towards_m, double along_m) {
     const auto specimen = fixtures::two_grain_bar(kSide);
-    Assembly assembly = assemble(*specimen, fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table1(GrainKind::rigid));
+    Assembly assembly =
+        assemble(*specimen, fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table1(GrainKind::rigid));
     attach(assembly, *specimen, fixtures::end_plates(plates));
     const int top = assembly.fixtures[0].plate, centre = assembly.bodies[1].centre_node;
-    const auto at = std::find_if(assembly.contacts.begin(), assembly.contacts.end(), [&](const Contact& c) { return c.b.body == top; });
+    const auto at =
+        std::find_if(assembly.contacts.begin(), assembly.contacts.end(), [&](const Contact& c) { return c.b.body == top; });
     const int c = static_cast<int>(at - assembly.contacts.begin());
     for (const Vec2 move : {Vec2{0.0, towards_m}, Vec2{along_m, 0.0}}) {
         assembly.nodes.velocity[centre] = move;
@@ -37,7 +39,7 @@ PlateForce push(const PlateContact& plates, double towards_m, double along_m) {
     }
     assembly.nodes.velocity[centre] = {};
     const SlotForces on_grain = assembly.slots[2 * c];
-    const double arm = 0.5 * kSide;   // of the force along the plate about the grain's centre, once the grain has moved towards it
+    const double arm = 0.5 * kSide;  // of the force along the plate about the grain's centre, once the grain has moved towards it
     EXPECT_NEAR(turning_moment(on_grain), -on_grain.force.x * arm, 1e-6 * std::abs(on_grain.force.y) * arm + 1e-12);
     Team team(1);
     evaluate_forces(assembly, team, Strength::real);
@@ -49,9 +51,9 @@ TEST(Plates, PressByTheirStiffnessAndDragByItUpToTheFriction) {
     const PlateContact rough{kKn, kEta, 0.25, false};
     const PlateForce stuck = push(rough, towards, 1e-10);
     EXPECT_NEAR(stuck.pressed_N / Fn, 1.0, 1e-9);
-    EXPECT_NEAR(stuck.dragged_N / (kEta * kn * 1e-10), 1.0, 1e-9);   // below mu Fn = 0.25 Fn
+    EXPECT_NEAR(stuck.dragged_N / (kEta * kn * 1e-10), 1.0, 1e-9);  // below mu Fn = 0.25 Fn
     EXPECT_NEAR(stuck.reaction_N / Fn, 1.0, 1e-9);
-    const PlateForce sliding = push(rough, towards, 2e-9);   // 0.6 Fn without the limit
+    const PlateForce sliding = push(rough, towards, 2e-9);  // 0.6 Fn without the limit
     EXPECT_NEAR(sliding.dragged_N / (0.25 * Fn), 1.0, 1e-9);
     const PlateForce smooth = push({kKn, kEta, 0.0, false}, towards, 2e-9);
     EXPECT_NEAR(smooth.pressed_N / Fn, 1.0, 1e-9);
@@ -61,16 +63,17 @@ TEST(Plates, PressByTheirStiffnessAndDragByItUpToTheFriction) {
 TEST(Plates, LetGoInTensionUnlessTheyAreGlued) {
     const double away = -1e-7, kn = kKn * kArea;
     EXPECT_EQ(push({kKn, kEta, 0.25, false}, away, 1e-9).pressed_N, 0.0);
-    const PlateForce glued = push({kKn, kEta, 0.0, true}, -1e-3, 1e-9);   // however far
+    const PlateForce glued = push({kKn, kEta, 0.0, true}, -1e-3, 1e-9);  // however far
     EXPECT_NEAR(glued.pressed_N / (-kn * 1e-3), 1.0, 1e-9);
     EXPECT_NEAR(glued.reaction_N / (-kn * 1e-3), 1.0, 1e-9);
-    EXPECT_EQ(glued.dragged_N, 0.0);   // free along the plate
+    EXPECT_EQ(glued.dragged_N, 0.0);  // free along the plate
 }
 
 std::vector<ModelSpec> plate_models() { return {fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}; }
 
 class PlatesOf : public testing::TestWithParam<ModelSpec> {};
-INSTANTIATE_TEST_SUITE_P(Models, PlatesOf, testing::ValuesIn(plate_models()), [](const auto& tested) { return fixtures::label(tested.param); });
+INSTANTIATE_TEST_SUITE_P(Models, PlatesOf, testing::ValuesIn(plate_models()),
+                         [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
     const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::uniaxial_compression, GetParam());
@@ -84,7 +87,7 @@ TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
             const ContactPoint& point = e.assembly.points[contact->first_point];
             const ContactOrigin& origin = e.assembly.origins[contact - e.assembly.contacts.data()];
             EXPECT_DOUBLE_EQ(point.area_m2, norm(origin.to - origin.from) * e.assembly.thickness_m);
-            EXPECT_NEAR(e.assembly.bonds.at(point.state).un_m, 0.0, 1e-15);   // the end is straight: all touch at once
+            EXPECT_NEAR(e.assembly.bonds.at(point.state).un_m, 0.0, 1e-15);  // the end is straight: all touch at once
             area += point.area_m2;
             ++sites;
         }
@@ -94,7 +97,7 @@ TEST_P(PlatesOf, EndsCoverTheWholeSectionAndTouchEveryGrainThere) {
     EXPECT_NEAR(e.section_m2 / (0.02 * 0.08), 1.0, 1e-12);
 }
 
-TEST_P(PlatesOf, OnADiscHaveTheStiffnessOfTheirDiametersAndStartAtFirstTouch) { expect_plates_on_a_disc(GetParam()); }   // (C19)
+TEST_P(PlatesOf, OnADiscHaveTheStiffnessOfTheirDiametersAndStartAtFirstTouch) { expect_plates_on_a_disc(GetParam()); }  // (C19)
 
 TEST_P(PlatesOf, FeelTheSumOfTheirContactsForces) {
     TestSetup s = fixtures::setup(fixtures::disc(0.03), methods::brazilian, GetParam());
@@ -117,18 +120,18 @@ TEST_P(PlatesOf, FeelTheSumOfTheirContactsForces) {
 TestSetup pressed(const ModelSpec& model, NumericsKind numerics) {
     TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::biaxial, model);
     s.test.sigma3_Pa = 5e6;
-    s.test.membrane_plates = 8;   // of 5 mm, each with a grain behind it
+    s.test.membrane_plates = 8;  // of 5 mm, each with a grain behind it
     s.numerics.kind = numerics;
     return s;
 }
 
 TEST_P(PlatesOf, MembranesMoveSidewaysOnlyAndCarryThePressureOverTheWholeHeight) {
-    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.08), methods::biaxial, GetParam());   // with the usual 16 plates
+    TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.08), methods::biaxial, GetParam());  // with the usual 16 plates
     s.test.sigma3_Pa = 5e6;
     const RunControl control = fixtures::threads(1);
     Experiment e(s, control);
     Assembly& assembly = e.assembly;
-    std::array<std::vector<int>, 2> sides;   // left, right
+    std::array<std::vector<int>, 2> sides;  // left, right
     std::array<double, 2> covered{};
     for (int b = 0; b < std::ssize(assembly.bodies); ++b) {
         const Body& body = assembly.bodies[b];
@@ -144,9 +147,10 @@ TEST_P(PlatesOf, MembranesMoveSidewaysOnlyAndCarryThePressureOverTheWholeHeight)
     }
     EXPECT_EQ(assembly.laws[at_membranes].mu, 0.0);
     Team team(1);
-    for (const double displaced : {0.0, 1e-3}) {   // plates keep their length
+    for (const double displaced : {0.0, 1e-3}) {  // plates keep their length
         for (int side = 0; side < 2; ++side)
-            for (const int b : sides[side]) assembly.nodes.displacement[assembly.bodies[b].centre_node].x = (side == 0 ? -1.0 : 1.0) * displaced;
+            for (const int b : sides[side])
+                assembly.nodes.displacement[assembly.bodies[b].centre_node].x = (side == 0 ? -1.0 : 1.0) * displaced;
         for (DeadLoad& load : assembly.dead_loads) load.pressure_Pa = 0.0;
         evaluate_forces(assembly, team, Strength::real);
         const Array<Vec2> without = assembly.nodes.force;
@@ -156,7 +160,8 @@ TEST_P(PlatesOf, MembranesMoveSidewaysOnlyAndCarryThePressureOverTheWholeHeight)
             ASSERT_EQ(sides[side].size(), 16U);
             EXPECT_NEAR(covered[side] / (0.08 * 0.08), 1.0, 1e-12);
             Vec2 force;
-            for (const int b : sides[side]) force += assembly.nodes.force[assembly.bodies[b].centre_node] - without[assembly.bodies[b].centre_node];
+            for (const int b : sides[side])
+                force += assembly.nodes.force[assembly.bodies[b].centre_node] - without[assembly.bodies[b].centre_node];
             EXPECT_NEAR(force.x / ((side == 0 ? 1.0 : -1.0) * 5e6 * 0.08 * 0.08), 1.0, 1e-12);
             EXPECT_EQ(force.y, 0.0);
         }
@@ -187,10 +192,12 @@ TEST_P(PlatesOf, ConsolidationIsIsotropicBeforeShearing) {
         Experiment e(s, control);
         choose_step(e);
         prepare(e);
-        EXPECT_NEAR(e.consolidated.axial_stress_Pa / 5e6, 1.0, 3e-3) << name(kind);   // the servo's own tolerance is 2e-3
+        EXPECT_NEAR(e.consolidated.axial_stress_Pa / 5e6, 1.0, 3e-3) << name(kind);  // the servo's own tolerance is 2e-3
         EXPECT_EQ(e.consolidated.sigma3_Pa, 5e6);
-        EXPECT_NEAR(e.consolidated.axial_strain_gauge / e.consolidated.lateral_strain_gauge, 1.0, 0.2) << name(kind);   // some ten grains wide
-        // The computed start has gone on to the first damage; the plain one stands at the isotropic state, at rest to a hundredth.
+        EXPECT_NEAR(e.consolidated.axial_strain_gauge / e.consolidated.lateral_strain_gauge, 1.0, 0.2)
+            << name(kind);  // some ten grains wide
+        // The computed start has gone on to the first damage; the plain one stands at the isotropic state, at rest to a
+        // hundredth.
         evaluate_forces(e.assembly, e.team, Strength::unlimited);
         const Reactions reactions = feldspar::reactions(e.assembly);
         const Mat2 mean = mean_stress(e);
@@ -208,7 +215,7 @@ TEST_P(PlatesOf, ConsolidationIsIsotropicBeforeShearing) {
 
 TEST(Membranes, APlateWithoutAGrainBehindItIsRefused) {
     TestSetup s = pressed(fixtures::model(GrainKind::rigid), NumericsKind::adaptive);
-    s.test.membrane_plates = 16;   // of 2.5 mm, where grains are up to 4 mm
+    s.test.membrane_plates = 16;  // of 2.5 mm, where grains are up to 4 mm
     const RunControl control = fixtures::threads(1);
     try {
         const Experiment e(s, control);
@@ -234,11 +241,11 @@ TEST_P(PlatesOf, SlantedSidesAreRefusedUnderAMembrane) {
         EXPECT_NE(std::string(error.what()).find("not vertical"), std::string::npos);
     }
     s.test.sigma3_Pa = 0.0;
-    EXPECT_NO_THROW(Experiment(s, control));   // without a membrane they may be
+    EXPECT_NO_THROW(Experiment(s, control));  // without a membrane they may be
     s.model = fixtures::model(GrainKind::flexible);
     s.contact = fixtures::table7();
     s.test.sigma3_Pa = 5e6;
-    EXPECT_NO_THROW(Experiment(s, control));   // and flexible grains are pressed directly
+    EXPECT_NO_THROW(Experiment(s, control));  // and flexible grains are pressed directly
 }
 
 // The pressure on the sides is given, and exact. The platens follow it by a servo.
@@ -248,7 +255,7 @@ TEST(Consolidation, ComesToItsPressureWithoutOvershoot) {
         s.test.sigma3_Pa = 10e6;
         s.test.membrane_plates = 4;
         s.test.maximum_strain = 1e-4;
-        s.numerics.kind = NumericsKind::paper;   // whose consolidation is always the ramp
+        s.numerics.kind = NumericsKind::paper;  // whose consolidation is always the ramp
         double largest_Pa = 0.0;
         RunControl control = fixtures::threads(1);
         control.progress = [&](const TestProgress& p) {

@@ -1,8 +1,9 @@
-// Bodies that are rigid, grains or inner particles: how they turn, what their contacts conserve, where they bend, how they are drawn.
+// Bodies that are rigid, grains or inner particles: how they turn, what their contacts conserve, where they bend, how they are
+// drawn.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -20,10 +21,13 @@ IndexRange all_contacts(const Assembly& assembly) { return {0, static_cast<int>(
 class RigidModels : public testing::TestWithParam<ModelSpec> {
 protected:
     std::shared_ptr<const Specimen> specimen() const {
-        const bool inner = GetParam().kind == GrainKind::inner_particles;   // ten times as many bodies: a smaller specimen
-        return fixtures::make(fixtures::filled_for(GetParam(), inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04)));
+        const bool inner = GetParam().kind == GrainKind::inner_particles;  // ten times as many bodies: a smaller specimen
+        return fixtures::make(
+            fixtures::filled_for(GetParam(), inner ? fixtures::rectangle(0.014, 0.028) : fixtures::rectangle(0.02, 0.04)));
     }
-    Assembly bodies(const Specimen& s) const { return assemble(s, GetParam(), fixtures::granite(), fixtures::material(GetParam())); }
+    Assembly bodies(const Specimen& s) const {
+        return assemble(s, GetParam(), fixtures::granite(), fixtures::material(GetParam()));
+    }
 };
 INSTANTIATE_TEST_SUITE_P(Models, RigidModels, testing::ValuesIn(fixtures::rigid_models()),
                          [](const auto& tested) { return fixtures::label(tested.param); });
@@ -65,8 +69,8 @@ TEST_P(RigidModels, RigidRotationOpensContactsOnlyByTheStepsOwnErrorWhichVanishe
     EXPECT_LT(coarse.un, 5e-7);
     EXPECT_LT(coarse.us, 5e-7);
     EXPECT_GT(coarse.un, 0.0);
-    // The turn moves a point by its arc, the centre by its chord: of first order in the step, along the line of centres. Across it
-    // the line turns with the bodies, and what is left is of second order; across the edge's normal it is of first order too.
+    // The turn moves a point by its arc, the centre by its chord: of first order in the step, along the line of centres. Across
+    // it the line turns with the bodies, and what is left is of second order; across the edge's normal it is of first order too.
     const bool along_centres = GetParam().normal == ContactNormal::centres;
     EXPECT_NEAR(coarse.un / fine.un, 2.0, 0.02);
     EXPECT_NEAR(coarse.us / fine.us, along_centres ? 4.0 : 2.0, along_centres ? 0.04 : 0.02);
@@ -89,14 +93,15 @@ TEST_P(RigidModels, ContactForcesConserveLinearAndAngularMomentum) {
         const SlotForces &a = assembly.slots[2 * c], &b = assembly.slots[2 * c + 1];
         const double size = norm(a.force);
         ASSERT_GT(size, 0.0);
-        EXPECT_LT(norm(a.force + b.force), 1e-12 * size);   // rounding of the sums over three points
+        EXPECT_LT(norm(a.force + b.force), 1e-12 * size);  // rounding of the sums over three points
         double moment = 0.0;
         for (const auto& [side, slot] : {std::pair{contact.a, a}, std::pair{contact.b, b}}) {
             moment += cross(assembly.centre(side.body), slot.force) + turning_moment(slot);
         }
         // Lever arms of up to the body's height; three points may pull against each other and leave a small sum.
         EXPECT_LT(std::abs(moment), 1e-10 * (size * 0.04 + std::abs(turning_moment(a)) + std::abs(turning_moment(b))));
-        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) sheared = std::max(sheared, std::abs(assembly.bond(p).Fs_N));
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
+            sheared = std::max(sheared, std::abs(assembly.bond(p).Fs_N));
     }
     EXPECT_GT(sheared, 0.0);
 }
@@ -151,7 +156,7 @@ TEST_P(RigidModels, DrawnGrainsFollowARigidMotionExactly) {
     ASSERT_EQ(drawn.size(), s->mesh.nodes.size());
     for (std::size_t n = 0; n < drawn.size(); ++n) {
         const Vec2 X = s->mesh.nodes[n];
-        EXPECT_LT(norm(drawn[n] - (turned(X, 0.3) - X)), 1e-14);   // rounding of the least squares over 0.04 m
+        EXPECT_LT(norm(drawn[n] - (turned(X, 0.3) - X)), 1e-14);  // rounding of the least squares over 0.04 m
     }
 }
 
@@ -179,9 +184,11 @@ TEST(InnerParticles, DrawnGrainsFollowAHomogeneousStrainExactly) {
     const auto s = fixtures::make(fixtures::filled_for(model, fixtures::rectangle(0.02, 0.04)));
     Assembly assembly = assemble(*s, model, fixtures::granite(), fixtures::material(model));
     const auto field = [](Vec2 X) { return Vec2{1e-3 + 2e-3 * X.x - 1e-3 * X.y, -3e-3 * X.x + 0.5e-3 * X.y}; };
-    for (const Body& body : assembly.bodies) assembly.nodes.displacement[body.centre_node] = field(assembly.nodes.reference[body.centre_node]);
+    for (const Body& body : assembly.bodies)
+        assembly.nodes.displacement[body.centre_node] = field(assembly.nodes.reference[body.centre_node]);
     const std::vector<Vec2> drawn = mesh_displacements(assembly, *s, assembly.nodes.displacement);
-    for (std::size_t n = 0; n < drawn.size(); ++n) EXPECT_LT(norm(drawn[n] - field(s->mesh.nodes[n])), 1e-16);   // of displacements of 1e-3
+    for (std::size_t n = 0; n < drawn.size(); ++n)
+        EXPECT_LT(norm(drawn[n] - field(s->mesh.nodes[n])), 1e-16);  // of displacements of 1e-3
 }
 
 TEST(InnerParticles, PullingAGrainApartNeverBreaksIt) {
@@ -189,7 +196,7 @@ TEST(InnerParticles, PullingAGrainApartNeverBreaksIt) {
     const auto s = fixtures::two_grain_bar(0.003, 0.003, 26.0);
     Assembly assembly = assemble(*s, model, fixtures::granite(), fixtures::material(model));
     ContactFinder finder(assembly, 1e-4);
-    for (int k = 1; k <= 10; ++k) {   // to twice its size
+    for (int k = 1; k <= 10; ++k) {  // to twice its size
         for (const Body& body : assembly.bodies) {
             const Vec2 X = assembly.nodes.reference[body.centre_node], after = (0.1 * k) * X;
             assembly.nodes.velocity[body.centre_node] = after - assembly.nodes.displacement[body.centre_node];
@@ -209,7 +216,7 @@ TEST(InnerParticles, PullingAGrainApartNeverBreaksIt) {
             EXPECT_GT(bond.un_m, 0.0);
         } else {
             ++across;
-            EXPECT_TRUE(contact.dropped);   // the others break and go
+            EXPECT_TRUE(contact.dropped);  // the others break and go
         }
     }
     EXPECT_EQ(inside, static_cast<int>(s->filling.inside.size()));
@@ -238,29 +245,34 @@ TEST(InnerParticles, ContactsAcrossAnEdgeShareItsAreaAndThoseInsideHaveTheSmalle
             const Vec2 edge = assembly.origins[c].to - assembly.origins[c].from;
             if (normal == ContactNormal::edge) {
                 EXPECT_NEAR(dot(frame.n, edge) / norm(edge), 0.0, 1e-12);
-                EXPECT_GT(dot(frame.n, assembly.centre(contact.b.body) - assembly.centre(contact.a.body)), 0.0);   // out of A
+                EXPECT_GT(dot(frame.n, assembly.centre(contact.b.body) - assembly.centre(contact.a.body)), 0.0);  // out of A
             } else {
-                EXPECT_NEAR(std::abs(cross(frame.n, assembly.centre(contact.b.body) - assembly.centre(contact.a.body))), 0.0, 1e-16);
+                EXPECT_NEAR(std::abs(cross(frame.n, assembly.centre(contact.b.body) - assembly.centre(contact.a.body))), 0.0,
+                            1e-16);
             }
-            EXPECT_NEAR(cross(frame.reference_point - assembly.origins[c].from, edge) / norm(edge), 0.0, 1e-14);   // on the edge's line
+            EXPECT_NEAR(cross(frame.reference_point - assembly.origins[c].from, edge) / norm(edge), 0.0,
+                        1e-14);  // on the edge's line
         }
         for (const Cell& cell : s->cells.cells)
             for (std::size_t k = 0; k < cell.vertices.size(); ++k)
                 if (cell.neighbours[k] >= 0)
-                    edges += 0.5 * norm(s->cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] - s->cells.vertices[cell.vertices[k]]);
+                    edges += 0.5 * norm(s->cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] -
+                                        s->cells.vertices[cell.vertices[k]]);
         EXPECT_NEAR(across / (edges * assembly.thickness_m), 1.0, 1e-12);
     }
 }
 
 TEST(RigidGrains, ASquareHasTheClosedFormsMassAndMomentOfInertia) {
     const double h = 0.003, mass = 2650.0 * h * h * 0.08;
-    Assembly assembly = assemble(*fixtures::two_grain_bar(h, 0.5 * h), fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table1(GrainKind::rigid));
+    Assembly assembly = assemble(*fixtures::two_grain_bar(h, 0.5 * h), fixtures::model(GrainKind::rigid), fixtures::granite(),
+                                 fixtures::table1(GrainKind::rigid));
     set_real_masses(assembly);
     EXPECT_NEAR(assembly.nodes.mass[0] / mass, 1.0, 1e-12);
-    EXPECT_NEAR(assembly.nodes.mass[1] * 0.25 * h * h / (mass * h * h / 6.0), 1.0, 1e-12);              // m (h^2 + h^2) / 12
-    EXPECT_NEAR(assembly.nodes.mass[3] * h * h / 16.0 / (0.5 * mass * 1.25 * h * h / 12.0), 1.0, 1e-12);   // m (h^2 + (h/2)^2) / 12
+    EXPECT_NEAR(assembly.nodes.mass[1] * 0.25 * h * h / (mass * h * h / 6.0), 1.0, 1e-12);  // m (h^2 + h^2) / 12
+    EXPECT_NEAR(assembly.nodes.mass[3] * h * h / 16.0 / (0.5 * mass * 1.25 * h * h / 12.0), 1.0,
+                1e-12);  // m (h^2 + (h/2)^2) / 12
     EXPECT_NEAR(assembly.nodes.inverse_mass[0].x * mass, 1.0, 1e-12);
-    EXPECT_EQ(assembly.nodes.inverse_mass[1].y, 0.0);   // of a turn only x moves
+    EXPECT_EQ(assembly.nodes.inverse_mass[1].y, 0.0);  // of a turn only x moves
 }
 
 // Moment about the middle of the edge between two square grains when the upper one turns about it by a small angle, over

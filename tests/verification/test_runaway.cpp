@@ -9,7 +9,7 @@ namespace feldspar {
 namespace {
 
 struct Runaway {
-    long long steps = 0;   // until it was stopped
+    long long steps = 0;  // until it was stopped
     std::string what;
 };
 
@@ -50,7 +50,7 @@ TEST(Runaway, IsStoppedWithinAHundredSteps) {
         const Runaway runaway = run_with_light_nodes(all, 6.0);
         EXPECT_LE(runaway.steps, 100) << runaway.what;
         EXPECT_NE(runaway.what.find("at step "), std::string::npos) << runaway.what;
-        EXPECT_NE(runaway.what.find(" mm: "), std::string::npos) << runaway.what;   // its place
+        EXPECT_NE(runaway.what.find(" mm: "), std::string::npos) << runaway.what;  // its place
     }
 }
 
@@ -62,8 +62,8 @@ TEST(Runaway, IsStoppedByItsEnergyBeforeNumbersRunOut) {
 
 TEST(Runaway, LeavesItsRecord) {
     TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04), 3), methods::uniaxial_compression);
-    setup.contact.sigma_nt_Pa = setup.contact.tau_Pa = 1e12;   // nothing breaks
-    setup.test.maximum_strain = 1.0;                           // so that it is pressed until grains turn inside out
+    setup.contact.sigma_nt_Pa = setup.contact.tau_Pa = 1e12;  // nothing breaks
+    setup.test.maximum_strain = 1.0;                          // so that it is pressed until grains turn inside out
     setup.numerics.kind = NumericsKind::paper;
     setup.numerics.speed_m = 1e-4;
     RunControl control = fixtures::threads(1);

@@ -1,4 +1,5 @@
-// Servo control on real specimens: the strength is that of displacement control, and the branch behind it is followed with the books in order.
+// Servo control on real specimens: the strength is that of displacement control, and the branch behind it is followed with the
+// books in order.
 #include <gtest/gtest.h>
 
 #include "fixtures.hpp"
@@ -33,7 +34,9 @@ void expect_books_in_order(const TestResult& result) {
 
 class ServoBranch : public testing::TestWithParam<LoadControl> {};
 INSTANTIATE_TEST_SUITE_P(Controls, ServoBranch, testing::Values(LoadControl::dissipation, LoadControl::lateral_strain),
-                         [](const auto& tested) { return tested.param == LoadControl::dissipation ? "dissipation" : "lateral_strain"; });
+                         [](const auto& tested) {
+                             return tested.param == LoadControl::dissipation ? "dissipation" : "lateral_strain";
+                         });
 
 TEST_P(ServoBranch, HasTheStrengthOfDisplacementControlToTheBit) {
     const TestResult servo = followed(GetParam()), plain = followed(LoadControl::displacement);
@@ -48,7 +51,9 @@ TEST_P(ServoBranch, IsFollowedDownByPlatensThatGoBack) {
     EXPECT_LE(result.history.back().axial_stress_Pa, 0.4 * result.properties.peak_stress_Pa);
     EXPECT_LT(slowest(result), 0.0);
     EXPECT_TRUE(std::isfinite(result.properties.post_peak.brittleness));
-    EXPECT_NEAR(result.properties.post_peak.fracture_share + result.properties.post_peak.friction_share + result.properties.post_peak.damping_share, 1.0, 1e-12);
+    EXPECT_NEAR(result.properties.post_peak.fracture_share + result.properties.post_peak.friction_share +
+                    result.properties.post_peak.damping_share,
+                1.0, 1e-12);
     expect_books_in_order(result);
 }
 

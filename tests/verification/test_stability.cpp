@@ -1,15 +1,15 @@
 // The stability bound is the bound: settings above it are refused, and it is where motion starts to grow.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/stability.hpp"
 #include "feldspar/model/assemble.hpp"
-#include "feldspar/model/masses.hpp"
 #include "feldspar/model/fixtures.hpp"
+#include "feldspar/model/masses.hpp"
 #include "fixtures.hpp"
 
 namespace feldspar {
@@ -19,9 +19,10 @@ namespace {
 double growth(Assembly assembly, Damping damping, double alpha, int steps) {
     Team team(1);
     RandomStream random(5, "disturbance");
-    for (int n = 0; n < assembly.nodes.count(); ++n) {   // what is imposed stays at rest
+    for (int n = 0; n < assembly.nodes.count(); ++n) {  // what is imposed stays at rest
         const Vec2 free = assembly.nodes.inverse_mass[n];
-        assembly.nodes.velocity[n] = {free.x != 0.0 ? 1e-15 * random.normal() : 0.0, free.y != 0.0 ? 1e-15 * random.normal() : 0.0};
+        assembly.nodes.velocity[n] = {free.x != 0.0 ? 1e-15 * random.normal() : 0.0,
+                                      free.y != 0.0 ? 1e-15 * random.normal() : 0.0};
     }
     StepSettings settings;
     settings.damping = damping;
@@ -35,12 +36,13 @@ double growth(Assembly assembly, Damping damping, double alpha, int steps) {
 }
 
 TEST(Stability, MotionGrowsJustAboveTheLimitAndNotBelow) {
-    Assembly assembly = assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    Assembly assembly =
+        assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
     Team team(1);
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     const double omega2 = largest_omega2(assembly, team);
-    EXPECT_LT(omega2, 4.0);   // the tensor bound is rigorous
-    EXPECT_GT(omega2, 3.0);   // and tight
+    EXPECT_LT(omega2, 4.0);  // the tensor bound is rigorous
+    EXPECT_GT(omega2, 3.0);  // and tight
     set_scaled_masses(assembly, MassBound::tensor, omega2 / 4.0 * 1.01);
     EXPECT_LT(growth(assembly, Damping::viscous, 0.0, 2000), 100.0);
     set_scaled_masses(assembly, MassBound::tensor, omega2 / 4.0 * 0.98);
@@ -48,27 +50,30 @@ TEST(Stability, MotionGrowsJustAboveTheLimitAndNotBelow) {
 }
 
 TEST(Stability, LocalDampingLowersTheLimit) {
-    Assembly assembly = assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    Assembly assembly =
+        assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
     set_scaled_masses(assembly, MassBound::row_sum, 1.7);
     EXPECT_LT(growth(assembly, Damping::local, 0.7, 2000), 10.0);
-    set_scaled_masses(assembly, MassBound::row_sum, 1.0);   // m = 0.25 K as printed in the paper
+    set_scaled_masses(assembly, MassBound::row_sum, 1.0);  // m = 0.25 K as printed in the paper
     EXPECT_GT(growth(assembly, Damping::local, 0.7, 2000), 1e6);
     EXPECT_LT(growth(assembly, Damping::local, 0.0, 2000), 100.0);
 }
 
 TEST(Stability, LocalDampingNeedsATensorMassOfOnePlusAlphaWhateverPartOfTheMotionItActsOn) {
-    Assembly assembly = assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
+    Assembly assembly =
+        assemble(*fixtures::make(fixtures::rectangle(0.02, 0.04)), ModelSpec{}, fixtures::granite(), fixtures::table7());
     Team team(1);
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     const double omega2 = largest_omega2(assembly, team);
     for (const double alpha : {0.3, 0.5, 0.7, 0.9}) {
-        for (const double share : {0.0, 1.0}) {   // of the loading motion in what the damping leaves alone
+        for (const double share : {0.0, 1.0}) {  // of the loading motion in what the damping leaves alone
             for (int n = 0; n < assembly.nodes.count(); ++n) assembly.nodes.loading_mode[n] = share * Vec2{0.3, -1.0};
-            set_scaled_masses(assembly, MassBound::tensor, 1.0 + alpha);   // (M12) with (M6)
+            set_scaled_masses(assembly, MassBound::tensor, 1.0 + alpha);  // (M12) with (M6)
             EXPECT_LT(growth(assembly, Damping::local, alpha, 2000), 10.0) << alpha;
         }
         for (Vec2& B : assembly.nodes.loading_mode) B = {};
-        set_scaled_masses(assembly, MassBound::tensor, 0.9 * (1.0 + alpha) * omega2 / 4.0);   // a tenth below what the eigenvalue asks
+        set_scaled_masses(assembly, MassBound::tensor,
+                          0.9 * (1.0 + alpha) * omega2 / 4.0);  // a tenth below what the eigenvalue asks
         EXPECT_GT(growth(assembly, Damping::local, alpha, 4000), 1e3) << alpha;
     }
 }
@@ -78,8 +83,10 @@ INSTANTIATE_TEST_SUITE_P(Models, StabilityOfRigidModels, testing::ValuesIn(fixtu
                          [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(StabilityOfRigidModels, TheBoundHoldsAndIsTightWithPlatesAndMembranesToo) {
-    for (const MethodId kind : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension, methods::biaxial, methods::brazilian}) {
-        TestSetup s = fixtures::setup(kind == methods::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04), kind, GetParam());
+    for (const MethodId kind : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension,
+                                                               methods::biaxial, methods::brazilian}) {
+        TestSetup s = fixtures::setup(kind == methods::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04), kind,
+                                      GetParam());
         s.test.sigma3_Pa = kind == methods::biaxial ? 5e6 : 0.0;
         s.test.membrane_plates = 8;
         const RunControl control = fixtures::threads(1);
@@ -94,7 +101,8 @@ TEST_P(StabilityOfRigidModels, TheBoundHoldsAndIsTightWithPlatesAndMembranesToo)
 }
 
 TEST_P(StabilityOfRigidModels, MotionGrowsJustAboveTheLimitAndNotBelow) {
-    TestSetup s = fixtures::setup(fixtures::rectangle(0.014, 0.028), methods::direct_tension, GetParam());   // glued plates are linear
+    TestSetup s =
+        fixtures::setup(fixtures::rectangle(0.014, 0.028), methods::direct_tension, GetParam());  // glued plates are linear
     const RunControl control = fixtures::threads(1);
     Experiment e(s, control);
     set_scaled_masses(e.assembly, MassBound::tensor, 1.0);
@@ -139,7 +147,7 @@ TEST(Stability, ARealBarRingsWithTheClosedFormFrequency) {
     const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.04));
     Assembly assembly = assemble(*specimen, ModelSpec{}, fixtures::granite(), fixtures::table7());
     attach(assembly, *specimen, fixtures::platen_rows(*specimen));
-    for (const int node : assembly.fixtures[0].nodes) assembly.nodes.inverse_mass[node].y = 1.0;   // let the top go
+    for (const int node : assembly.fixtures[0].nodes) assembly.nodes.inverse_mass[node].y = 1.0;  // let the top go
     set_real_masses(assembly);
     Team team(1);
     StepSettings settings;
@@ -156,7 +164,7 @@ TEST(Stability, ARealBarRingsWithTheClosedFormFrequency) {
     const std::optional<double> half_period = fixtures::half_period(assembly, team, settings, mean_top);
     ASSERT_TRUE(half_period);
     const double expected = 2.0 * 0.04 / std::sqrt(24.3e9 / 2650.0);
-    EXPECT_NEAR(*half_period / expected, 1.0, 0.03);   // the small bar's own E differs from the large specimen's by 2 %
+    EXPECT_NEAR(*half_period / expected, 1.0, 0.03);  // the small bar's own E differs from the large specimen's by 2 %
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Tests that go through stages: what unloads is elastic, ends are met, books are in order, one specimen gives several strengths.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/base/error.hpp"
 #include "fixtures.hpp"
@@ -33,35 +33,42 @@ void expect_books_in_order(const TestResult& result) {
 }
 
 class Stages : public testing::TestWithParam<ModelSpec> {};
-INSTANTIATE_TEST_SUITE_P(Models, Stages, testing::Values(ModelSpec{}, fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)),
+INSTANTIATE_TEST_SUITE_P(Models, Stages,
+                         testing::Values(ModelSpec{}, fixtures::model(GrainKind::rigid),
+                                         fixtures::model(GrainKind::inner_particles)),
                          [](const auto& tested) { return fixtures::label(tested.param); });
 
 TEST_P(Stages, AnUndamagedSpecimenIsUnloadedWithTheStiffnessOfItsLoading) {
     const bool inner = GetParam().kind == GrainKind::inner_particles;
-    TestSetup s = fixtures::setup(inner ? fixtures::rectangle(0.012, 0.024) : fixtures::rectangle(0.02, 0.04), methods::uniaxial_compression, GetParam());
-    const double wait = 60.0;   // travel times in which what moves has died away to rounding, nearly
+    TestSetup s = fixtures::setup(inner ? fixtures::rectangle(0.012, 0.024) : fixtures::rectangle(0.02, 0.04),
+                                  methods::uniaxial_compression, GetParam());
+    const double wait = 60.0;  // travel times in which what moves has died away to rounding, nearly
     s.test.stages = one_by_one({load_to(8e6), hold(wait), unload_to(2e6), hold(wait), load_to(8e6), hold(wait)});
     const TestResult r = run_test(s, {});
     ASSERT_EQ(r.stages.size(), 6U);
     EXPECT_TRUE(r.cracks.empty());
-    const double down = (stress(r, 1) - stress(r, 3)) / (strain(r, 1) - strain(r, 3)), up = (stress(r, 5) - stress(r, 3)) / (strain(r, 5) - strain(r, 3));
+    const double down = (stress(r, 1) - stress(r, 3)) / (strain(r, 1) - strain(r, 3)),
+                 up = (stress(r, 5) - stress(r, 3)) / (strain(r, 5) - strain(r, 3));
     EXPECT_NEAR(down / up, 1.0, 1e-6);
     expect_books_in_order(r);
 }
 
 TEST_P(Stages, LoadsAndUnloadsToWithinHalfAPercentOfWhatIsAsked) {
     const bool inner = GetParam().kind == GrainKind::inner_particles;
-    TestSetup s = fixtures::setup(inner ? fixtures::rectangle(0.012, 0.024) : fixtures::rectangle(0.02, 0.04), methods::uniaxial_compression, GetParam());
+    TestSetup s = fixtures::setup(inner ? fixtures::rectangle(0.012, 0.024) : fixtures::rectangle(0.02, 0.04),
+                                  methods::uniaxial_compression, GetParam());
     s.numerics.accuracy = 0.02;
     const double section = 0.08 * (inner ? 0.012 : 0.02), up = inner ? 20e6 : 50e6;
     const StageSpec by_load{.kind = StageKind::load, .end = StageEnd::load, .value = 1.1 * up * section};
-    s.test.stages = one_by_one({load_to(up), unload_to(0.2 * up), by_load, {.kind = StageKind::unload, .end = StageEnd::share_of_peak, .value = 0.05}});
+    s.test.stages = one_by_one(
+        {load_to(up), unload_to(0.2 * up), by_load, {.kind = StageKind::unload, .end = StageEnd::share_of_peak, .value = 0.05}});
     const TestResult r = run_test(s, {});
     ASSERT_EQ(r.stages.size(), 4U) << r.stop_reason;
     EXPECT_NEAR(stress(r, 0) / up, 1.0, 5e-3);
     EXPECT_NEAR(stress(r, 1) / (0.2 * up), 1.0, 5e-3);
     EXPECT_NEAR(stress(r, 2) / (1.1 * up), 1.0, 5e-3);
-    EXPECT_NEAR(stress(r, 3) / (0.05 * 1.1 * up), 1.0, 1e-2) << "a share of the largest load, which is itself met to half a percent";
+    EXPECT_NEAR(stress(r, 3) / (0.05 * 1.1 * up), 1.0, 1e-2)
+        << "a share of the largest load, which is itself met to half a percent";
     EXPECT_EQ(r.stop_reason, "the last stage is done: the load has fallen to 5 % of the largest");
     for (const HistoryRow& row : r.history) EXPECT_GE(row.stage, 1);
     expect_books_in_order(r);
@@ -99,7 +106,8 @@ TEST(CyclicCompression, LosesStiffnessAndKeepsItsBooks) {
         EXPECT_GT(cycles[c].damage, cycles[c - 1].damage);
     }
     EXPECT_DOUBLE_EQ(r.properties.damage_omega, unloaded.damage);
-    EXPECT_NEAR(unloaded.damage / -unloaded.permanent_volumetric_strain, 1.0, 1e-9) << "the dilation of all cycles is that of the specimen";
+    EXPECT_NEAR(unloaded.damage / -unloaded.permanent_volumetric_strain, 1.0, 1e-9)
+        << "the dilation of all cycles is that of the specimen";
     double dissipated = 0.0;
     int cracks = 0;
     for (const CycleProperties& cycle : cycles) {
@@ -112,7 +120,8 @@ TEST(CyclicCompression, LosesStiffnessAndKeepsItsBooks) {
     // Each top is wider than the one before by the step.
     for (std::size_t c = 3; c < r.stages.size(); c += 2) {
         ASSERT_EQ(r.stages[c].kind, StageKind::unload);
-        const double before = r.history[r.stages[c - 2].first_row].lateral_strain_gauge, now = r.history[r.stages[c].first_row].lateral_strain_gauge;
+        const double before = r.history[r.stages[c - 2].first_row].lateral_strain_gauge,
+                     now = r.history[r.stages[c].first_row].lateral_strain_gauge;
         EXPECT_GE(before - now, *s.test.own_value("lateral_strain_step") * (1.0 - 1e-9));
     }
 }
@@ -124,7 +133,8 @@ TEST(CyclesBelowTheFirstDamage, CostNoStrength) {
     s.test.stages = {{{load_to(20e6), unload_to(2e6)}, 3}, {{StageSpec{}}}};
     const TestResult cycled = run_test(s, {});
     EXPECT_EQ(cycled.stages.size(), 7U);
-    EXPECT_NEAR(cycled.properties.peak_stress_Pa / monotonic.properties.peak_stress_Pa, 1.0, 0.02) << "the accuracy that was asked for";
+    EXPECT_NEAR(cycled.properties.peak_stress_Pa / monotonic.properties.peak_stress_Pa, 1.0, 0.02)
+        << "the accuracy that was asked for";
     EXPECT_NEAR(cycled.properties.E_secant_Pa / monotonic.properties.E_secant_Pa, 1.0, 5e-3) << "loops are left out of the curve";
 }
 
@@ -145,7 +155,7 @@ TEST(MultiStage, OneSpecimenHasAboutTheStrengthsOfOneForEachPressure) {
     expect_books_in_order(r);
     s.test.kind = methods::biaxial;
     s.test.later_sigma3_Pa.clear();
-    for (std::size_t i = 0; i < 3; ++i) {   // measured on this packing: within 1.5 %; on another one 4 %
+    for (std::size_t i = 0; i < 3; ++i) {  // measured on this packing: within 1.5 %; on another one 4 %
         s.test.sigma3_Pa = p.sigma3_Pa[i];
         EXPECT_NEAR(p.strength_Pa[i] / run_test(s, {}).properties.peak_stress_Pa, 1.0, 0.05) << "at " << p.sigma3_Pa[i];
     }
@@ -154,12 +164,16 @@ TEST(MultiStage, OneSpecimenHasAboutTheStrengthsOfOneForEachPressure) {
 TEST(Confining, TheAxialStressStaysWhereTheMotionFollows) {
     TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::biaxial);
     s.test.sigma3_Pa = 2e6;
-    s.test.stages = one_by_one({load_to(40e6), {.kind = StageKind::confine, .sigma3_Pa = 4e6, .keep = ConfineKeep::load}, {.kind = StageKind::confine, .sigma3_Pa = 1e6}, hold(5.0)});
+    s.test.stages = one_by_one({load_to(40e6),
+                                {.kind = StageKind::confine, .sigma3_Pa = 4e6, .keep = ConfineKeep::load},
+                                {.kind = StageKind::confine, .sigma3_Pa = 1e6},
+                                hold(5.0)});
     const TestResult r = run_test(s, {});
     ASSERT_EQ(r.stages.size(), 4U) << r.stop_reason;
     EXPECT_EQ(r.history[r.stages[1].last_row].sigma3_Pa, 4e6);
     EXPECT_EQ(r.history.back().sigma3_Pa, 1e6);
-    for (std::size_t row = r.stages[1].first_row; row <= r.stages[1].last_row; ++row) EXPECT_NEAR(r.history[row].axial_stress_Pa / 40e6, 1.0, 1e-2);
+    for (std::size_t row = r.stages[1].first_row; row <= r.stages[1].last_row; ++row)
+        EXPECT_NEAR(r.history[row].axial_stress_Pa / 40e6, 1.0, 1e-2);
     // At rest the specimen is held in length: sigma1 falls by nu times the change of sigma3, that of plane stress on all sides.
     const double nu = r.properties.nu_initial, change = stress(r, 3) - stress(r, 1);
     EXPECT_NEAR(change / (nu * -3e6), 1.0, 0.1) << "nu of the gauge in the middle of a small packing";
@@ -185,12 +199,14 @@ TestSetup own() {
 
 TEST(TestsOfTheUsersOwn, GoThroughCyclesByAGauge) {
     TestSetup s = own();
-    const StageSpec wider{.kind = StageKind::load, .end = StageEnd::gauge, .value = 4e-6, .counts = StageValue::beyond, .gauge = "width"};
+    const StageSpec wider{
+        .kind = StageKind::load, .end = StageEnd::gauge, .value = 4e-6, .counts = StageValue::beyond, .gauge = "width"};
     s.test.stages = {{{wider, unload_to(1e6)}, 3}, {{load_to(10e6)}}};
     const TestResult r = run_test(s, {});
     ASSERT_EQ(r.stages.size(), 7U) << r.stop_reason;
     EXPECT_EQ(r.properties.cycles.size(), 4U);
-    for (const std::size_t top : {0, 2, 4}) EXPECT_NEAR(r.history[r.stages[top].last_row].gauges[0] / (4e-6 * (0.5 * static_cast<double>(top) + 1.0)), 1.0, 0.02);
+    for (const std::size_t top : {0, 2, 4})
+        EXPECT_NEAR(r.history[r.stages[top].last_row].gauges[0] / (4e-6 * (0.5 * static_cast<double>(top) + 1.0)), 1.0, 0.02);
     expect_books_in_order(r);
 }
 

@@ -1,12 +1,13 @@
-// Stress intensity at the tip of a notch, from the elastic stresses around it, against finite elements; the work of fracture against that of the contacts.
-#include <cmath>
-
+// Stress intensity at the tip of a notch, from the elastic stresses around it, against finite elements; the work of fracture
+// against that of the contacts.
 #include <gtest/gtest.h>
 
-#include "feldspar/methods/notched.hpp"
+#include <cmath>
+
 #include "feldspar/lab/stress_fields.hpp"
 #include "feldspar/methods/beam.hpp"
 #include "feldspar/methods/half_disc.hpp"
+#include "feldspar/methods/notched.hpp"
 #include "fixtures.hpp"
 
 namespace feldspar {
@@ -20,8 +21,10 @@ double K_I(const Experiment& e, Vec2 tip, Vec2 ahead, double inner_m, double out
         const double distance = norm(mesh.nodes[mesh.centre_node[g]] - tip);
         if (distance < inner_m || distance > outer_m) continue;
         for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) {
-            const Vec2 a = mesh.nodes[mesh.triangles[t][0]], b = mesh.nodes[mesh.triangles[t][1]], c = mesh.nodes[mesh.triangles[t][2]];
-            for (const Vec2 middle : {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) samples.push_back({t, cross(b - a, c - a) / 6.0, middle - tip});
+            const Vec2 a = mesh.nodes[mesh.triangles[t][0]], b = mesh.nodes[mesh.triangles[t][1]],
+                       c = mesh.nodes[mesh.triangles[t][2]];
+            for (const Vec2 middle : {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)})
+                samples.push_back({t, cross(b - a, c - a) / 6.0, middle - tip});
         }
     }
     const std::vector<StressField> fields = fields_around_tip(ahead, outer_m);
@@ -29,7 +32,9 @@ double K_I(const Experiment& e, Vec2 tip, Vec2 ahead, double inner_m, double out
     wanted[0] = 1.0;
     double K = 0.0;
     for (const auto& [t, w] : fitted_value(samples, fields, wanted)) {
-        const Mat2 s = cauchy_stress(e.assembly.elasticity.front(), displacement_gradient(e.assembly.nodes.displacement, e.assembly.triangles[static_cast<std::size_t>(t)]));
+        const Mat2 s = cauchy_stress(
+            e.assembly.elasticity.front(),
+            displacement_gradient(e.assembly.nodes.displacement, e.assembly.triangles[static_cast<std::size_t>(t)]));
         K += w.xx * s.xx + w.xy * s.xy + w.yx * s.yx + w.yy * s.yy;
     }
     return K;
@@ -37,7 +42,8 @@ double K_I(const Experiment& e, Vec2 tip, Vec2 ahead, double inner_m, double out
 
 constexpr double kGrain = 0.003, kThickness = 0.08;
 
-// The ring begins a grain and a half from the tip, where the notch ends between or inside of grains, and ends at four grains, or where the series is no longer enough.
+// The ring begins a grain and a half from the tip, where the notch ends between or inside of grains, and ends at four grains, or
+// where the series is no longer enough.
 double K_I(const TestSetup& setup, Vec2 tip, Vec2 ahead, double shorter_m, double& load_N) {
     const RunControl control = fixtures::threads(2);
     Experiment e(setup, control);
@@ -48,7 +54,8 @@ double K_I(const TestSetup& setup, Vec2 tip, Vec2 ahead, double shorter_m, doubl
     return K_I(e, tip, ahead, 1.5 * kGrain, std::min(4.0 * kGrain, 0.9 * shorter_m));
 }
 
-// Means over two packings, notches without width, 16 grains across: measured 2.5 % low to 0.4 % high (docs/validation/bending.md).
+// Means over two packings, notches without width, 16 grains across: measured 2.5 % low to 0.4 % high
+// (docs/validation/bending.md).
 constexpr int kPackings = 2;
 constexpr double kTolerance = 0.03;
 
@@ -60,14 +67,15 @@ TEST(Toughness, OfAnEdgeNotchBetweenPlatesThatDoNotTurn) {
             SpecimenSpec spec = fixtures::rectangle(W, H);
             spec.outline.notches = {{{0.0, 0.5 * H}, {x * W, 0.5 * H}, 0.0, ""}};
             double load = 0.0;
-            const double K = K_I(fixtures::setup(fixtures::make(spec, seed), methods::direct_tension), {x * W, 0.5 * H}, {1.0, 0.0}, std::min(x, 1.0 - x) * W, load);
+            const double K = K_I(fixtures::setup(fixtures::make(spec, seed), methods::direct_tension), {x * W, 0.5 * H},
+                                 {1.0, 0.0}, std::min(x, 1.0 - x) * W, load);
             sum += K / (Y * load / (W * kThickness) * std::sqrt(M_PI * x * W)) / kPackings;
         }
         EXPECT_NEAR(sum, 1.0, kTolerance) << x;
     }
 }
 
-TEST(Toughness, OfABentBeam) {   // (P38), the factors of finite elements
+TEST(Toughness, OfABentBeam) {  // (P38), the factors of finite elements
     const double h = 16.0 * kGrain, S = 4.0 * h;
     for (const auto& [x, f] : {std::pair{0.3, 1.514}, {0.5, 2.644}}) {
         double sum = 0.0;
@@ -84,7 +92,7 @@ TEST(Toughness, OfABentBeam) {   // (P38), the factors of finite elements
     }
 }
 
-TEST(Toughness, OfABentHalfDisc) {   // (P47), the factors of finite elements
+TEST(Toughness, OfABentHalfDisc) {  // (P47), the factors of finite elements
     const double R = 20.0 * kGrain;
     struct Case {
         double beta, q, Y;
@@ -117,10 +125,12 @@ Crack crack(Vec2 from, Vec2 to) {
 TEST(ChainOfCracks, IsTheShortestToTheHighestEnd) {
     const double mm = 1e-3;
     const Vec2 tip{0.0, 10.0 * mm};
-    std::vector<Crack> cracks = {crack({0.0, 10.0 * mm}, {0.0, 12.0 * mm}), crack({0.0, 12.0 * mm}, {3.0 * mm, 16.0 * mm}),   // 2 + 5
-                                 crack({0.0, 12.0 * mm}, {-2.0 * mm, 14.0 * mm}), crack({8.0 * mm, 18.0 * mm}, {8.0 * mm, 30.0 * mm})};   // a branch, and one apart
+    std::vector<Crack> cracks = {crack({0.0, 10.0 * mm}, {0.0, 12.0 * mm}),
+                                 crack({0.0, 12.0 * mm}, {3.0 * mm, 16.0 * mm}),  // 2 + 5
+                                 crack({0.0, 12.0 * mm}, {-2.0 * mm, 14.0 * mm}),
+                                 crack({8.0 * mm, 18.0 * mm}, {8.0 * mm, 30.0 * mm})};  // a branch, and one apart
     EXPECT_NEAR(chain_of_cracks_m(cracks, tip, 2.0 * mm, 2.0 * mm), 7.0 * mm, 1e-12);
-    cracks.push_back(crack({3.0 * mm, 16.4 * mm}, {3.0 * mm, 20.0 * mm}));   // over a gap of a fifth of a grain
+    cracks.push_back(crack({3.0 * mm, 16.4 * mm}, {3.0 * mm, 20.0 * mm}));  // over a gap of a fifth of a grain
     EXPECT_NEAR(chain_of_cracks_m(cracks, tip, 2.0 * mm, 2.0 * mm), 11.0 * mm, 1e-12);
     EXPECT_EQ(chain_of_cracks_m({}, tip, 2.0 * mm, 2.0 * mm), 0.0);
     EXPECT_EQ(chain_of_cracks_m(cracks, {50.0 * mm, 0.0}, 2.0 * mm, 2.0 * mm), 0.0);

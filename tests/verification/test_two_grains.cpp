@@ -1,8 +1,8 @@
 // A bar of two grains pulled apart: every number is known beforehand.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <gtest/gtest.h>
 
 #include "fixtures.hpp"
 
@@ -13,8 +13,8 @@ constexpr double kSide = 0.003;
 
 TestSetup bar(MethodId kind) {
     TestSetup s = fixtures::setup(fixtures::two_grain_bar(kSide), kind);
-    s.grain.nu = 0.0;   // the ends slide freely, so the bar is in uniaxial stress for any nu; 0 makes it homogeneous too
-    s.test.stop_fraction = -1.0;   // to the end of the envelope and beyond
+    s.grain.nu = 0.0;  // the ends slide freely, so the bar is in uniaxial stress for any nu; 0 makes it homogeneous too
+    s.test.stop_fraction = -1.0;  // to the end of the envelope and beyond
     s.test.maximum_strain = 0.0025;
     s.numerics.residual_target = 2e-4;
     return s;
@@ -39,7 +39,7 @@ TEST(TwoGrains, PulledApartTheyShowStiffnessStrengthAndFractureEnergy) {
 
 TEST(TwoGrains, EndAtTheStressThatIsEnough) {
     TestSetup s = bar(methods::direct_tension);
-    s.test.maximum_stress_Pa = 6e6;   // the strength is 8.5 MPa
+    s.test.maximum_stress_Pa = 6e6;  // the strength is 8.5 MPa
     const TestResult r = run_test(s, fixtures::threads(1));
     EXPECT_FALSE(r.properties.peak_reached) << r.stop_reason;
     EXPECT_GE(r.properties.peak_stress_Pa, 6e6);
@@ -69,9 +69,10 @@ TEST(TwoGrains, OnePointCarriesTheSameForceAsThree) {
 TEST(TwoGrains, CompressionStaysElasticFarBeyondTheTensileStrength) {
     TestSetup s = bar(methods::uniaxial_compression);
     s.test.maximum_strain = 0.001;
-    EXPECT_THROW(run_test(s, fixtures::threads(1)), std::runtime_error);   // nothing ever comes closer to failure: said, not looped
+    EXPECT_THROW(run_test(s, fixtures::threads(1)),
+                 std::runtime_error);  // nothing ever comes closer to failure: said, not looped
     s.numerics.kind = NumericsKind::paper;
-    s.numerics.speed_m = 3e-10;   // many travel times of a wave over 6 mm
+    s.numerics.speed_m = 3e-10;  // many travel times of a wave over 6 mm
     s.test.maximum_strain = 0.0001;
     const TestResult r = run_test(s, fixtures::threads(1));
     EXPECT_TRUE(r.cracks.empty());

@@ -1,10 +1,11 @@
-// Rocks whose grains and contacts differ, against closed forms: mixtures, the weakest link, sliding, and that an even rock written as an uneven one is itself.
+// Rocks whose grains and contacts differ, against closed forms: mixtures, the weakest link, sliding, and that an even rock
+// written as an uneven one is itself.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/regression.hpp"
 #include "feldspar/model/assemble.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 // From the gauge, or between the platens.
 double modulus(TestSetup setup, bool between_platens = false) {
-    setup.test.maximum_stress_Pa = 2e6;   // long before anything breaks
+    setup.test.maximum_stress_Pa = 2e6;  // long before anything breaks
     const auto properties = run_test(setup, fixtures::threads(1)).properties;
     return between_platens ? properties.E_tangent_Pa : properties.E_gauge_Pa;
 }
@@ -34,7 +35,8 @@ Heterogeneity two_phases(double E_a, double E_b, double Kn_a, double Kn_b) {
     return rock;
 }
 
-// Layers of two minerals along the load and across it: Voigt's and Reuss's means of the moduli that specimens of one mineral have, contacts included.
+// Layers of two minerals along the load and across it: Voigt's and Reuss's means of the moduli that specimens of one mineral
+// have, contacts included.
 TEST(Minerals, InLayersHaveTheMeanOfVoigtOrReuss) {
     const auto specimen = fixtures::make(fixtures::rectangle(0.06, 0.12));
     const int columns = 600, rows = 1200;
@@ -48,15 +50,16 @@ TEST(Minerals, InLayersHaveTheMeanOfVoigtOrReuss) {
                 for (int c = 0; c < columns; ++c) map.phase.push_back(static_cast<std::int8_t>(phase_at(c, r)));
             setup.rock.minerals.map = std::make_shared<PhaseMap>(map);
             share_a = Texture(*specimen, setup.grain, setup.contact, setup.rock).summary().area_shares[0];
-            return modulus(setup, across);   // in series all layers count, and the gauge does not span them all
+            return modulus(setup, across);  // in series all layers count, and the gauge does not span them all
         };
         const double E_a = E_of([](int, int) { return 0; }), E_b = E_of([](int, int) { return 1; });
-        const int layers = across ? 4 : 2;   // as many along the load as its ends allow: each layer touches both
+        const int layers = across ? 4 : 2;  // as many along the load as its ends allow: each layer touches both
         const double E = E_of([&](int c, int r) { return across ? r * layers / rows % 2 : c * layers / columns % 2; });
         const double voigt = share_a * E_a + (1.0 - share_a) * E_b, reuss = 1.0 / (share_a / E_a + (1.0 - share_a) / E_b);
         EXPECT_GT(voigt, 1.2 * reuss);
         // The gauge spans the middle of the height and width: in parallel both layers are as strained there as at the ends.
-        EXPECT_NEAR(E / (across ? reuss : voigt), 1.0, 0.01) << (across ? "in series" : "in parallel") << " " << E_a << " " << E_b << " " << E;
+        EXPECT_NEAR(E / (across ? reuss : voigt), 1.0, 0.01)
+            << (across ? "in series" : "in parallel") << " " << E_a << " " << E_b << " " << E;
     }
 }
 
@@ -73,23 +76,26 @@ std::shared_ptr<const Specimen> column(int grains, std::uint64_t seed) {
     for (int i = 0; i < grains; ++i) {
         s.packing.centres.push_back({0.5 * h, (i + 0.5) * h});
         s.packing.radii_m.push_back(0.5 * h);
-        s.cells.cells.push_back({{2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2}, {i - 1, -1, i + 1 < grains ? i + 1 : -1, -1}, {i == 0 ? 0 : -1, 1, i + 1 < grains ? -1 : 2, 3}});
+        s.cells.cells.push_back({{2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2},
+                                 {i - 1, -1, i + 1 < grains ? i + 1 : -1, -1},
+                                 {i == 0 ? 0 : -1, 1, i + 1 < grains ? -1 : 2, 3}});
     }
     s.mesh = mesh_grains(s.cells, 0);
     return std::make_shared<const Specimen>(std::move(s));
 }
 
-// The weakest of n links: mean strength n^(-1/m) times that of one, over many columns; and a column breaks at its weakest contact.
+// The weakest of n links: mean strength n^(-1/m) times that of one, over many columns; and a column breaks at its weakest
+// contact.
 TEST(Scatter, AChainIsAsStrongAsItsWeakestLink) {
     constexpr double kModulus = 6.0;
-    constexpr int kColumns = 1500;   // the mean of a minimum with a variation of 0.19: known to 0.5 %
+    constexpr int kColumns = 1500;  // the mean of a minimum with a variation of 0.19: known to 0.5 %
     Heterogeneity rock;
     rock.scatter[Scattered::strength] = {.kind = DistributionKind::weibull, .weibull_modulus = kModulus};
     const ContactMaterial contact = fixtures::table7();
     for (const int links : {1, 4, 16}) {
         double sum = 0.0;
         for (std::uint64_t seed = 1; seed <= kColumns; ++seed) {
-            Specimen only;   // links between the grains 0 and 1, 1 and 2, ...
+            Specimen only;  // links between the grains 0 and 1, 1 and 2, ...
             only.seed = seed;
             const Texture texture(only, fixtures::granite(), contact, rock);
             double weakest = std::numeric_limits<double>::infinity();
@@ -114,7 +120,7 @@ TEST(Scatter, AChainIsAsStrongAsItsWeakestLink) {
             }
         }
         const TestResult r = run_test(setup, fixtures::threads(1));
-        EXPECT_NEAR(r.properties.peak_stress_Pa / weakest, 1.0, 0.01);   // the accuracy that is asked for
+        EXPECT_NEAR(r.properties.peak_stress_Pa / weakest, 1.0, 0.01);  // the accuracy that is asked for
         ASSERT_FALSE(r.cracks.empty());
         EXPECT_EQ(std::min(r.cracks.front().grain_a, r.cracks.front().grain_b), where);
     }
@@ -132,14 +138,16 @@ TEST(UnevenRock, OfEqualPartsIsTheEvenRock) {
         joint.contact = even.contact;
         uneven.rock.joints = {joint};
         EXPECT_NEAR(modulus(uneven) / modulus(even), 1.0, 1e-6) << name(grains);
-        if (grains == GrainKind::inner_particles) continue;   // the same laws as of rigid grains, at ten times the cost
+        if (grains == GrainKind::inner_particles) continue;  // the same laws as of rigid grains, at ten times the cost
         const TestResult a = run_test(even, fixtures::threads(1)), b = run_test(uneven, fixtures::threads(1));
         EXPECT_NEAR(b.properties.first_crack_Pa / a.properties.first_crack_Pa, 1.0, 1e-2) << name(grains);
-        EXPECT_NEAR(b.properties.peak_stress_Pa / a.properties.peak_stress_Pa, 1.0, 1e-2) << name(grains);   // rounding, and what grows of it
+        EXPECT_NEAR(b.properties.peak_stress_Pa / a.properties.peak_stress_Pa, 1.0, 1e-2)
+            << name(grains);  // rounding, and what grows of it
     }
 }
 
-// A gap that is open before the test gives way without force until it has closed: by opening / height per joint that the load crosses.
+// A gap that is open before the test gives way without force until it has closed: by opening / height per joint that the load
+// crosses.
 TEST(Joints, ThatAreOpenCloseFirst) {
     TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.03, 0.06)), methods::uniaxial_compression);
     JointSpec joint;
@@ -156,14 +164,16 @@ TEST(Joints, ThatAreOpenCloseFirst) {
     ASSERT_FALSE(open.history.empty());
     ASSERT_FALSE(closed.history.empty());
     const double more = open.history.back().axial_strain - closed.history.back().axial_strain;
-    // Facets of the rough joint are inclined: along the load a gap is wider by 1 / cos of up to 60 degrees, and the flattest close first.
+    // Facets of the rough joint are inclined: along the load a gap is wider by 1 / cos of up to 60 degrees, and the flattest
+    // close first.
     EXPECT_GT(more, 0.9 * joint.opening_m / 0.06);
     EXPECT_LT(more, 2.5 * joint.opening_m / 0.06);
 }
 
 SpecimenSpec with_joint(double width_m, double height_m, double dip_deg) {
     SpecimenSpec spec = fixtures::rectangle(width_m, height_m);
-    const double dip = dip_deg * std::numbers::pi / 180.0, reach = 0.51 * std::min(width_m / std::cos(dip), height_m / std::max(std::sin(dip), 1e-9));
+    const double dip = dip_deg * std::numbers::pi / 180.0,
+                 reach = 0.51 * std::min(width_m / std::cos(dip), height_m / std::max(std::sin(dip), 1e-9));
     const Vec2 centre{0.5 * width_m, 0.5 * height_m}, along{std::cos(dip), std::sin(dip)};
     spec.outline.notches = {{centre - reach * along, centre + reach * along, 0.0, "plane", true}};
     return spec;
@@ -182,33 +192,39 @@ JointSpec smooth_joint(const ContactMaterial& rock, double mu, double tau_Pa, do
     return joint;
 }
 
-// Jaeger's plane of weakness: a rock with a smooth joint slides on it where its normal is more than phi from the load; else it has its own strength.
+// Jaeger's plane of weakness: a rock with a smooth joint slides on it where its normal is more than phi from the load; else it
+// has its own strength.
 TEST(Joints, ThatAreSmoothFollowJaeger) {
     constexpr double c = 5e6, mu = 0.57735;
     for (const double beta_deg : {30.0, 45.0, 60.0, 75.0}) {
         TestSetup setup = fixtures::setup(fixtures::make(with_joint(0.04, 0.08, beta_deg)), methods::uniaxial_compression);
         setup.rock.joints = {smooth_joint(setup.contact, mu, c, 3e6)};
         const TestResult r = run_test(setup, fixtures::threads(1));
-        const auto on_joint = [](const Crack& crack, double tan_beta) {   // distance from the line through the middle
-            return std::abs((crack.place.y - 0.04) - tan_beta * (crack.place.x - 0.02)) / std::sqrt(1.0 + tan_beta * tan_beta) < 1e-6;
+        const auto on_joint = [](const Crack& crack, double tan_beta) {  // distance from the line through the middle
+            return std::abs((crack.place.y - 0.04) - tan_beta * (crack.place.x - 0.02)) / std::sqrt(1.0 + tan_beta * tan_beta) <
+                   1e-6;
         };
         const double beta = beta_deg * std::numbers::pi / 180.0;
         if (beta_deg < 31.0) {
-            EXPECT_GT(r.properties.peak_stress_Pa, 90e6);   // 118 MPa without a joint
+            EXPECT_GT(r.properties.peak_stress_Pa, 90e6);  // 118 MPa without a joint
             continue;
         }
         const double expected = 2.0 * c / ((1.0 - mu / std::tan(beta)) * std::sin(2.0 * beta));
         EXPECT_NEAR(r.properties.peak_stress_Pa / expected, 1.0, 0.05) << beta_deg;
         const auto until_peak = [&](const Crack& crack) { return crack.axial_stress_Pa > 0.5 * expected; };
         const auto cracks = std::count_if(r.cracks.begin(), r.cracks.end(), until_peak);
-        const auto along = std::count_if(r.cracks.begin(), r.cracks.end(), [&](const Crack& crack) { return until_peak(crack) && on_joint(crack, std::tan(beta)); });
-        EXPECT_EQ(along, cracks) << beta_deg;   // sliding on the joint, not failure of the rock
+        const auto along = std::count_if(r.cracks.begin(), r.cracks.end(), [&](const Crack& crack) {
+            return until_peak(crack) && on_joint(crack, std::tan(beta));
+        });
+        EXPECT_EQ(along, cracks) << beta_deg;  // sliding on the joint, not failure of the rock
     }
 }
 
-// A notched beam in which only a smooth joint over the ligament can break: the work of fracture is the joint's fracture energy times the length of its path.
+// A notched beam in which only a smooth joint over the ligament can break: the work of fracture is the joint's fracture energy
+// times the length of its path.
 TEST(Joints, OverTheLigamentOfABeamTakeTheirFractureEnergy) {
-    SpecimenSpec spec = fixtures::rectangle(0.176, 0.04);   // a smaller one snaps back more, and the branch behind its strength is then less quasi-static
+    SpecimenSpec spec = fixtures::rectangle(
+        0.176, 0.04);  // a smaller one snaps back more, and the branch behind its strength is then less quasi-static
     const double middle = 0.088, notch = 0.02;
     spec.outline.notches = {{{middle, 0.0}, {middle, notch}, 0.0, ""}, {{middle, notch}, {middle, 0.041}, 0.0, "ligament", true}};
     TestSetup setup = fixtures::setup(fixtures::make(spec), methods::three_point_bend);
@@ -228,7 +244,7 @@ TEST(Joints, OverTheLigamentOfABeamTakeTheirFractureEnergy) {
     double work = std::nan("");
     for (std::size_t i = 0; i < own.size(); ++i)
         if (own[i].name == std::string_view("work_of_fracture")) work = r.properties.of_method.at(i);
-    EXPECT_NEAR(work / weak.Gfn_J_m2, 1.0, 0.05) << r.stop_reason;   // path and ligament are of one length
+    EXPECT_NEAR(work / weak.Gfn_J_m2, 1.0, 0.05) << r.stop_reason;  // path and ligament are of one length
     // At a fiftieth of the load the last grains before the upper side have not opened to the end.
     EXPECT_NEAR(r.energy_at_end.fracture / (weak.Gfn_J_m2 * (spec.outline.height_m - notch) * 0.08), 0.95, 0.05);
 }
@@ -255,8 +271,9 @@ TEST(Joints, ThatAreSmoothSlideAtTheirFriction) {
     }
 }
 
-// A smooth joint that dilates in direct shear: the upper half rises by tan psi of the slip until the limit, under the friction of the whole angle; behind a spring
-// the normal stress grows by what the spring gives for the rise. Rigid grains: nothing else gives way.
+// A smooth joint that dilates in direct shear: the upper half rises by tan psi of the slip until the limit, under the friction of
+// the whole angle; behind a spring the normal stress grows by what the spring gives for the rise. Rigid grains: nothing else
+// gives way.
 TestResult dilating_shear(GrainKind grains, double tan_psi, double limit_m, double stiffness_Pa_m, double strain) {
     TestSetup setup = fixtures::setup(with_joint(0.04, 0.02, 0.0), methods::direct_shear, fixtures::model(grains));
     setup.test = usual_test(methods::direct_shear);
@@ -276,9 +293,10 @@ TEST(Joints, ThatDilateRiseByTheTangentOfTheirAngleUntilTheirLimit) {
     for (const GrainKind grains : {GrainKind::rigid, GrainKind::flexible}) {
         const double kLimit = grains == GrainKind::rigid ? 1e-4 : 5e-5;
         const TestResult r = dilating_shear(grains, kTanPsi, kLimit, 0.0, 45.0 * kLimit);
-        std::vector<double> u, v;   // while it dilates
+        std::vector<double> u, v;  // while it dilates
         double along = 0.0, across = 0.0, highest = 0.0, at_end = 0.0;
-        const auto first = std::find_if(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::loading; });
+        const auto first =
+            std::find_if(r.history.begin(), r.history.end(), [](const HistoryRow& row) { return row.phase == Phase::loading; });
         ASSERT_NE(first, r.history.end());
         for (const HistoryRow& row : r.history) {
             if (row.phase != Phase::loading) continue;
@@ -291,7 +309,7 @@ TEST(Joints, ThatDilateRiseByTheTangentOfTheirAngleUntilTheirLimit) {
                 along += row.axial_stress_Pa * r.section_m2;
                 across += row.gauges[1];
             }
-            at_end = row.gauges[0] - first->gauges[0];   // the normal stress had pushed the plate down before
+            at_end = row.gauges[0] - first->gauges[0];  // the normal stress had pushed the plate down before
             highest = std::max(highest, at_end);
         }
         ASSERT_GT(u.size(), 10U) << name(grains);
@@ -299,14 +317,15 @@ TEST(Joints, ThatDilateRiseByTheTangentOfTheirAngleUntilTheirLimit) {
         const double tolerance = grains == GrainKind::rigid ? 1e-3 : 2e-2;
         EXPECT_NEAR(regression_line(u, v).slope / kTanPsi, 1.0, tolerance) << name(grains);
         EXPECT_NEAR(along / across / 0.5, 1.0, grains == GrainKind::rigid ? 2e-3 : 1e-2) << name(grains);
-        EXPECT_NEAR(highest / (kTanPsi * kLimit), 1.0, 5e-2) << name(grains);   // before it slides the specimen is sheared, which lifts the plate a little
+        EXPECT_NEAR(highest / (kTanPsi * kLimit), 1.0, 5e-2)
+            << name(grains);  // before it slides the specimen is sheared, which lifts the plate a little
         EXPECT_NEAR(at_end / highest, 1.0, 2e-2) << name(grains) << ": beyond the limit it slides on";
         EXPECT_LT(r.energy_residual, 0.01) << name(grains);
     }
 }
 
 TEST(Joints, ThatDilateBehindASpringArePressedHarder) {
-    constexpr double kTanPsi = 0.2, kStiffness = 1e8;   // Pa/m; the specimen gives way 1e-4 of what the spring does
+    constexpr double kTanPsi = 0.2, kStiffness = 1e8;  // Pa/m; the specimen gives way 1e-4 of what the spring does
     const TestResult r = dilating_shear(GrainKind::rigid, kTanPsi, 1e-3, kStiffness, 0.01);
     std::vector<double> u, stress;
     for (const HistoryRow& row : r.history)
@@ -333,7 +352,7 @@ TEST(Cracks, DissipateEnergyAndEventsHoldAllOfIt) {
     }
     for (const AcousticEvent& event : r.emission.events) events += event.energy_J;
     EXPECT_NEAR(events / cracks, 1.0, 1e-12);
-    EXPECT_GE(least, -1e-6 * largest);   // rounding of sums over thousands of steps
+    EXPECT_GE(least, -1e-6 * largest);  // rounding of sums over thousands of steps
 }
 
 // States, cracks and draws do not depend on the number of threads.

@@ -10,6 +10,8 @@
 namespace feldspar {
 
 /// "1 packing", "3 packings".
-std::string counted(std::integral auto count, std::string_view thing) { return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s"); }
+std::string counted(std::integral auto count, std::string_view thing) {
+    return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
 
 }  // namespace feldspar

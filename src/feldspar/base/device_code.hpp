@@ -1,4 +1,5 @@
-// Marks functions that a graphics card may call too, where the compiler is one that makes code for both; elsewhere it means nothing.
+// Marks functions that a graphics card may call too, where the compiler is one that makes code for both; elsewhere it means
+// nothing.
 #pragma once
 
 #if defined(__CUDACC__)

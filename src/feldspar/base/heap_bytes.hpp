@@ -20,8 +20,12 @@ struct IsArray<std::array<T, n>> : std::true_type {};
 /// Bytes that vectors and strings in a plain structure, or in those that it is made of, have reserved.
 template <class T>
 double heap_bytes(const T& value) {
-    if constexpr (std::is_trivially_copyable_v<T>) return 0.0;
-    else if constexpr (requires { value.capacity(); value.data(); }) {
+    if constexpr (std::is_trivially_copyable_v<T>)
+        return 0.0;
+    else if constexpr (requires {
+                           value.capacity();
+                           value.data();
+                       }) {
         using Item = typename T::value_type;
         double sum = static_cast<double>(value.capacity() * sizeof(Item));
         if constexpr (!std::is_trivially_copyable_v<Item>)

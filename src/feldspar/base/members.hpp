@@ -1,7 +1,8 @@
-// The members of a plain structure, one after the other, without a list of their names: so none that is added later can be left out.
+// The members of a plain structure, one after the other, without a list of their names: so none that is added later can be left
+// out.
 //
-// A plain structure is an aggregate without a base class that has members of its own. How many members it has is the largest number of values that
-// it can be initialised with; a structured binding then names them.
+// A plain structure is an aggregate without a base class that has members of its own. How many members it has is the largest
+// number of values that it can be initialised with; a structured binding then names them.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +11,14 @@
 
 namespace feldspar {
 
-inline constexpr std::size_t kMostMembers = 48;   ///< that with_members() can name; a structure with more does not compile
+inline constexpr std::size_t kMostMembers = 48;  ///< that with_members() can name; a structure with more does not compile
 
 namespace members_detail {
 
 // Stands for a value of any type, in expressions that are never evaluated.
 struct Anything {
     template <class T>
-    operator T() const;   // NOLINT: it is meant to convert
+    operator T() const;  // NOLINT: it is meant to convert
 };
 
 template <class T, std::size_t... i>
@@ -28,9 +29,12 @@ constexpr bool takes(std::index_sequence<i...>) {
 // From above: with fewer values than members, those without a default would be missing.
 template <class T, std::size_t n = kMostMembers>
 constexpr std::size_t count() {
-    if constexpr (n == 0) return 0;
-    else if constexpr (takes<T>(std::make_index_sequence<n>{})) return n;
-    else return count<T, n - 1>();
+    if constexpr (n == 0)
+        return 0;
+    else if constexpr (takes<T>(std::make_index_sequence<n>{}))
+        return n;
+    else
+        return count<T, n - 1>();
 }
 
 }  // namespace members_detail

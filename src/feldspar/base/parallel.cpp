@@ -57,7 +57,7 @@ void Team::serve(int thread, std::uint32_t seen) {
             _mm_pause();
 #endif
         }
-        round_.wait(seen);   // sleeps only if no new round has come
+        round_.wait(seen);  // sleeps only if no new round has come
         seen = round_.load(std::memory_order_acquire);
         if (closing_) return;
         (*work_)(thread);
@@ -81,8 +81,8 @@ void side_by_side(int count, int threads, const std::function<void(int)>& work) 
     std::atomic<int> next{0};
     std::atomic<bool> failed{false};
     const auto take_turns = [&] {
-        // whoever takes a number works on it, and they are taken in order: all before one that failed are done, so that the smallest
-        // that fails is found
+        // whoever takes a number works on it, and they are taken in order: all before one that failed are done, so that the
+        // smallest that fails is found
         while (!failed) {
             const int i = next++;
             if (i >= count) return;

@@ -48,25 +48,25 @@ private:
 
     int size_;
     const std::function<void(int)>* work_ = nullptr;
-    std::atomic<std::uint32_t> round_{0};      // a new value calls the workers
+    std::atomic<std::uint32_t> round_{0};  // a new value calls the workers
     std::atomic<int> unfinished_{0};
     std::atomic<int> arrived_{0};
-    std::atomic<std::uint32_t> generation_{0}; // of the barrier
+    std::atomic<std::uint32_t> generation_{0};  // of the barrier
     std::atomic<bool> closing_{false};
     std::vector<std::jthread> workers_;
 };
 
-/// Calls `work(range, thread)` on every thread of the team for its share of [0, count); without a team on the caller alone, for all.
-/// `work` must not throw.
+/// Calls `work(range, thread)` on every thread of the team for its share of [0, count); without a team on the caller alone, for
+/// all. `work` must not throw.
 template <class Work>
 void in_shares(Team* team, int count, const Work& work) {
     if (team == nullptr || team->size() == 1) return work(IndexRange{0, count}, 0);
     const auto part = [&](int thread) { work(team->share(count, thread), thread); };
-    team->run(std::ref(part));   // a reference, so that no call allocates
+    team->run(std::ref(part));  // a reference, so that no call allocates
 }
 
-/// Calls work(0) ... work(count - 1), at most `threads` at a time, the caller being one of them. If some throw, none is begun after
-/// that, and what the one of the smallest number threw comes out when all have ended: the same whichever was first.
+/// Calls work(0) ... work(count - 1), at most `threads` at a time, the caller being one of them. If some throw, none is begun
+/// after that, and what the one of the smallest number threw comes out when all have ended: the same whichever was first.
 void side_by_side(int count, int threads, const std::function<void(int)>& work);
 
 }  // namespace feldspar

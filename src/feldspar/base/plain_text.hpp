@@ -1,4 +1,5 @@
-// Words of files that are read as they stand: numbers without units, texts without blanks around them. Quantities with units: base/units.hpp.
+// Words of files that are read as they stand: numbers without units, texts without blanks around them. Quantities with units:
+// base/units.hpp.
 #pragma once
 
 #include <cctype>

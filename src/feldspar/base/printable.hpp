@@ -9,8 +9,8 @@ namespace feldspar {
 /// How printable() shows line ends and tabs: as they are, or as escapes, where the text must stay in its line.
 enum class LineEnds { kept, escaped };
 
-/// The text with control characters (below 0x20, 0x7f, and U+0080 to U+009F) as escapes such as \x1b. Line ends ("\n", "\r\n") and tabs stay
-/// unless they are to be escaped, too.
+/// The text with control characters (below 0x20, 0x7f, and U+0080 to U+009F) as escapes such as \x1b. Line ends ("\n", "\r\n")
+/// and tabs stay unless they are to be escaped, too.
 inline std::string printable(std::string_view text, LineEnds line_ends = LineEnds::kept) {
     constexpr std::string_view digits = "0123456789abcdef";
     std::string shown;
@@ -25,7 +25,7 @@ inline std::string printable(std::string_view text, LineEnds line_ends = LineEnd
         const bool kept = line_ends == LineEnds::kept && (c == '\n' || c == '\t' || (c == '\r' && next == '\n'));
         if ((c < 0x20U && !kept) || c == 0x7fU) {
             escape(c);
-        } else if (c == 0xc2U && next >= 0x80U && next < 0xa0U) {   // U+0080 to U+009F in UTF-8: some terminals obey them
+        } else if (c == 0xc2U && next >= 0x80U && next < 0xa0U) {  // U+0080 to U+009F in UTF-8: some terminals obey them
             escape(static_cast<unsigned char>(next));
             ++i;
         } else {

@@ -16,7 +16,7 @@ Line regression_line(std::span<const double> x, std::span<const double> y) {
     }
     mean_x /= static_cast<double>(x.size());
     mean_y /= static_cast<double>(x.size());
-    double sxx = 0.0, sxy = 0.0, scale = 0.0;   // centred sums: no cancellation
+    double sxx = 0.0, sxy = 0.0, scale = 0.0;  // centred sums: no cancellation
     for (std::size_t i = 0; i < x.size(); ++i) {
         const double dx = x[i] - mean_x;
         sxx += dx * dx;

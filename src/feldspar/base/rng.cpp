@@ -1,7 +1,6 @@
 #include "feldspar/base/rng.hpp"
 
 #include <array>
-
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/seed_seq.hpp>
 #include <boost/random/uniform_01.hpp>

@@ -1,10 +1,9 @@
 // Random numbers in named streams from one seed: adding a stream never changes the numbers of another.
 #pragma once
 
+#include <boost/random/mersenne_twister.hpp>
 #include <cstdint>
 #include <string_view>
-
-#include <boost/random/mersenne_twister.hpp>
 
 namespace feldspar {
 

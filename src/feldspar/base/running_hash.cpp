@@ -1,8 +1,8 @@
 #include "feldspar/base/running_hash.hpp"
 
-#include <new>
-
 #include <xxhash.h>
+
+#include <new>
 
 namespace feldspar {
 

@@ -7,14 +7,14 @@ namespace {
 
 // How a column stands in the file.
 enum class Stands : unsigned char {
-    here,    // its bytes follow
-    as_base, // as in the base state, with this checksum
-    as_before,   // as the column with this number
+    here,       // its bytes follow
+    as_base,    // as in the base state, with this checksum
+    as_before,  // as the column with this number
     zeros,
-    sparse       // words of 8 bytes: a bit for each, whether it is zero, then those that are not; then what is left of a word
+    sparse  // words of 8 bytes: a bit for each, whether it is zero, then those that are not; then what is left of a word
 };
 
-constexpr std::size_t kSmall = 64;   // bytes: shorter columns just stand there
+constexpr std::size_t kSmall = 64;  // bytes: shorter columns just stand there
 
 // Words of 8 bytes of a column, and which of them are not zero.
 struct Words {
@@ -132,17 +132,21 @@ void StateReader::column(char* data, std::size_t bytes_of_it) {
         case Stands::as_base: {
             std::uint64_t hash = 0;
             bytes(&hash, sizeof hash);
-            if (hash_of_bytes(data, bytes_of_it) != hash) throw StateError("it is of another specimen, or of another version of the program");
+            if (hash_of_bytes(data, bytes_of_it) != hash)
+                throw StateError("it is of another specimen, or of another version of the program");
             return;
         }
         case Stands::as_before: {
             std::uint64_t number = 0;
             bytes(&number, sizeof number);
-            if (number >= columns_.size() || columns_[number].size() != bytes_of_it) throw StateError("a part refers to one that is not there");
+            if (number >= columns_.size() || columns_[number].size() != bytes_of_it)
+                throw StateError("a part refers to one that is not there");
             std::copy(columns_[number].begin(), columns_[number].end(), data);
             return;
         }
-        case Stands::zeros: std::fill(data, data + bytes_of_it, char{}); return;
+        case Stands::zeros:
+            std::fill(data, data + bytes_of_it, char{});
+            return;
         case Stands::sparse: {
             std::uint64_t words = 0;
             bytes(&words, sizeof words);

@@ -1,9 +1,10 @@
 // Saving and loading the state of something that runs, so that it goes on with the same bits.
 //
-// A state is described by the structures that hold it: archives go through all members of plain structures (base/members.hpp) and through what
-// classes list in `keep`, so a member that is added later is kept without a word, or the program does not compile. Arrays are written column by column:
-// of an array of structures each number of all elements together. A column is left out where it is as it was in the base state, which whoever loads
-// makes anew, or as another column of the file. So what never changes costs nothing but its checksum.
+// A state is described by the structures that hold it: archives go through all members of plain structures (base/members.hpp) and
+// through what classes list in `keep`, so a member that is added later is kept without a word, or the program does not compile.
+// Arrays are written column by column: of an array of structures each number of all elements together. A column is left out where
+// it is as it was in the base state, which whoever loads makes anew, or as another column of the file. So what never changes
+// costs nothing but its checksum.
 //
 // A class with private members lists them with a structured binding, which the compiler holds against the members there are:
 //     template <class Archive> void keep(Archive& archive) { auto& [a, b] = *this; archive(a, b); }
@@ -62,18 +63,24 @@ constexpr bool is_flat();
 // Made of numbers alone.
 template <class T>
 constexpr bool is_flat() {
-    if constexpr (is_number<T> || BlockOfDoubles<T>) return true;
-    else if constexpr (ArrayOf<T>::value) return is_flat<typename ArrayOf<T>::Item>();
+    if constexpr (is_number<T> || BlockOfDoubles<T>)
+        return true;
+    else if constexpr (ArrayOf<T>::value)
+        return is_flat<typename ArrayOf<T>::Item>();
     else if constexpr (std::is_aggregate_v<T> && std::is_default_constructible_v<T> && !std::is_empty_v<T>) {
-        return decltype(with_members(std::declval<T&>(), [](auto&... m) { return std::bool_constant<(is_flat<std::remove_cvref_t<decltype(m)>>() && ...)>{}; }))::value;
-    } else return false;
+        return decltype(with_members(std::declval<T&>(), [](auto&... m) {
+            return std::bool_constant<(is_flat<std::remove_cvref_t<decltype(m)>>() && ...)>{};
+        }))::value;
+    } else
+        return false;
 }
 
 // Calls act(number) for every number in it.
 template <class T, class Act>
 void for_each_number(T& value, Act& act) {
     using Plain = std::remove_const_t<T>;
-    if constexpr (is_number<Plain>) act(value);
+    if constexpr (is_number<Plain>)
+        act(value);
     else if constexpr (BlockOfDoubles<Plain>) {
         using Byte = std::conditional_t<std::is_const_v<T>, const double, double>;
         Byte* doubles = reinterpret_cast<Byte*>(&value);
@@ -107,8 +114,8 @@ bool is_dense() {
 
 }  // namespace state_detail
 
-/// What all archives do: they go through a value, and hand numbers, counts and the columns of arrays to `Derived`. Structures that are not plain have a
-/// member keep(archive), or a function keep(archive, value) beside them.
+/// What all archives do: they go through a value, and hand numbers, counts and the columns of arrays to `Derived`. Structures
+/// that are not plain have a member keep(archive), or a function keep(archive, value) beside them.
 template <class Derived>
 class StateArchive {
 public:
@@ -136,11 +143,16 @@ private:
 
     template <class T>
     void go_through(T& value) {
-        if constexpr (state_detail::is_number<T>) self().bytes(&value, sizeof value);
-        else if constexpr (requires { value.keep(self()); }) value.keep(self());
-        else if constexpr (requires { keep(self(), value); }) keep(self(), value);
-        else if constexpr (std::is_aggregate_v<T>) with_members(value, [&](auto&... m) { (*this)(m...); });
-        else static_assert(!sizeof(T), "an archive does not know how to keep this");
+        if constexpr (state_detail::is_number<T>)
+            self().bytes(&value, sizeof value);
+        else if constexpr (requires { value.keep(self()); })
+            value.keep(self());
+        else if constexpr (requires { keep(self(), value); })
+            keep(self(), value);
+        else if constexpr (std::is_aggregate_v<T>)
+            with_members(value, [&](auto&... m) { (*this)(m...); });
+        else
+            static_assert(!sizeof(T), "an archive does not know how to keep this");
     }
     void go_through(std::string& text) {
         std::size_t size = text.size();
@@ -218,7 +230,7 @@ private:
         }
     }
     template <class K, class V>
-    void go_through(std::unordered_map<K, V>& map) {   // in the order of the keys: that of the map is nobody's concern
+    void go_through(std::unordered_map<K, V>& map) {  // in the order of the keys: that of the map is nobody's concern
         std::vector<std::pair<K, V>> items(map.begin(), map.end());
         std::sort(items.begin(), items.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
         go_through(items);
@@ -259,7 +271,7 @@ public:
     template <class... T>
     static StateBase of(const T&... values) {
         StateBase base;
-        base(const_cast<T&>(values)...);   // it only looks at them
+        base(const_cast<T&>(values)...);  // it only looks at them
         return base;
     }
 
@@ -318,7 +330,7 @@ public:
 private:
     StatePut put_;
     const StateBase& base_;
-    std::map<std::pair<std::size_t, std::uint64_t>, std::uint64_t> written_;   // columns by size and checksum: their numbers
+    std::map<std::pair<std::size_t, std::uint64_t>, std::uint64_t> written_;  // columns by size and checksum: their numbers
     std::unordered_map<const void*, std::size_t> objects_;
     std::size_t objects_seen_ = 0;
 };
@@ -342,12 +354,15 @@ public:
     void column(char* data, std::size_t bytes);
     template <class Values>
     void resize(Values& values, std::size_t size) {
-        const std::size_t most = 64 * (data_.size() + values.size() * sizeof(typename Values::value_type)) + (std::size_t{1} << 20);   // bytes: a damaged count is no reason to ask for all memory
+        const std::size_t most = 64 * (data_.size() + values.size() * sizeof(typename Values::value_type)) +
+                                 (std::size_t{1} << 20);  // bytes: a damaged count is no reason to ask for all memory
         if (size > most / sizeof(typename Values::value_type)) throw StateError("a count is too large");
         values.resize(size);
     }
     std::size_t number_of(const void*) { return 0; }
-    std::shared_ptr<const void> known(std::size_t number) const { return number > 0 && number <= objects_.size() ? objects_[number - 1] : nullptr; }
+    std::shared_ptr<const void> known(std::size_t number) const {
+        return number > 0 && number <= objects_.size() ? objects_[number - 1] : nullptr;
+    }
     void learn(std::size_t number, std::shared_ptr<const void> object);
 
 private:
@@ -355,8 +370,8 @@ private:
 
     std::span<const char> data_;
     std::size_t at_ = 0;
-    std::vector<std::span<const char>> columns_;   // those that others may refer to
-    std::deque<std::vector<char>> unpacked_;       // of these, what does not stand in the data as it is
+    std::vector<std::span<const char>> columns_;  // those that others may refer to
+    std::deque<std::vector<char>> unpacked_;      // of these, what does not stand in the data as it is
     std::vector<std::shared_ptr<const void>> objects_;
 };
 

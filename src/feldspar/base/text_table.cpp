@@ -13,10 +13,11 @@ namespace feldspar {
 
 namespace {
 
-constexpr std::size_t kBetween = 2;   // blanks between columns
+constexpr std::size_t kBetween = 2;  // blanks between columns
 
 // These columns alone, with a line under the first row.
-std::string some_columns(const std::vector<Row>& rows, const std::vector<std::size_t>& columns, const std::vector<std::size_t>& width, std::size_t left) {
+std::string some_columns(const std::vector<Row>& rows, const std::vector<std::size_t>& columns,
+                         const std::vector<std::size_t>& width, std::size_t left) {
     std::string text;
     const auto line = [&](const Row& row) {
         std::string one;
@@ -50,7 +51,8 @@ std::string aligned(const std::vector<Row>& given, std::size_t left, std::size_t
     std::vector<std::size_t> columns;
     std::size_t total = 0;
     for (std::size_t c = 0; c < width.size(); ++c) {
-        if (widest > 0 && columns.size() > repeated && total + kBetween + width[c] > widest) {   // the rest below, behind the first columns again
+        if (widest > 0 && columns.size() > repeated &&
+            total + kBetween + width[c] > widest) {  // the rest below, behind the first columns again
             text += some_columns(rows, columns, width, left) + "\n";
             columns.resize(repeated);
             total = kBetween * (repeated - 1);
@@ -65,7 +67,9 @@ std::string aligned(const std::vector<Row>& given, std::size_t left, std::size_t
 std::string table_number(double value) {
     if (!std::isfinite(value)) return "-";
     const double size = std::abs(value);
-    return size >= 99.95 ? fmt::format("{:.1f}", value) : size >= 9.995 ? fmt::format("{:.2f}", value) : fmt::format("{:.3f}", value);
+    return size >= 99.95   ? fmt::format("{:.1f}", value)
+           : size >= 9.995 ? fmt::format("{:.2f}", value)
+                           : fmt::format("{:.3f}", value);
 }
 
 std::string wrapped_text(const std::string& text, const std::string& indent, std::size_t widest) {

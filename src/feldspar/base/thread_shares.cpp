@@ -4,9 +4,7 @@
 
 namespace feldspar {
 
-int share_for_next(int free, int places, int useful) {
-    return std::clamp(free / std::max(places, 1), 1, std::max(useful, 1));
-}
+int share_for_next(int free, int places, int useful) { return std::clamp(free / std::max(places, 1), 1, std::max(useful, 1)); }
 
 std::vector<int> shares_with(int free, std::span<const int> threads, std::span<const int> useful) {
     std::vector<int> shares(threads.begin(), threads.end());

@@ -13,8 +13,8 @@ namespace feldspar {
 /// @param useful   more threads than this would only wait for each other
 int share_for_next(int free, int places, int useful);
 
-/// Hands `free` threads out to computations that run already, to those with the fewest first: when nothing is left to start, these
-/// end sooner. @param threads  what each has  @param useful  what each can use  @return what each has then
+/// Hands `free` threads out to computations that run already, to those with the fewest first: when nothing is left to start,
+/// these end sooner. @param threads  what each has  @param useful  what each can use  @return what each has then
 std::vector<int> shares_with(int free, std::span<const int> threads, std::span<const int> useful);
 
 }  // namespace feldspar

@@ -38,7 +38,8 @@ constexpr std::array<DimensionEntry, 14> dimension_table{{
     {Dimension::force, "N", "N", "a force", "5 kN"},
     {Dimension::energy, "J", "J", "an energy", "50 mJ"},
     {Dimension::acceleration, "m s-2", "m/s2", "an acceleration", "9.81 m/s2"},
-    {Dimension::toughness, "Pa", "Pa m^0.5", "a fracture toughness", "0.9 MPa m^0.5"},   // the root of the metre is taken off before udunits reads the rest
+    {Dimension::toughness, "Pa", "Pa m^0.5", "a fracture toughness",
+     "0.9 MPa m^0.5"},  // the root of the metre is taken off before udunits reads the rest
     {Dimension::fraction, "1", "", "a fraction", "0.5 %"},
 }};
 
@@ -185,7 +186,9 @@ void guard_symbols(std::string_view text, std::string_view unit, const std::vect
 [[noreturn]] void refuse_dimension(std::string_view text, const std::string& unit, Dimension wanted) {
     for (const DimensionEntry& other : dimension_table) {
         if (other.dimension == wanted || other.dimension == Dimension::speed_per_step) continue;
-        if (other.dimension == Dimension::angle || other.dimension == Dimension::fraction || other.dimension == Dimension::toughness) continue;
+        if (other.dimension == Dimension::angle || other.dimension == Dimension::fraction ||
+            other.dimension == Dimension::toughness)
+            continue;
         if (UnitSystem::instance().factor(unit, other.dimension).value_or(0.0) != 0.0)
             refuse(wanted, quoted(text) + " is " + other.description + ", not " + std::string(describe(wanted)));
     }

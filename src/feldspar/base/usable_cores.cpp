@@ -56,7 +56,8 @@ double cores_of_group() {
         if (first == std::string::npos || second == std::string::npos) continue;
         const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",", group = line.substr(second + 1);
         if (controllers == ",,") cores = std::min(cores, smallest_quota("/sys/fs/cgroup", group, false));
-        if (controllers.find(",cpu,") != std::string::npos) cores = std::min(cores, smallest_quota("/sys/fs/cgroup/cpu", group, true));
+        if (controllers.find(",cpu,") != std::string::npos)
+            cores = std::min(cores, smallest_quota("/sys/fs/cgroup/cpu", group, true));
     }
     return cores;
 }

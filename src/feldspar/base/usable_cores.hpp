@@ -10,8 +10,8 @@ namespace feldspar {
 /// control group's share of processor time (a container) in whole cores. At least 1.
 int usable_cores();
 
-/// The share of processor time that a control group's file grants, in cores: of "cpu.max" ("150000 100000"), or of version 1's quota
-/// and period with a blank between. Nothing if there is no limit or the text says none.
+/// The share of processor time that a control group's file grants, in cores: of "cpu.max" ("150000 100000"), or of version 1's
+/// quota and period with a blank between. Nothing if there is no limit or the text says none.
 std::optional<double> cores_of_quota(const std::string& text);
 
 }  // namespace feldspar

@@ -19,15 +19,16 @@
 namespace feldspar {
 namespace {
 
-constexpr std::size_t first_points_per_unknown = 4;   // of the space-filling set
-constexpr std::size_t points_per_round = 4;           // whatever the number of threads: the way must be the same on every machine
+constexpr std::size_t first_points_per_unknown = 4;  // of the space-filling set
+constexpr std::size_t points_per_round = 4;          // whatever the number of threads: the way must be the same on every machine
 constexpr std::size_t most_elastic_rounds = 4;
-constexpr double sure = 0.95;                         // probability with which the confirming mean of each target is to lie within its tolerance
-constexpr double good_share = 0.5;                    // of a tolerance: elastic constants are predicted so near; doubt that hardly moves what can be had
-constexpr double little_share = 0.1;                  // of a tolerance: doubt that hardly moves the probability
-constexpr std::size_t patience = 5;                   // rounds: a search that cannot meet its targets ends when so many have brought nothing
-constexpr double nothing = 0.02;                      // relative change of the expected misfit
-constexpr double test_share = 0.3;                    // a test is worth a run where the doubt it removes is this share of a tolerance
+constexpr double sure = 0.95;  // probability with which the confirming mean of each target is to lie within its tolerance
+constexpr double good_share =
+    0.5;  // of a tolerance: elastic constants are predicted so near; doubt that hardly moves what can be had
+constexpr double little_share = 0.1;  // of a tolerance: doubt that hardly moves the probability
+constexpr std::size_t patience = 5;   // rounds: a search that cannot meet its targets ends when so many have brought nothing
+constexpr double nothing = 0.02;      // relative change of the expected misfit
+constexpr double test_share = 0.3;    // a test is worth a run where the doubt it removes is this share of a tolerance
 
 std::vector<std::size_t> numbers_below(std::size_t count) {
     std::vector<std::size_t> numbers(count);
@@ -37,17 +38,18 @@ std::vector<std::size_t> numbers_below(std::size_t count) {
 
 // Runs that cannot be saved.
 struct LeastRuns {
-    int tests = 0;          // of a point
+    int tests = 0;  // of a point
     int confirmation = 0;
-    int first_look = 0;     // at the strengths: three points, and as many runs again for the search
-    int elastic_points = 0; // one short test each
+    int first_look = 0;      // at the strengths: three points, and as many runs again for the search
+    int elastic_points = 0;  // one short test each
     int all() const { return confirmation + first_look + elastic_points; }
 };
 
 LeastRuns least_runs(const Calibration& calibration) {
     std::set<std::pair<MethodId, double>> tests;
     for (const Observable& q : observables_for(calibration)) tests.insert({q.test, q.sigma3_Pa});
-    const auto elastic = static_cast<std::size_t>(std::count_if(calibration.unknowns.begin(), calibration.unknowns.end(), [](const Unknown& u) { return u.elastic; }));
+    const auto elastic = static_cast<std::size_t>(
+        std::count_if(calibration.unknowns.begin(), calibration.unknowns.end(), [](const Unknown& u) { return u.elastic; }));
     LeastRuns least;
     least.tests = static_cast<int>(tests.size());
     least.confirmation = static_cast<int>(tests.size() * calibration.confirm_seeds.size());
@@ -59,8 +61,13 @@ LeastRuns least_runs(const Calibration& calibration) {
 class Calibrate {
 public:
     Calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note)
-        : calibration_(calibration), laboratory_(laboratory), note_(note), quantities_(observables_for(calibration)), least_(least_runs(calibration)) {
-        for (std::size_t u = 0; u < calibration.unknowns.size(); ++u) (calibration.unknowns[u].elastic ? elastic_ : strength_).push_back(u);
+        : calibration_(calibration),
+          laboratory_(laboratory),
+          note_(note),
+          quantities_(observables_for(calibration)),
+          least_(least_runs(calibration)) {
+        for (std::size_t u = 0; u < calibration.unknowns.size(); ++u)
+            (calibration.unknowns[u].elastic ? elastic_ : strength_).push_back(u);
         best_.assign(calibration.unknowns.size(), 0.5);
     }
 
@@ -129,7 +136,7 @@ private:
             put_best(elastic_, x);
             if (well_predicted(*elastic_learner_, x)) break;
             constexpr int more = 3;
-            if (runs_left() - more < confirmation_runs() + least_.first_look) break;   // the strengths need what is left
+            if (runs_left() - more < confirmation_runs() + least_.first_look) break;  // the strengths need what is left
             see_elastic(promising_points(*elastic_learner_, elastic_.size(), more, round));
         }
         learn(*elastic_learner_);
@@ -144,7 +151,8 @@ private:
         see(requests, points, *elastic_learner_);
     }
 
-    // E and nu at half of the strength are not those before damage: aims the elastic constants so that the former meet the targets.
+    // E and nu at half of the strength are not those before damage: aims the elastic constants so that the former meet the
+    // targets.
     void correct_elastic() {
         if (!elastic_learner_ || !strength_learner_) return;
         const std::vector<double> x_elastic = best_of(elastic_);
@@ -155,8 +163,10 @@ private:
             for (std::size_t q = 0; q < quantities_.size(); ++q)
                 if (quantities_[q].name == aim.name) {
                     const double now = before[index_of(elastic_learner_->quantities(), aim.name)].mean;
-                    if (quantities_[q].logarithmic) aim.value *= now / at_half[q].mean;
-                    else aim.value += now - at_half[q].mean;
+                    if (quantities_[q].logarithmic)
+                        aim.value *= now / at_half[q].mean;
+                    else
+                        aim.value += now - at_half[q].mean;
                 }
         aimed_ = elastic_learner_;
         aimed_->aim_at(aims);
@@ -166,7 +176,8 @@ private:
         for (std::size_t q = 0; q < quantities_.size(); ++q) {
             const std::size_t e = index_of(elastic_learner_->quantities(), quantities_[q].name);
             if (e == elastic_learner_->quantities().size()) continue;
-            strength_learner_->correct(q, quantities_[q].logarithmic ? after[e].mean / before[e].mean : after[e].mean - before[e].mean);
+            strength_learner_->correct(
+                q, quantities_[q].logarithmic ? after[e].mean / before[e].mean : after[e].mean - before[e].mean);
         }
         put_best(elastic_, x);
         note(fmt::format("elastic constants, for E and nu at half of the strength: {}", set_text(elastic_)));
@@ -183,20 +194,21 @@ private:
     void find_strength() {
         strength_learner_.emplace(quantities_, calibration_.targets);
         Learner& learner = *strength_learner_;
-        const auto tests = static_cast<std::size_t>(least_.tests);   // check_budget: at least three points are affordable
+        const auto tests = static_cast<std::size_t>(least_.tests);  // check_budget: at least three points are affordable
         const int for_learning = runs_left() - confirmation_runs();
         const std::size_t affordable = static_cast<std::size_t>(std::max(0, for_learning / 2)) / tests;
         const std::size_t first = std::min(affordable, first_points_per_unknown * strength_.size() + 2);
-        note(fmt::format("strengths: {} unknowns, {} points spread over their ranges, {} tests each", strength_.size(), first, tests));
+        note(fmt::format("strengths: {} unknowns, {} points spread over their ranges, {} tests each", strength_.size(), first,
+                         tests));
         look_first(evenly(strength_.size(), first));
         learn(learner);
         correct_elastic();
 
-        std::vector<double> misfits;   // of the best, by rounds
+        std::vector<double> misfits;  // of the best, by rounds
         for (std::size_t round = 0;; ++round) {
             learn(learner);
             std::vector<double> x = best_point(learner, strength_.size());
-            if (elastic_alone_is_unlikely(learner, x)) {   // what cracks take off E has changed since the constants were aimed
+            if (elastic_alone_is_unlikely(learner, x)) {  // what cracks take off E has changed since the constants were aimed
                 correct_elastic();
                 learn(learner);
                 x = best_point(learner, strength_.size());
@@ -205,17 +217,22 @@ private:
             tell(learner, strength_);
             const int affordable_runs = runs_left() - confirmation_runs();
             if (will_be_confirmed(learner, x)) {
-                note(fmt::format("the confirming means will lie within their tolerances, each with {:.0f} % at least: the search ends", 100.0 * sure));
+                note(fmt::format(
+                    "the confirming means will lie within their tolerances, each with {:.0f} % at least: the search ends",
+                    100.0 * sure));
                 break;
             }
             if (affordable_runs <= 0) break;
             misfits.push_back(learner.at(x).misfit);
             if (no_surer(learner, x) && stalled(misfits)) {
-                note(fmt::format("{} rounds have brought no better set, and more runs on these seeds would not make it surer: the search ends with {} runs left", patience, affordable_runs));
+                note(
+                    fmt::format("{} rounds have brought no better set, and more runs on these seeds would not make it surer: the "
+                                "search ends with {} runs left",
+                                patience, affordable_runs));
                 break;
             }
             std::vector<std::vector<double>> next = promising_points(learner, strength_.size(), points_per_round - 1, round);
-            next.push_back(x);   // what would be the answer
+            next.push_back(x);  // what would be the answer
             std::vector<std::vector<std::size_t>> wanted;
             int runs = 0;
             for (const auto& point : next) {
@@ -236,7 +253,8 @@ private:
         }
     }
 
-    // Tests under confinement cost most, and teach little of a rock whose uniaxial strength is far from what is wanted: they wait for it.
+    // Tests under confinement cost most, and teach little of a rock whose uniaxial strength is far from what is wanted: they wait
+    // for it.
     void look_first(const std::vector<std::vector<double>>& points) {
         std::vector<std::size_t> confined, others;
         for (std::size_t q = 0; q < quantities_.size(); ++q) (quantities_[q].sigma3_Pa > 0.0 ? confined : others).push_back(q);
@@ -247,7 +265,7 @@ private:
         const std::size_t UCS = index_of(quantities_, "UCS");
         const auto place = static_cast<std::size_t>(std::find(others.begin(), others.end(), UCS) - others.begin());
         const double wanted = wanted_UCS_Pa(calibration_.targets);
-        std::vector<std::pair<double, std::size_t>> by_distance;   // of the uniaxial strength, as a logarithm
+        std::vector<std::pair<double, std::size_t>> by_distance;  // of the uniaxial strength, as a logarithm
         for (std::size_t p = 0; p < points.size(); ++p) {
             const double distance = place < others.size() ? std::abs(std::log(readings[p][place].value / wanted)) : 0.0;
             by_distance.emplace_back(std::isnan(distance) ? 0.0 : distance, p);
@@ -285,13 +303,15 @@ private:
 
     void see_strength(const std::vector<std::vector<double>>& points, const std::vector<std::vector<std::size_t>>& wanted) {
         std::vector<Request> requests;
-        for (std::size_t p = 0; p < points.size(); ++p) requests.push_back({values_at(whole(strength_, points[p])), next_seed(), wanted[p]});
+        for (std::size_t p = 0; p < points.size(); ++p)
+            requests.push_back({values_at(whole(strength_, points[p])), next_seed(), wanted[p]});
         see(requests, points, *strength_learner_);
     }
 
     // ---- both
 
-    std::vector<std::vector<RunReading>> see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points, Learner& learner) {
+    std::vector<std::vector<RunReading>> see(const std::vector<Request>& requests, const std::vector<std::vector<double>>& points,
+                                             Learner& learner) {
         auto readings = laboratory_.see(requests, learner.quantities());
         for (std::size_t r = 0; r < requests.size(); ++r) {
             std::set<std::pair<MethodId, double>> tests;
@@ -310,9 +330,11 @@ private:
         if (learner.learn()) return;
         std::vector<std::string> names;
         for (const std::size_t q : learner.unseen()) names.push_back(learner.quantities()[q].name);
-        throw NumericalError(fmt::format("calibration: no test shows {}: {} tests failed, {} have grade C, the others ended before; their runs say why. A finer numerics.accuracy mends "
-                                         "grade C, narrower ranges mend the others",
-                                         fmt::join(names, ", "), failed_, grade_C_));
+        throw NumericalError(
+            fmt::format("calibration: no test shows {}: {} tests failed, {} have grade C, the others ended before; their runs "
+                        "say why. A finer numerics.accuracy mends "
+                        "grade C, narrower ranges mend the others",
+                        fmt::join(names, ", "), failed_, grade_C_));
     }
 
     void put_best(const std::vector<std::size_t>& part, const std::vector<double>& x) {
@@ -341,17 +363,22 @@ private:
     }
 
     // Every target is predicted well within its tolerance, and that is well known.
-    static bool well_predicted(const Learner& learner, const std::vector<double>& x) { return within(learner, x, good_share) && no_surer(learner, x, good_share); }
+    static bool well_predicted(const Learner& learner, const std::vector<double>& x) {
+        return within(learner, x, good_share) && no_surer(learner, x, good_share);
+    }
 
     static bool within(const Learner& learner, const std::vector<double>& x, double share) {
         const Prediction prediction = learner.at(x);
         for (std::size_t t = 0; t < learner.targets().size(); ++t)
-            if (!(std::abs(prediction.values[t] - learner.targets()[t].value) <= share * learner.targets()[t].tolerance)) return false;
+            if (!(std::abs(prediction.values[t] - learner.targets()[t].value) <= share * learner.targets()[t].tolerance))
+                return false;
         return true;
     }
 
     // No more runs on these packings would make the prediction much surer: doubt is small, or what so many packings leave.
-    static bool no_surer(const Learner& learner, const std::vector<double>& x) { return no_surer(learner, x, within(learner, x, 1.0) ? little_share : good_share); }
+    static bool no_surer(const Learner& learner, const std::vector<double>& x) {
+        return no_surer(learner, x, within(learner, x, 1.0) ? little_share : good_share);
+    }
     static bool no_surer(const Learner& learner, const std::vector<double>& x, double share) {
         const std::vector<double> doubts = learner.doubts(x), lasting = learner.lasting_doubts(x);
         for (std::size_t q = 0; q < doubts.size(); ++q)
@@ -399,20 +426,26 @@ private:
             least = foreseen[t].probability;
             unlikely = learner.targets()[t].label();
         }
-        way_.push_back({laboratory_.used(), &part == &elastic_, worst, which, doubt, doubtful, least, unlikely, values_at(best_)});
-        note(fmt::format("{} runs; best so far {}; farthest from its target: {}, {:.2g} times its tolerance; least likely to be confirmed: {}, {:.0f} %", laboratory_.used(), set_text(part),
-                         which, worst, unlikely, 100.0 * least));
+        way_.push_back(
+            {laboratory_.used(), &part == &elastic_, worst, which, doubt, doubtful, least, unlikely, values_at(best_)});
+        note(
+            fmt::format("{} runs; best so far {}; farthest from its target: {}, {:.2g} times its tolerance; least likely to be "
+                        "confirmed: {}, {:.0f} %",
+                        laboratory_.used(), set_text(part), which, worst, unlikely, 100.0 * least));
     }
 
     CalibrationResult confirm() {
-        note(fmt::format("confirming on {} fresh packings: {}", calibration_.confirm_seeds.size(), set_text(numbers_below(calibration_.unknowns.size()))));
+        note(fmt::format("confirming on {} fresh packings: {}", calibration_.confirm_seeds.size(),
+                         set_text(numbers_below(calibration_.unknowns.size()))));
         const std::vector<std::size_t> all = numbers_below(quantities_.size());
         std::vector<Request> requests;
-        for (const std::uint64_t seed : calibration_.confirm_seeds) requests.push_back({values_at(best_), seed, all, false, true});
+        for (const std::uint64_t seed : calibration_.confirm_seeds)
+            requests.push_back({values_at(best_), seed, all, false, true});
         const auto by_packing = laboratory_.see(requests, quantities_);
         std::vector<std::vector<double>> seen(quantities_.size());
-        for (const auto& readings : by_packing)   // a bound confirms nothing
-            for (std::size_t q = 0; q < quantities_.size(); ++q) seen[q].push_back(readings[q].is_value() ? readings[q].value : std::nan(""));
+        for (const auto& readings : by_packing)  // a bound confirms nothing
+            for (std::size_t q = 0; q < quantities_.size(); ++q)
+                seen[q].push_back(readings[q].is_value() ? readings[q].value : std::nan(""));
 
         CalibrationResult result;
         const Learner* learner = strength_learner_ ? &*strength_learner_ : &*elastic_learner_;
@@ -428,7 +461,8 @@ private:
             outcome.deviation = prediction.deviations[t];
             outcome.confirmed = confirmed_interval(outcome.target, quantities_, seen);
             outcome.grades = grades_of(outcome.target, by_packing);
-            outcome.met = enough_confirmed(outcome) && std::abs(outcome.confirmed.mean - outcome.target.value) <= outcome.target.tolerance;
+            outcome.met =
+                enough_confirmed(outcome) && std::abs(outcome.confirmed.mean - outcome.target.value) <= outcome.target.tolerance;
             result.targets.push_back(outcome);
         }
         for (std::size_t u = 0; u < calibration_.unknowns.size(); ++u) {
@@ -439,7 +473,7 @@ private:
             result.unknowns.push_back(outcome);
         }
         result.sensitivity.assign(result.targets.size(), std::vector<double>(calibration_.unknowns.size(), std::nan("")));
-        result.findings = contradictions(calibration_.targets);   // run all the same
+        result.findings = contradictions(calibration_.targets);  // run all the same
         if (elastic_learner_) look_into(aimed_ ? *aimed_ : *elastic_learner_, calibration_, elastic_, best_, result);
         if (strength_learner_) look_into(*strength_learner_, calibration_, strength_, best_, result);
         result.runs = laboratory_.used();
@@ -455,11 +489,14 @@ private:
         for (const auto& readings : by_packing) {
             std::set<std::pair<MethodId, double>> tests;
             for (std::size_t q = 0; q < quantities_.size(); ++q) {
-                if (!needs(target, quantities_, q) || !tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa}).second) continue;
+                if (!needs(target, quantities_, q) || !tests.insert({quantities_[q].test, quantities_[q].sigma3_Pa}).second)
+                    continue;
                 const RunReading& reading = readings[q];
                 const bool failed = reading.grade == 'x' || (reading.grade == '-' && !std::isfinite(reading.value));
-                if (failed) ++grades.failed;
-                else if (reading.grade == 'C') ++grades.C;
+                if (failed)
+                    ++grades.failed;
+                else if (reading.grade == 'C')
+                    ++grades.C;
                 else {
                     ++(reading.grade == 'B' ? grades.B : grades.A);
                     grades.unfinished += !reading.is_value();
@@ -474,13 +511,13 @@ private:
     const std::function<void(const std::string&)>& note_;
     std::vector<Observable> quantities_;
     LeastRuns least_;
-    std::vector<std::size_t> elastic_, strength_;   // unknowns
-    std::vector<double> best_;                      // of all unknowns, 0 ... 1
+    std::vector<std::size_t> elastic_, strength_;  // unknowns
+    std::vector<double> best_;                     // of all unknowns, 0 ... 1
     std::optional<Learner> elastic_learner_, strength_learner_;
-    std::optional<Learner> aimed_;                  // the elastic one, aimed at what E and nu are to be before damage
+    std::optional<Learner> aimed_;  // the elastic one, aimed at what E and nu are to be before damage
     std::vector<WayPoint> way_;
-    std::size_t turn_ = 0;                          // of the packings
-    int failed_ = 0, grade_C_ = 0;                  // tests to learn from
+    std::size_t turn_ = 0;          // of the packings
+    int failed_ = 0, grade_C_ = 0;  // tests to learn from
 };
 
 }  // namespace
@@ -491,11 +528,13 @@ void check_budget(const Calibration& calibration) {
     std::string parts = fmt::format("{} confirm the answer", least.confirmation);
     if (least.elastic_points > 0) parts += fmt::format(", the elastic constants take {}", least.elastic_points);
     if (least.first_look > 0) parts += fmt::format(", a first look at the strengths takes {}", least.first_look);
-    throw InputError({calibration.file.string(), 0, 0, "budget"}, fmt::format("{} runs are too few: {}", calibration.budget, parts),
+    throw InputError({calibration.file.string(), 0, 0, "budget"},
+                     fmt::format("{} runs are too few: {}", calibration.budget, parts),
                      fmt::format("at least {} runs, or fewer confirm_seeds", least.all()));
 }
 
-CalibrationResult calibrate(const Calibration& calibration, Laboratory& laboratory, const std::function<void(const std::string&)>& note) {
+CalibrationResult calibrate(const Calibration& calibration, Laboratory& laboratory,
+                            const std::function<void(const std::string&)>& note) {
     check_budget(calibration);
     return Calibrate(calibration, laboratory, note)();
 }

@@ -1,4 +1,5 @@
-// What is to be calibrated: a laboratory's numbers, and the keys of a job that may be chosen so that the model shows them (docs/calibration.md).
+// What is to be calibrated: a laboratory's numbers, and the keys of a job that may be chosen so that the model shows them
+// (docs/calibration.md).
 #pragma once
 
 #include <cstdint>
@@ -14,40 +15,41 @@
 
 namespace feldspar {
 
-inline constexpr const char* strength_column = "strength_Pa";   ///< of the ledger
+inline constexpr const char* strength_column = "strength_Pa";  ///< of the ledger
 
 /// What is read off one run.
 struct Observable {
-    std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "sigma1 at 10 MPa", ...
+    std::string name;  ///< "E", "nu", "UCS", "DTS", "BTS", "sigma1 at 10 MPa", ...
     MethodId test;
-    double sigma3_Pa = 0.0;  ///< of biaxial tests
-    std::string column;      ///< of the ledger
-    bool logarithmic = true; ///< learned as its logarithm; else as it is
+    double sigma3_Pa = 0.0;   ///< of biaxial tests
+    std::string column;       ///< of the ledger
+    bool logarithmic = true;  ///< learned as its logarithm; else as it is
 };
 
 /// A number that the laboratory has measured: the mean over packings is to show it.
 struct Target {
-    std::string name;        ///< "E", "nu", "UCS", "DTS", "BTS", "UCS_over_BTS", "UCS_over_DTS", "BTS_over_DTS", "cohesion", "friction_angle",
-                             ///< "hoek_brown_mi", "sigma_ci", "sigma_cd", "sigma_ci_over_UCS", "sigma_cd_over_UCS", "sigma1"
+    std::string
+        name;  ///< "E", "nu", "UCS", "DTS", "BTS", "UCS_over_BTS", "UCS_over_DTS", "BTS_over_DTS", "cohesion", "friction_angle",
+               ///< "hoek_brown_mi", "sigma_ci", "sigma_cd", "sigma_ci_over_UCS", "sigma_cd_over_UCS", "sigma1"
     double sigma3_Pa = 0.0;  ///< of "sigma1"
     double value = 0.0;      ///< SI, degrees
     double tolerance = 0.0;  ///< in the same unit: as good as met within it
 
-    std::string label() const;   ///< "sigma1 at 10 MPa"
+    std::string label() const;  ///< "sigma1 at 10 MPa"
 };
 
 /// A key of the job that calibration chooses.
 struct Unknown {
     std::string name;
     std::string key;
-    std::string times;       ///< the value multiplies that of this key; empty if it stands as it is
+    std::string times;  ///< the value multiplies that of this key; empty if it stands as it is
     std::vector<std::pair<std::string, double>> coupled;
-    double low = 0.0, high = 0.0;   ///< in `unit`
-    std::string unit;        ///< "GPa/m"; empty for plain numbers
+    double low = 0.0, high = 0.0;  ///< in `unit`
+    std::string unit;              ///< "GPa/m"; empty for plain numbers
     bool logarithmic = true;
-    bool elastic = false;    ///< E and nu follow from these alone: found first, by short tests below the first damage
+    bool elastic = false;  ///< E and nu follow from these alone: found first, by short tests below the first damage
 
-    double value_at(double x) const;   ///< 0 ... 1 -> low ... high, rounded to six digits so that it reads well
+    double value_at(double x) const;  ///< 0 ... 1 -> low ... high, rounded to six digits so that it reads well
     double x_of(double value) const;
 };
 
@@ -59,10 +61,10 @@ struct Calibration {
     BaseJob base;
     std::vector<Target> targets;
     std::vector<Unknown> unknowns;
-    std::vector<std::uint64_t> seeds;           ///< packings on which it learns
-    std::vector<std::uint64_t> confirm_seeds;   ///< packings that it never learns from
-    int budget = 300;                           ///< runs, confirmation included
-    std::vector<double> sigma3_Pa;              ///< of the biaxial tests from which cohesion, friction angle and mi are read
+    std::vector<std::uint64_t> seeds;          ///< packings on which it learns
+    std::vector<std::uint64_t> confirm_seeds;  ///< packings that it never learns from
+    int budget = 300;                          ///< runs, confirmation included
+    std::vector<double> sigma3_Pa;             ///< of the biaxial tests from which cohesion, friction angle and mi are read
 
     /// The job with these values of the unknowns, one each in their order.
     Job job_with(const std::vector<double>& values) const;
@@ -72,7 +74,8 @@ struct Calibration {
 Calibration read_calibration(const std::filesystem::path& file);
 Calibration parse_calibration(const std::string& text, const std::filesystem::path& name);
 
-/// A commented calibration to start from, which reads as it stands beside a job "rock.toml" with a uniaxial, a Brazilian and a biaxial test.
+/// A commented calibration to start from, which reads as it stands beside a job "rock.toml" with a uniaxial, a Brazilian and a
+/// biaxial test.
 std::string calibration_template();
 
 /// The same with the numbers of this rock as targets.
@@ -94,11 +97,12 @@ bool needs(const Target& target, const std::vector<Observable>& quantities, std:
 /// Of the first target of that name; not-a-number if there is none.
 double target_value(std::string_view name, const std::vector<Target>& targets);
 
-/// The uniaxial strength that the targets ask for, by Mohr and Coulomb's line if not by itself; not-a-number if they say nothing of it.
+/// The uniaxial strength that the targets ask for, by Mohr and Coulomb's line if not by itself; not-a-number if they say nothing
+/// of it.
 double wanted_UCS_Pa(const std::vector<Target>& targets);
 
-/// The strength that the targets ask a compression test for: UCS, sigma1 itself or by Mohr and Coulomb's line; not-a-number for other tests, and if
-/// they say nothing of it.
+/// The strength that the targets ask a compression test for: UCS, sigma1 itself or by Mohr and Coulomb's line; not-a-number for
+/// other tests, and if they say nothing of it.
 double wanted_strength_Pa(const TestSpec& test, const std::vector<Target>& targets);
 
 /// Sentences on targets that no rock can show together, by closed form; none if there is nothing to say.

@@ -25,9 +25,18 @@ Json target_json(const TargetOutcome& outcome) {
             {"deviation", shown(outcome.deviation)},
             {"foreseen", {shown(outcome.foreseen.low), shown(outcome.foreseen.high)}},
             {"probability", rounded(outcome.foreseen.probability)},
-            {"grades", {{"A", outcome.grades.A}, {"B", outcome.grades.B}, {"C", outcome.grades.C}, {"unfinished", outcome.grades.unfinished}, {"failed", outcome.grades.failed}}},
+            {"grades",
+             {{"A", outcome.grades.A},
+              {"B", outcome.grades.B},
+              {"C", outcome.grades.C},
+              {"unfinished", outcome.grades.unfinished},
+              {"failed", outcome.grades.failed}}},
             {"missed", outcome.missed},
-            {"confirmed", {{"n", outcome.confirmed.count}, {"mean", shown(outcome.confirmed.mean)}, {"low", shown(outcome.confirmed.low)}, {"high", shown(outcome.confirmed.high)}}},
+            {"confirmed",
+             {{"n", outcome.confirmed.count},
+              {"mean", shown(outcome.confirmed.mean)},
+              {"low", shown(outcome.confirmed.low)},
+              {"high", shown(outcome.confirmed.high)}}},
             {"met", outcome.met},
             {"lowest", shown(outcome.lowest)},
             {"highest", shown(outcome.highest)}};
@@ -48,7 +57,9 @@ Json unknown_json(const UnknownOutcome& outcome) {
             {"low", rounded(outcome.low)},
             {"high", rounded(outcome.high)},
             {"range", {rounded(unknown.low), rounded(unknown.high)}},
-            {"at", {rounded(unknown.x_of(outcome.low)), rounded(unknown.x_of(outcome.best)), rounded(unknown.x_of(outcome.high))}},   // 0 ... 1 of the range
+            {"at",
+             {rounded(unknown.x_of(outcome.low)), rounded(unknown.x_of(outcome.best)),
+              rounded(unknown.x_of(outcome.high))}},  // 0 ... 1 of the range
             {"determined", rounded(outcome.determined)},
             {"at_an_end", outcome.at_an_end}};
 }
@@ -56,12 +67,21 @@ Json unknown_json(const UnknownOutcome& outcome) {
 Json way_json(const WayPoint& point) {
     Json best = Json::array();
     for (const double value : point.best) best.push_back(rounded(value));
-    return {{"runs", point.runs}, {"elastic", point.elastic}, {"farthest", rounded(point.farthest)}, {"target", point.target}, {"doubt", rounded(point.doubt)}, {"doubtful", point.doubtful}, {"probability", rounded(point.probability)}, {"unlikely", point.unlikely}, {"best", best}};
+    return {{"runs", point.runs},
+            {"elastic", point.elastic},
+            {"farthest", rounded(point.farthest)},
+            {"target", point.target},
+            {"doubt", rounded(point.doubt)},
+            {"doubtful", point.doubtful},
+            {"probability", rounded(point.probability)},
+            {"unlikely", point.unlikely},
+            {"best", best}};
 }
 
 }  // namespace
 
-void write_calibration_report(const Calibration& calibration, const CalibrationResult& result, const Provenance& provenance, const std::filesystem::path& file) {
+void write_calibration_report(const Calibration& calibration, const CalibrationResult& result, const Provenance& provenance,
+                              const std::filesystem::path& file) {
     Json json{{"name", calibration.name},
               {"runs", result.runs},
               {"budget", calibration.budget},

@@ -8,10 +8,14 @@
 namespace feldspar {
 
 /// Where the page stands: `results`/<name>.html.
-inline std::filesystem::path calibration_page(const Calibration& calibration) { return calibration.results / (calibration.name + ".html"); }
+inline std::filesystem::path calibration_page(const Calibration& calibration) {
+    return calibration.results / (calibration.name + ".html");
+}
 
-/// Writes the page of a complete result. It is self-contained, asks the network for nothing, and links to calibrated.toml beside it.
+/// Writes the page of a complete result. It is self-contained, asks the network for nothing, and links to calibrated.toml beside
+/// it.
 /// @throws OutputError when the file cannot be written
-void write_calibration_report(const Calibration& calibration, const CalibrationResult& result, const Provenance& provenance, const std::filesystem::path& file);
+void write_calibration_report(const Calibration& calibration, const CalibrationResult& result, const Provenance& provenance,
+                              const std::filesystem::path& file);
 
 }  // namespace feldspar

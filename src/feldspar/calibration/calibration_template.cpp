@@ -1,7 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-
-#include <fmt/format.h>
 
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/first_job.hpp"
@@ -67,12 +67,20 @@ std::string calibration_template(const ReadRock& rock) {
     }
     std::string text = with_values(calibration_template(), "targets", targets, shown);
     const std::size_t numbers = text.find("# The numbers are those of"), end = text.find('\n', numbers);
-    text.replace(numbers, end - numbers, "# " + (rock.source.empty() ? std::string("The targets are the numbers that were given; the job: feldspar new laboratory with the same options.") : "Laboratory: " + rock.source + "."));
+    text.replace(
+        numbers, end - numbers,
+        "# " + (rock.source.empty()
+                    ? std::string(
+                          "The targets are the numbers that were given; the job: feldspar new laboratory with the same options.")
+                    : "Laboratory: " + rock.source + "."));
     // What no target tells of is no unknown.
     const auto leave_out = [&](const std::string& key, const char* wants) {
         const std::string unknown = "[[unknown]]\nkey = \"" + key + "\"\n";
         const std::size_t at = text.find(unknown);
-        if (at != std::string::npos) text.replace(at, unknown.size(), "# [[unknown]]                       # wants a target: " + std::string(wants) + "\n# key = \"" + key + "\"\n");
+        if (at != std::string::npos)
+            text.replace(
+                at, unknown.size(),
+                "# [[unknown]]                       # wants a target: " + std::string(wants) + "\n# key = \"" + key + "\"\n");
     };
     if (!nu) leave_out("material.grain.nu", "nu");
     if (!friction) leave_out("material.contact.mu", "friction_angle or cohesion");

@@ -10,26 +10,28 @@ namespace feldspar {
 
 namespace {
 
-constexpr double level_scale = 10.0;   // of the trend's level: anything
-constexpr double slope_scale = 5.0;    // of its slopes: over the range of a parameter y may change by several of its standard deviations
+constexpr double level_scale = 10.0;  // of the trend's level: anything
+constexpr double slope_scale =
+    5.0;  // of its slopes: over the range of a parameter y may change by several of its standard deviations
 constexpr double least_noise = 1e-3;
 
 // Medians of the scales before anything is seen, and by which factor they may well be wrong.
 constexpr double usual_amplitude = 0.5, usual_length = 1.0, usual_packings = 0.2, usual_changes = 0.1, usual_noise = 0.2;
-constexpr double usual_spread = 1.0;   // of their logarithms
+constexpr double usual_spread = 1.0;  // of their logarithms
 
 double matern(double distance) {
     const double r = std::sqrt(5.0) * distance;
     return (1.0 + r + r * r / 3.0) * std::exp(-r);
 }
 
-constexpr std::size_t common = 4;      // scales before the lengths
+constexpr std::size_t common = 4;  // scales before the lengths
 
 double squared(double x) { return x * x; }
 
 }  // namespace
 
-GaussianProcess::GaussianProcess(std::vector<Observation> observations, const GaussianProcess* before) : observations_(std::move(observations)) {
+GaussianProcess::GaussianProcess(std::vector<Observation> observations, const GaussianProcess* before)
+    : observations_(std::move(observations)) {
     double sum = 0.0;
     for (const Observation& o : observations_) sum += o.y;
     centre_ = sum / static_cast<double>(observations_.size());
@@ -50,7 +52,8 @@ GaussianProcess::Scales GaussianProcess::scales_from(const std::vector<double>& 
     return scales;
 }
 
-double GaussianProcess::kernel(const Scales& scales, const std::vector<double>& a, const std::vector<double>& b, bool same_packing) const {
+double GaussianProcess::kernel(const Scales& scales, const std::vector<double>& a, const std::vector<double>& b,
+                               bool same_packing) const {
     double trend = squared(level_scale), distance = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         trend += squared(slope_scale) * (a[i] - 0.5) * (b[i] - 0.5);
@@ -81,7 +84,8 @@ double GaussianProcess::minus_log_posterior(const Scales& scales) const {
     if (factor.info() != Eigen::Success) return std::numeric_limits<double>::max();
     double value = 0.5 * y.dot(factor.solve(y)) + factor.matrixLLT().diagonal().array().log().sum();
     const auto prior = [](double scale, double usual) { return 0.5 * squared(std::log(scale / usual) / usual_spread); };
-    value += prior(scales.amplitude, usual_amplitude) + prior(scales.packings, usual_packings) + prior(scales.changes, usual_changes) + prior(scales.noise, usual_noise);
+    value += prior(scales.amplitude, usual_amplitude) + prior(scales.packings, usual_packings) +
+             prior(scales.changes, usual_changes) + prior(scales.noise, usual_noise);
     for (const double length : scales.lengths) value += prior(length, usual_length);
     return value;
 }
@@ -100,7 +104,7 @@ void GaussianProcess::fit(const GaussianProcess* before) {
         nlopt::opt search(nlopt::LN_SBPLX, static_cast<unsigned>(unknowns));
         search.set_lower_bounds(std::log(1e-3));
         search.set_upper_bounds(std::log(20.0));
-        search.set_xtol_abs(1e-2);   // of the logarithms: a percent of a scale changes no decision
+        search.set_xtol_abs(1e-2);  // of the logarithms: a percent of a scale changes no decision
         search.set_maxeval(150 * static_cast<int>(unknowns));
         search.set_min_objective(
             [](const std::vector<double>& x, std::vector<double>&, void* self) {
@@ -111,7 +115,7 @@ void GaussianProcess::fit(const GaussianProcess* before) {
         double value = 0.0;
         try {
             search.optimize(logarithms, value);
-        } catch (const nlopt::roundoff_limited&) {   // as good as it gets
+        } catch (const nlopt::roundoff_limited&) {  // as good as it gets
             value = minus_log_posterior(scales_from(logarithms));
         }
         if (value >= best) continue;
@@ -127,10 +131,10 @@ void GaussianProcess::fit(const GaussianProcess* before) {
     solve();
 }
 
-// Few packings leave the scatter between packings open: the most probable one is too small in the mean, and an interval by it too narrow. So its
-// variance is averaged over what is possible, the other scales as they are.
+// Few packings leave the scatter between packings open: the most probable one is too small in the mean, and an interval by it too
+// narrow. So its variance is averaged over what is possible, the other scales as they are.
 double GaussianProcess::mean_scale(std::size_t which) const {
-    constexpr double reach = 2.0, step = 0.25;   // of the logarithm
+    constexpr double reach = 2.0, step = 0.25;  // of the logarithm
     const double most_probable = minus_log_posterior(scales_from(logarithms_));
     double weights = 0.0, variance = 0.0;
     for (double off = -reach; off <= reach; off += step) {

@@ -17,7 +17,7 @@ namespace {
 // How a target is judged unless its tolerance is given.
 struct TargetKind {
     const char* name;
-    double tolerance;   // a fraction of the value; of nu and the angle the value itself
+    double tolerance;  // a fraction of the value; of nu and the angle the value itself
     bool absolute = false;
 
     // How it is written; none: a plain number.
@@ -45,9 +45,11 @@ const std::vector<TargetKind> target_kinds{
     {"sigma1", 0.03},
 };
 
-constexpr double toughest = 300.0;   // N/m: rocks of 200 are to lie inside
+constexpr double toughest = 300.0;  // N/m: rocks of 200 are to lie inside
 
-double six_digits(double value) { return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr); }   // stod refuses what is next to zero
+double six_digits(double value) {
+    return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}  // stod refuses what is next to zero
 
 // Of a default range: what the rock's numbers say of a contact's.
 struct RangeRule {
@@ -67,7 +69,8 @@ public:
     Calibration read() {
         read_names(result_);
         root_.check({"job"}, [&] {
-            if (base_.job().has_variants()) root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
+            if (base_.job().has_variants())
+                root_.fail("job", "has variants, but one rock is calibrated at a time", "a job without [[variant]]");
         });
         if (root_.sound({"job", "set"})) read_set();
         read_seeds();
@@ -84,21 +87,26 @@ private:
             rock_ = base_.with({});
         } catch (const InputError& error) {
             for (const InputError& one : each_mistake(error))
-                mistakes_.add(InputError({root_.file(), 0, 0, "set"}, one.place().key + " " + one.problem(), one.allowed(), one.suggestion()), "set");
+                mistakes_.add(InputError({root_.file(), 0, 0, "set"}, one.place().key + " " + one.problem(), one.allowed(),
+                                         one.suggestion()),
+                              "set");
         }
     }
 
     void read_seeds() {
-        if (root_.has("seeds")) result_.seeds = read_seed_list(root_, "seeds");
+        if (root_.has("seeds"))
+            result_.seeds = read_seed_list(root_, "seeds");
         else
             for (std::uint64_t seed = 1; seed <= 20; ++seed) result_.seeds.push_back(seed);
-        if (root_.has("confirm_seeds")) result_.confirm_seeds = read_seed_list(root_, "confirm_seeds");
+        if (root_.has("confirm_seeds"))
+            result_.confirm_seeds = read_seed_list(root_, "confirm_seeds");
         else
             for (std::uint64_t seed = 1001; seed <= 1010; ++seed) result_.confirm_seeds.push_back(seed);
         for (const std::uint64_t seed : result_.confirm_seeds)
             if (std::find(result_.seeds.begin(), result_.seeds.end(), seed) != result_.seeds.end())
                 root_.check({"seeds", "confirm_seeds"}, [&] {
-                    root_.fail(root_.has("confirm_seeds") ? "confirm_seeds" : "seeds", fmt::format("the packing {} is also one that calibration learns from", seed),
+                    root_.fail(root_.has("confirm_seeds") ? "confirm_seeds" : "seeds",
+                               fmt::format("the packing {} is also one that calibration learns from", seed),
                                "fresh packings, which confirm what was learned");
                 });
         result_.budget = static_cast<int>(root_.integer("budget", 20, 100'000, 300));
@@ -114,8 +122,11 @@ private:
             if (std::string(kind.name) == "sigma1") {
                 for (const toml::node& item : table.array(kind.name))
                     table.check({}, [&] {
-                        if (!item.is_table()) table.fail_at(item, kind.name, shown(item) + " is not a strength under confinement", "{ sigma3 = \"10 MPa\", value = \"190 MPa\" }");
-                        const TableReader one(*item.as_table(), "targets.sigma1", root_.file(), {"sigma3", "value", "tolerance", "standard_deviation"}, 0, &mistakes_);
+                        if (!item.is_table())
+                            table.fail_at(item, kind.name, shown(item) + " is not a strength under confinement",
+                                          "{ sigma3 = \"10 MPa\", value = \"190 MPa\" }");
+                        const TableReader one(*item.as_table(), "targets.sigma1", root_.file(),
+                                              {"sigma3", "value", "tolerance", "standard_deviation"}, 0, &mistakes_);
                         one.require({"sigma3", "value"});
                         Target target = read_target(one, kind);
                         target.sigma3_Pa = one.quantity("sigma3", Dimension::stress, positive);
@@ -131,7 +142,8 @@ private:
                 result_.targets.push_back(target);
             }
         }
-        if (result_.targets.empty()) root_.check({"targets"}, [&] { root_.fail("targets", "there is no target", listed(names)); });
+        if (result_.targets.empty())
+            root_.check({"targets"}, [&] { root_.fail("targets", "there is no target", listed(names)); });
         root_.check({"targets"}, [&] { check_order(table); });
         if (!root_.sound({"job", "set", "targets"})) return;
         std::vector<double>& sigma3 = result_.sigma3_Pa;
@@ -141,36 +153,46 @@ private:
             const bool envelope = target.name == "cohesion" || target.name == "friction_angle" || target.name == "hoek_brown_mi";
             table.check({}, [&] {
                 if (envelope && sigma3.empty())
-                    table.fail(target.name, "is read from confined tests, and the job has none", "a biaxial [[test]] in the job, with the laboratory's range of sigma3");
+                    table.fail(target.name, "is read from confined tests, and the job has none",
+                               "a biaxial [[test]] in the job, with the laboratory's range of sigma3");
                 if (target.name == "sigma1" && std::find(sigma3.begin(), sigma3.end(), target.sigma3_Pa) == sigma3.end())
-                    table.fail("sigma1", fmt::format("the job has no biaxial test at {:g} MPa", target.sigma3_Pa / 1e6), "a sigma3 of the job's biaxial tests");
+                    table.fail("sigma1", fmt::format("the job has no biaxial test at {:g} MPa", target.sigma3_Pa / 1e6),
+                               "a sigma3 of the job's biaxial tests");
             });
         }
         if (!root_.sound({"targets"})) return;
         for (const Observable& quantity : observables_for(result_))
             root_.check({}, [&] {
-                if (std::none_of(rock_.tests.begin(), rock_.tests.end(), [&](const TestSpec& test) { return test.kind == quantity.test; }))
-                    root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name), fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
+                if (std::none_of(rock_.tests.begin(), rock_.tests.end(),
+                                 [&](const TestSpec& test) { return test.kind == quantity.test; }))
+                    root_.fail("targets", fmt::format("{} is read from a test that the job does not have", quantity.name),
+                               fmt::format("a [[test]] of kind \"{}\" in the job", name(quantity.test)));
             });
     }
 
     // No rock is weaker in compression than in tension: Griffith's criterion has a ratio of 8, rocks have 5 to 30.
     void check_order(const TableReader& table) const {
-        constexpr const char* allowed = "a uniaxial strength above the tensile one; rocks have 5 to 30 times as much. Are the two exchanged?";
+        constexpr const char* allowed =
+            "a uniaxial strength above the tensile one; rocks have 5 to 30 times as much. Are the two exchanged?";
         const double UCS = wanted_UCS_Pa(result_.targets);
         for (const char* tension : {"BTS", "DTS"}) {
             const double strength = target_value(tension, result_.targets);
             if (UCS <= strength)
                 table.fail(table.has("UCS") ? "UCS" : "cohesion",
-                           fmt::format("a uniaxial strength of {:.4g} MPa is not above {} = {:.4g} MPa", UCS / 1e6, tension, strength / 1e6), allowed);
+                           fmt::format("a uniaxial strength of {:.4g} MPa is not above {} = {:.4g} MPa", UCS / 1e6, tension,
+                                       strength / 1e6),
+                           allowed);
             const std::string ratio = std::string("UCS_over_") + tension;
             const double given = target_value(ratio, result_.targets);
-            if (given <= 1.0) table.fail(ratio, fmt::format("a ratio of {:.4g} means a uniaxial strength that is not above {}", given, tension), allowed);
+            if (given <= 1.0)
+                table.fail(ratio, fmt::format("a ratio of {:.4g} means a uniaxial strength that is not above {}", given, tension),
+                           allowed);
         }
         for (const Target& target : result_.targets)
             if (target.name == "sigma1" && target.value <= UCS)
-                table.fail("sigma1", fmt::format("a strength of {:.4g} MPa under {:g} MPa is not above the uniaxial one of {:.4g} MPa", target.value / 1e6,
-                                                 target.sigma3_Pa / 1e6, UCS / 1e6),
+                table.fail("sigma1",
+                           fmt::format("a strength of {:.4g} MPa under {:g} MPa is not above the uniaxial one of {:.4g} MPa",
+                                       target.value / 1e6, target.sigma3_Pa / 1e6, UCS / 1e6),
                            "strengths that grow with the confinement");
     }
 
@@ -212,7 +234,8 @@ private:
         const bool flexible = kind == GrainKind::flexible;
         // from where contacts are brittle, sigma_nt^2 / (2 Kn) of stiff contacts, to what the toughest rocks have
         const double brittle = flexible ? 0.03 : 0.4;
-        const double body = kind == GrainKind::inner_particles ? diameter / std::sqrt(rock_.specimen.particles_per_grain) : diameter;
+        const double body =
+            kind == GrainKind::inner_particles ? diameter / std::sqrt(rock_.specimen.particles_per_grain) : diameter;
         return {{"material.grain.E", 0.8 * E, 1.6 * E, true},
                 {"material.grain.nu", 0.1, 0.4, true, false},
                 {"material.contact.Kn", (flexible ? 4.0 : 0.5) * E / body, (flexible ? 60.0 : 4.0) * E / body, true},
@@ -236,12 +259,14 @@ private:
     }
 
     void read_unknowns() {
-        for (const TableReader& table : root_.tables("unknown", "an unknown", {"name", "key", "times", "coupled", "range", "scale"}))
+        for (const TableReader& table :
+             root_.tables("unknown", "an unknown", {"name", "key", "times", "coupled", "range", "scale"}))
             result_.unknowns.push_back(read_unknown(table));
         for (std::size_t i = 0; i < result_.unknowns.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
                 if (result_.unknowns[i].key == result_.unknowns[j].key && !result_.unknowns[i].key.empty())
-                    root_.check({}, [&] { root_.fail("unknown", "'" + result_.unknowns[i].key + "' is given twice", "each key once"); });
+                    root_.check(
+                        {}, [&] { root_.fail("unknown", "'" + result_.unknowns[i].key + "' is given twice", "each key once"); });
         if (!root_.sound({"job", "set", "targets", "unknown"})) return;
         try {
             std::vector<double> low, high;
@@ -253,7 +278,9 @@ private:
             (void)result_.job_with(high);
         } catch (const InputError& error) {
             for (const InputError& one : each_mistake(error))
-                mistakes_.add(InputError({root_.file(), 0, 0, one.place().key}, "at an end of the ranges: " + one.problem(), one.allowed(), one.suggestion()), {});
+                mistakes_.add(InputError({root_.file(), 0, 0, one.place().key}, "at an end of the ranges: " + one.problem(),
+                                         one.allowed(), one.suggestion()),
+                              {});
         }
     }
 
@@ -271,8 +298,10 @@ private:
             unknown.elastic = rule->elastic;
             unknown.logarithmic = rule->logarithmic || !unknown.times.empty();
         }
-        if (table.has("range")) read_range(table, unknown);
-        else if (!unknown.times.empty() && ratio_rule(unknown.key)) std::tie(unknown.low, unknown.high) = *ratio_rule(unknown.key);
+        if (table.has("range"))
+            read_range(table, unknown);
+        else if (!unknown.times.empty() && ratio_rule(unknown.key))
+            std::tie(unknown.low, unknown.high) = *ratio_rule(unknown.key);
         else if (unknown.times.empty() && rule != rules.end() && std::isfinite(rule->low)) {
             const UserUnit unit = unit_of(unknown.key);
             unknown.low = six_digits(rule->low / unit.in_SI);
@@ -288,10 +317,12 @@ private:
         table.check({"key", "range"}, [&] {
             if (!(unknown.low < unknown.high)) table.fail("range", "is empty", "the lower value first");
         });
-        const bool usual_scale = table.has("scale") || rules_known;   // without the rules "linear" may be the usual one
+        const bool usual_scale = table.has("scale") || rules_known;  // without the rules "linear" may be the usual one
         if (unknown.logarithmic && usual_scale)
             table.check({"key", "range", "scale"}, [&] {
-                if (!(unknown.low > 0.0)) table.fail("range", "begins at zero or below, and is divided by its logarithm", "a lower end above zero, or scale = \"linear\"");
+                if (!(unknown.low > 0.0))
+                    table.fail("range", "begins at zero or below, and is divided by its logarithm",
+                               "a lower end above zero, or scale = \"linear\"");
             });
         return unknown;
     }
@@ -311,10 +342,13 @@ private:
     void read_range(const TableReader& table, Unknown& unknown) const {
         const toml::array& range = table.array("range");
         table.check({"range"}, [&] {
-            if (range.size() != 2) table.fail("range", fmt::format("has {} values", range.size()), "two: the lowest and the highest");
+            if (range.size() != 2)
+                table.fail("range", fmt::format("has {} values", range.size()), "two: the lowest and the highest");
             const Measure low = measure_of(range[0]), high = measure_of(range[1]);
-            if (std::isnan(low.number) || std::isnan(high.number)) table.fail("range", "has values that do not begin with a number", "such as [\"5 MPa\", \"20 MPa\"]");
-            if (low.unit != high.unit) table.fail("range", fmt::format("has the units '{}' and '{}'", low.unit, high.unit), "the same unit twice");
+            if (std::isnan(low.number) || std::isnan(high.number))
+                table.fail("range", "has values that do not begin with a number", "such as [\"5 MPa\", \"20 MPa\"]");
+            if (low.unit != high.unit)
+                table.fail("range", fmt::format("has the units '{}' and '{}'", low.unit, high.unit), "the same unit twice");
             unknown.low = low.number;
             unknown.high = high.number;
             unknown.unit = low.unit;
@@ -325,22 +359,31 @@ private:
     void check_determined() const {
         const auto elastic_target = [](const Target& target) { return target.name == "E" || target.name == "nu"; };
         const bool any_elastic = std::any_of(result_.targets.begin(), result_.targets.end(), elastic_target);
-        const bool any_strength = std::any_of(result_.targets.begin(), result_.targets.end(), [&](const Target& t) { return !elastic_target(t); });
+        const bool any_strength =
+            std::any_of(result_.targets.begin(), result_.targets.end(), [&](const Target& t) { return !elastic_target(t); });
         for (const Unknown& unknown : result_.unknowns) {
-            if (unknown.elastic && !any_elastic) root_.fail("unknown", fmt::format("{} changes E and nu, and neither is a target", unknown.name), "a target E or nu, or the key fixed in the job");
-            if (!unknown.elastic && !any_strength) root_.fail("unknown", fmt::format("{} changes strengths, and none is a target", unknown.name), "a strength among the targets, or the key fixed in the job");
+            if (unknown.elastic && !any_elastic)
+                root_.fail("unknown", fmt::format("{} changes E and nu, and neither is a target", unknown.name),
+                           "a target E or nu, or the key fixed in the job");
+            if (!unknown.elastic && !any_strength)
+                root_.fail("unknown", fmt::format("{} changes strengths, and none is a target", unknown.name),
+                           "a strength among the targets, or the key fixed in the job");
         }
     }
 
     Calibration result_;
-    Job rock_;   // the job before anything is known of the unknowns
+    Job rock_;  // the job before anything is known of the unknowns
 };
 
 }  // namespace
 
-Calibration parse_calibration(const std::string& text, const std::filesystem::path& name) { return CalibrationReader(text, name).read(); }
+Calibration parse_calibration(const std::string& text, const std::filesystem::path& name) {
+    return CalibrationReader(text, name).read();
+}
 
-Calibration read_calibration(const std::filesystem::path& file) { return parse_calibration(read_toml_file(file, "calibration"), file); }
+Calibration read_calibration(const std::filesystem::path& file) {
+    return parse_calibration(read_toml_file(file, "calibration"), file);
+}
 
 std::string Target::label() const { return name == "sigma1" ? fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6) : name; }
 
@@ -349,7 +392,9 @@ double Unknown::value_at(double x) const {
     return six_digits(logarithmic ? low * std::pow(high / low, inside) : low + (high - low) * inside);
 }
 
-double Unknown::x_of(double value) const { return logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low); }
+double Unknown::x_of(double value) const {
+    return logarithmic ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
 
 Job Calibration::job_with(const std::vector<double>& values) const {
     toml::table piece;

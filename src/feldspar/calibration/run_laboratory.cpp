@@ -13,8 +13,8 @@
 namespace feldspar {
 namespace {
 
-constexpr double elastic_stress_share = 0.04;      // of the strength: where tests for E and nu before damage end
-constexpr double usual_UCS_over_E = 1.0 / 210.0;   // when they are not both targets
+constexpr double elastic_stress_share = 0.04;     // of the strength: where tests for E and nu before damage end
+constexpr double usual_UCS_over_E = 1.0 / 210.0;  // when they are not both targets
 
 double elastic_strain(const Calibration& calibration) {
     const double ratio = wanted_UCS_Pa(calibration.targets) / target_value("E", calibration.targets);
@@ -26,7 +26,7 @@ std::string column_of(const Observable& quantity, bool elastic) {
     return quantity.name == "E" ? "E_initial_Pa" : "nu_initial";
 }
 
-constexpr double within_90 = 1.645;   // standard deviations of a normal error in which nine of ten lie
+constexpr double within_90 = 1.645;  // standard deviations of a normal error in which nine of ten lie
 
 // In a direction: by its law, or because there is less fracture energy than elastic energy at the strength.
 bool breaks_brittly(const ContactMaterial& contact) {
@@ -52,7 +52,7 @@ RunReading reading_of(const RunRecord& record, const Observable& quantity, bool 
     reading.grade = grade == record.texts.end() || grade->second.empty() ? 'C' : grade->second.front();
     const bool strength = quantity.column == strength_column, known = number_in(record, "peak_reached") == 1.0;
     const double error = number_in(record, "error_estimate");
-    if (reading.grade == 'C') {   // what is read at a share of such a strength, or of one that was not reached, says nothing
+    if (reading.grade == 'C') {  // what is read at a share of such a strength, or of one that was not reached, says nothing
         if (strength && known && !brittle && error > grade_b_error) {
             reading.value = value;
             reading.says = Says::at_most;
@@ -67,7 +67,8 @@ RunReading reading_of(const RunRecord& record, const Observable& quantity, bool 
         return reading;
     }
     reading.value = value;
-    if (quantity.name != "E" && quantity.name != "nu" && std::isfinite(error)) reading.error = error_bound(error) / within_90;   // E and nu hardly depend on where half of the strength is
+    if (quantity.name != "E" && quantity.name != "nu" && std::isfinite(error))
+        reading.error = error_bound(error) / within_90;  // E and nu hardly depend on where half of the strength is
     return reading;
 }
 
@@ -80,7 +81,7 @@ Run RunLaboratory::run_for(const Request& request, const Observable& quantity) c
         if (request.elastic) wanted.maximum_strain = elastic_strain(calibration_);
         return make_run(job, job.variants.front(), wanted, request.seed);
     }
-    throw InputError({}, fmt::format("the job has no test for {}", quantity.name));   // was checked when the file was read
+    throw InputError({}, fmt::format("the job has no test for {}", quantity.name));  // was checked when the file was read
 }
 
 // The strength is known when the stress falls, and known well enough when it is far above what is wanted.
@@ -90,9 +91,10 @@ void RunLaboratory::end_when_known(TestSpec& test) const {
     if (std::isfinite(wanted)) test.maximum_stress_Pa = std::min(wanted, test.maximum_stress_Pa.value_or(wanted));
 }
 
-std::vector<std::vector<RunReading>> RunLaboratory::see(const std::vector<Request>& requests, const std::vector<Observable>& quantities) {
+std::vector<std::vector<RunReading>> RunLaboratory::see(const std::vector<Request>& requests,
+                                                        const std::vector<Observable>& quantities) {
     std::vector<Run> runs;
-    std::vector<std::vector<std::size_t>> run_of;   // of each request's quantities
+    std::vector<std::vector<std::size_t>> run_of;  // of each request's quantities
     for (const Request& request : requests) {
         std::map<std::pair<MethodId, double>, std::size_t> of_test;
         std::vector<std::size_t>& own = run_of.emplace_back();
@@ -112,7 +114,8 @@ std::vector<std::vector<RunReading>> RunLaboratory::see(const std::vector<Reques
             const auto record = ledger_.find(runs[run_of[r][i]].id);
             const Run& run = runs[run_of[r][i]];
             const bool brittle = breaks_brittly(run.job.variants.front().contact);
-            own.push_back(reading_of(record.value_or(RunRecord{}), quantities[requests[r].quantities[i]], requests[r].elastic, brittle));
+            own.push_back(
+                reading_of(record.value_or(RunRecord{}), quantities[requests[r].quantities[i]], requests[r].elastic, brittle));
         }
     }
     return readings;

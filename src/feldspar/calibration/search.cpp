@@ -1,9 +1,9 @@
 #include "feldspar/calibration/search.hpp"
 
 #include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/sobol.hpp>
-#include <boost/random/mersenne_twister.hpp>
 #include <cmath>
 #include <nlopt.hpp>
 
@@ -11,11 +11,14 @@ namespace feldspar {
 namespace {
 
 constexpr std::size_t candidates_nearby = 384;
-constexpr int samples = 48;               // of what may be true, for the expected improvement
-constexpr double homesickness = 0.12;     // misfit that a parameter pays for a whole range away from home: 0.17 tolerances from the middle to an end
+constexpr int samples = 48;  // of what may be true, for the expected improvement
+constexpr double homesickness =
+    0.12;  // misfit that a parameter pays for a whole range away from home: 0.17 tolerances from the middle to an end
 
 // A few unknowns need fewer to be looked at everywhere.
-std::size_t candidates_everywhere(std::size_t dimensions) { return std::min<std::size_t>(1024, 128 << std::min<std::size_t>(3, dimensions)); }
+std::size_t candidates_everywhere(std::size_t dimensions) {
+    return std::min<std::size_t>(1024, 128 << std::min<std::size_t>(3, dimensions));
+}
 
 // What best_point() makes small.
 struct Cost {
@@ -49,7 +52,8 @@ std::vector<double> best_point(const Learner& learner, std::size_t dimensions, s
         const double value = cost(x);
         ranked.emplace_back(value, std::move(x));
     }
-    std::partial_sort(ranked.begin(), ranked.begin() + 3, ranked.end(), [](const auto& l, const auto& r) { return l.first < r.first; });
+    std::partial_sort(ranked.begin(), ranked.begin() + 3, ranked.end(),
+                      [](const auto& l, const auto& r) { return l.first < r.first; });
     std::pair<double, std::vector<double>> best = ranked.front();
     for (int start = 0; start < 3; ++start) {
         nlopt::opt search(nlopt::LN_SBPLX, static_cast<unsigned>(dimensions));
@@ -58,12 +62,14 @@ std::vector<double> best_point(const Learner& learner, std::size_t dimensions, s
         search.set_xtol_abs(1e-4);
         search.set_maxeval(150 * static_cast<int>(dimensions));
         search.set_initial_step(0.05);
-        search.set_min_objective([](const std::vector<double>& x, std::vector<double>&, void* data) { return (*static_cast<const Cost*>(data))(x); }, &cost);
+        search.set_min_objective(
+            [](const std::vector<double>& x, std::vector<double>&, void* data) { return (*static_cast<const Cost*>(data))(x); },
+            &cost);
         std::vector<double> x = ranked[static_cast<std::size_t>(start)].second;
         double value = 0.0;
         try {
             search.optimize(x, value);
-        } catch (const nlopt::roundoff_limited&) {   // as good as it gets
+        } catch (const nlopt::roundoff_limited&) {  // as good as it gets
             value = cost(x);
         }
         if (value < best.first) best = {value, x};
@@ -92,12 +98,12 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
             candidates.push_back(std::move(x));
         }
         double largest = 0.0;
-        std::vector<double> next = best;   // where nothing promises anything
+        std::vector<double> next = best;  // where nothing promises anything
         for (const std::vector<double>& x : candidates) {
             const Prediction prediction = learner.at(x);
             double improvement = 0.0;
             std::vector<double> values(prediction.values.size());
-            for (const auto& draw : draws) {   // targets follow the quantities along their slopes
+            for (const auto& draw : draws) {  // targets follow the quantities along their slopes
                 values = prediction.values;
                 for (std::size_t q = 0; q < draw.size(); ++q)
                     for (std::size_t t = 0; t < values.size(); ++t) values[t] += prediction.slopes[q][t] * draw[q];
@@ -110,7 +116,7 @@ std::vector<std::vector<double>> promising_points(Learner learner, std::size_t d
         }
         chosen.push_back(next);
         learner.believe(next);
-        if (learner.at(next).misfit < learner.at(best).misfit) best = next;   // surer now, and as good
+        if (learner.at(next).misfit < learner.at(best).misfit) best = next;  // surer now, and as good
     }
     return chosen;
 }

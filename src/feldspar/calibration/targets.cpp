@@ -49,20 +49,28 @@ EnvelopeFit envelope(const std::vector<Observable>& quantities, const std::vecto
 
 }  // namespace
 
-std::vector<Observable> observables_for(const Calibration& calibration) { return observables_for(calibration.targets, calibration.sigma3_Pa); }
+std::vector<Observable> observables_for(const Calibration& calibration) {
+    return observables_for(calibration.targets, calibration.sigma3_Pa);
+}
 
 std::vector<Observable> observables_for(const std::vector<Target>& targets, const std::vector<double>& sigma3_of_tests_Pa) {
     std::vector<Observable> all;
     const auto add = [&](const Observable& quantity) {
-        if (std::none_of(all.begin(), all.end(), [&](const Observable& q) { return q.name == quantity.name; })) all.push_back(quantity);
+        if (std::none_of(all.begin(), all.end(), [&](const Observable& q) { return q.name == quantity.name; }))
+            all.push_back(quantity);
     };
     const Observable ucs = observable("UCS", "UCS_Pa"), dts = observable("DTS", "DTS_Pa"), bts = observable("BTS", "BTS_Pa");
-    const auto confined = [&](double sigma3_Pa) { add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), method_of_confined_strength(), sigma3_Pa, strength_column}); };
+    const auto confined = [&](double sigma3_Pa) {
+        add({fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6), method_of_confined_strength(), sigma3_Pa, strength_column});
+    };
     for (const Target& target : targets) {
-        if (target.name == "E" || target.name == "nu" || target.name == "sigma_ci" || target.name == "sigma_cd") add(observable(target.name, property_of(target)));
+        if (target.name == "E" || target.name == "nu" || target.name == "sigma_ci" || target.name == "sigma_cd")
+            add(observable(target.name, property_of(target)));
         if (target.name.starts_with("sigma_ci_over")) add(observable("sigma_ci", property_of({.name = "sigma_ci"})));
         if (target.name.starts_with("sigma_cd_over")) add(observable("sigma_cd", property_of({.name = "sigma_cd"})));
-        if (target.name == "UCS" || target.name.ends_with("_over_UCS") || target.name.starts_with("UCS_over") || of_envelope(target)) add(ucs);
+        if (target.name == "UCS" || target.name.ends_with("_over_UCS") || target.name.starts_with("UCS_over") ||
+            of_envelope(target))
+            add(ucs);
         if (target.name == "DTS" || target.name.ends_with("_DTS")) add(dts);
         if (target.name == "BTS" || target.name.find("BTS") != std::string::npos) add(bts);
         if (target.name == "sigma1") confined(target.sigma3_Pa);
@@ -105,7 +113,8 @@ double target_value(std::string_view name, const std::vector<Target>& targets) {
 
 double wanted_UCS_Pa(const std::vector<Target>& targets) {
     const double UCS = target_value("UCS", targets);
-    return std::isfinite(UCS) ? UCS : mohr_coulomb_UCS_Pa(target_value("cohesion", targets), target_value("friction_angle", targets));
+    return std::isfinite(UCS) ? UCS
+                              : mohr_coulomb_UCS_Pa(target_value("cohesion", targets), target_value("friction_angle", targets));
 }
 
 double wanted_strength_Pa(const TestSpec& test, const std::vector<Target>& targets) {
@@ -123,13 +132,17 @@ std::vector<std::string> contradictions(const std::vector<Target>& targets) {
     const double UCS = value("UCS"), c = value("cohesion"), phi = value("friction_angle");
     const double intercept = mohr_coulomb_UCS_Pa(c, phi);
     if (std::abs(intercept / UCS - 1.0) > curvature_allowance)
-        sentences.push_back(fmt::format("A cohesion of {:.4g} MPa and a friction angle of {:.4g} deg mean a uniaxial strength of 2 c sqrt(N) = {:.4g} MPa, but UCS is to be {:.4g} MPa; "
-                                        "the curvature of an envelope accounts for {:.0f} % at most.",
-                                        c / 1e6, phi, intercept / 1e6, UCS / 1e6, 100.0 * curvature_allowance));
+        sentences.push_back(
+            fmt::format("A cohesion of {:.4g} MPa and a friction angle of {:.4g} deg mean a uniaxial strength of 2 c sqrt(N) = "
+                        "{:.4g} MPa, but UCS is to be {:.4g} MPa; "
+                        "the curvature of an envelope accounts for {:.0f} % at most.",
+                        c / 1e6, phi, intercept / 1e6, UCS / 1e6, 100.0 * curvature_allowance));
     const auto ratio = [&](const char* name, double above, double below) {
         const double given = value(name);
         if (std::abs(above / below / given - 1.0) > ratio_allowance)
-            sentences.push_back(fmt::format("{} is to be {:.4g}, but the two strengths, which are targets too, have a ratio of {:.4g}.", name, given, above / below));
+            sentences.push_back(
+                fmt::format("{} is to be {:.4g}, but the two strengths, which are targets too, have a ratio of {:.4g}.", name,
+                            given, above / below));
     };
     ratio("UCS_over_BTS", UCS, value("BTS"));
     ratio("UCS_over_DTS", UCS, value("DTS"));

@@ -28,8 +28,9 @@ KernelArrays::KernelArrays(Assembly& s)
       rigid_bodies(s.packs.rigid.data()),
       laws(s.laws.data()),
       own_form(s.own_laws.form),
-      own{s.own_laws.constants.Kn_Pa_m.data(), s.own_laws.constants.Ks_Pa_m.data(), s.own_laws.constants.x0_normal.data(), s.own_laws.constants.x0_shear.data(),
-          s.own_laws.constants.x_fl_normal.data(), s.own_laws.constants.x_fl_shear.data(), s.own_laws.constants.mu.data()},
+      own{s.own_laws.constants.Kn_Pa_m.data(),  s.own_laws.constants.Ks_Pa_m.data(),     s.own_laws.constants.x0_normal.data(),
+          s.own_laws.constants.x0_shear.data(), s.own_laws.constants.x_fl_normal.data(), s.own_laws.constants.x_fl_shear.data(),
+          s.own_laws.constants.mu.data()},
       volumetric(s.packs.volumetric.empty() ? nullptr : s.packs.volumetric.data()),
       deviatoric(s.packs.deviatoric.empty() ? nullptr : s.packs.deviatoric.data()),
       weight(pairs(s.weight)),
@@ -88,7 +89,8 @@ const std::array<const Kernels*, 3>& all_kernels() {
 bool is_supported([[maybe_unused]] const Kernels& kernels) {
 #if defined(__x86_64__)
     const std::string_view name = kernels.name;
-    if (name == "avx512") return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+    if (name == "avx512")
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
     if (name == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #endif
     return true;

@@ -5,8 +5,9 @@
 
 namespace feldspar {
 
-/// From now on best_kernels() gives these, which this processor must support (is_supported()). Not while a test runs: one that begins
-/// with some kernels and goes on with others is neither's. For tests that need the bits of one instruction set on any processor.
+/// From now on best_kernels() gives these, which this processor must support (is_supported()). Not while a test runs: one that
+/// begins with some kernels and goes on with others is neither's. For tests that need the bits of one instruction set on any
+/// processor.
 void use_kernels(const Kernels& kernels);
 
 }  // namespace feldspar

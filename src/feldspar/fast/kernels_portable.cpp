@@ -3,6 +3,7 @@
 
 namespace feldspar {
 
-const Kernels kernels_portable{"portable", FELDSPAR_LANES, contacts, grains, rigid, grain_lines, rigid_lines, node_sums, unbalanced, energies};
+const Kernels kernels_portable{"portable",  FELDSPAR_LANES, contacts,  grains,     rigid,
+                               grain_lines, rigid_lines,    node_sums, unbalanced, energies};
 
 }  // namespace feldspar

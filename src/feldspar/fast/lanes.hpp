@@ -1,6 +1,6 @@
-// Vectors of as many doubles as one instruction takes, for the kernels of this room. Included only by pack_kernels.hpp, once for each
-// instruction set, with FELDSPAR_LANES defined; everything has internal linkage, so that no code compiled for one instruction
-// set can be linked into another.
+// Vectors of as many doubles as one instruction takes, for the kernels of this room. Included only by pack_kernels.hpp, once for
+// each instruction set, with FELDSPAR_LANES defined; everything has internal linkage, so that no code compiled for one
+// instruction set can be linked into another.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace {
 constexpr int kWidth = FELDSPAR_LANES;
 
 typedef double Real __attribute__((vector_size(8 * kWidth)));
-typedef std::int64_t Mask __attribute__((vector_size(8 * kWidth)));   // all bits of a lane set or none
+typedef std::int64_t Mask __attribute__((vector_size(8 * kWidth)));  // all bits of a lane set or none
 typedef double UnalignedReal __attribute__((vector_size(8 * kWidth), aligned(8)));
 typedef double Quad __attribute__((vector_size(32)));
 typedef double UnalignedQuad __attribute__((vector_size(32), aligned(8)));
@@ -58,7 +58,8 @@ FELDSPAR_INLINE Real square_root(Real v) {
 #endif
 }
 
-// 1 / sqrt(v) and 1 / v, to rounding: where the processor has a first guess of 14 bits, by two steps of Newton, a third of the time of root and quotient.
+// 1 / sqrt(v) and 1 / v, to rounding: where the processor has a first guess of 14 bits, by two steps of Newton, a third of the
+// time of root and quotient.
 FELDSPAR_INLINE Real inverse_root(Real v) {
 #if defined(__AVX512F__) && FELDSPAR_LANES == 8
     Real y = _mm512_rsqrt14_pd(v);
@@ -119,7 +120,8 @@ namespace {
 // Stores the lanes of the mask among the first `count`, and leaves the memory of the others alone: another thread may be at it.
 FELDSPAR_INLINE void store_where(double* p, Real v, Mask mask, int count) {
 #if defined(__AVX512DQ__) && FELDSPAR_LANES == 8
-    _mm512_mask_storeu_pd(p, static_cast<__mmask8>(_mm512_movepi64_mask(reinterpret_cast<__m512i>(mask)) & ((1U << count) - 1U)), v);
+    _mm512_mask_storeu_pd(p, static_cast<__mmask8>(_mm512_movepi64_mask(reinterpret_cast<__m512i>(mask)) & ((1U << count) - 1U)),
+                          v);
 #else
     for (int lane = 0; lane < count; ++lane)
         if (mask[lane]) p[lane] = v[lane];
@@ -205,17 +207,24 @@ FELDSPAR_INLINE Real both(Quad lower, Quad upper) { return __builtin_shufflevect
 FELDSPAR_INLINE Real4 load_quads(const double* const (&line)[kWidth]) {
     const Real r0 = both(load_quad(line[0]), load_quad(line[2])), r1 = both(load_quad(line[1]), load_quad(line[3]));
     const Real r2 = both(load_quad(line[4]), load_quad(line[6])), r3 = both(load_quad(line[5]), load_quad(line[7]));
-    const Real t0 = __builtin_shufflevector(r0, r1, 0, 8, 2, 10, 4, 12, 6, 14), t1 = __builtin_shufflevector(r0, r1, 1, 9, 3, 11, 5, 13, 7, 15);
-    const Real t2 = __builtin_shufflevector(r2, r3, 0, 8, 2, 10, 4, 12, 6, 14), t3 = __builtin_shufflevector(r2, r3, 1, 9, 3, 11, 5, 13, 7, 15);
+    const Real t0 = __builtin_shufflevector(r0, r1, 0, 8, 2, 10, 4, 12, 6, 14),
+               t1 = __builtin_shufflevector(r0, r1, 1, 9, 3, 11, 5, 13, 7, 15);
+    const Real t2 = __builtin_shufflevector(r2, r3, 0, 8, 2, 10, 4, 12, 6, 14),
+               t3 = __builtin_shufflevector(r2, r3, 1, 9, 3, 11, 5, 13, 7, 15);
     return {{__builtin_shufflevector(t0, t2, 0, 1, 4, 5, 8, 9, 12, 13), __builtin_shufflevector(t1, t3, 0, 1, 4, 5, 8, 9, 12, 13),
-             __builtin_shufflevector(t0, t2, 2, 3, 6, 7, 10, 11, 14, 15), __builtin_shufflevector(t1, t3, 2, 3, 6, 7, 10, 11, 14, 15)}};
+             __builtin_shufflevector(t0, t2, 2, 3, 6, 7, 10, 11, 14, 15),
+             __builtin_shufflevector(t1, t3, 2, 3, 6, 7, 10, 11, 14, 15)}};
 }
 
 FELDSPAR_INLINE void store_quads(double* const (&line)[kWidth], const Real4& v) {
-    const Real s0 = __builtin_shufflevector(v.q[0], v.q[1], 0, 8, 2, 10, 4, 12, 6, 14), s1 = __builtin_shufflevector(v.q[0], v.q[1], 1, 9, 3, 11, 5, 13, 7, 15);
-    const Real s2 = __builtin_shufflevector(v.q[2], v.q[3], 0, 8, 2, 10, 4, 12, 6, 14), s3 = __builtin_shufflevector(v.q[2], v.q[3], 1, 9, 3, 11, 5, 13, 7, 15);
-    const Real even_low = __builtin_shufflevector(s0, s2, 0, 1, 8, 9, 2, 3, 10, 11), even_high = __builtin_shufflevector(s0, s2, 4, 5, 12, 13, 6, 7, 14, 15);
-    const Real odd_low = __builtin_shufflevector(s1, s3, 0, 1, 8, 9, 2, 3, 10, 11), odd_high = __builtin_shufflevector(s1, s3, 4, 5, 12, 13, 6, 7, 14, 15);
+    const Real s0 = __builtin_shufflevector(v.q[0], v.q[1], 0, 8, 2, 10, 4, 12, 6, 14),
+               s1 = __builtin_shufflevector(v.q[0], v.q[1], 1, 9, 3, 11, 5, 13, 7, 15);
+    const Real s2 = __builtin_shufflevector(v.q[2], v.q[3], 0, 8, 2, 10, 4, 12, 6, 14),
+               s3 = __builtin_shufflevector(v.q[2], v.q[3], 1, 9, 3, 11, 5, 13, 7, 15);
+    const Real even_low = __builtin_shufflevector(s0, s2, 0, 1, 8, 9, 2, 3, 10, 11),
+               even_high = __builtin_shufflevector(s0, s2, 4, 5, 12, 13, 6, 7, 14, 15);
+    const Real odd_low = __builtin_shufflevector(s1, s3, 0, 1, 8, 9, 2, 3, 10, 11),
+               odd_high = __builtin_shufflevector(s1, s3, 4, 5, 12, 13, 6, 7, 14, 15);
     const auto split = [](double* first, double* second, Real r) {
         store_quad(first, _mm512_castpd512_pd256(r));
         store_quad(second, _mm512_extractf64x4_pd(r, 1));
@@ -229,8 +238,8 @@ FELDSPAR_INLINE void store_quads(double* const (&line)[kWidth], const Real4& v) 
 FELDSPAR_INLINE Real4 transposed(Real r0, Real r1, Real r2, Real r3) {
     const Real t0 = __builtin_shufflevector(r0, r1, 0, 4, 2, 6), t1 = __builtin_shufflevector(r0, r1, 1, 5, 3, 7);
     const Real t2 = __builtin_shufflevector(r2, r3, 0, 4, 2, 6), t3 = __builtin_shufflevector(r2, r3, 1, 5, 3, 7);
-    return {{__builtin_shufflevector(t0, t2, 0, 1, 4, 5), __builtin_shufflevector(t1, t3, 0, 1, 4, 5), __builtin_shufflevector(t0, t2, 2, 3, 6, 7),
-             __builtin_shufflevector(t1, t3, 2, 3, 6, 7)}};
+    return {{__builtin_shufflevector(t0, t2, 0, 1, 4, 5), __builtin_shufflevector(t1, t3, 0, 1, 4, 5),
+             __builtin_shufflevector(t0, t2, 2, 3, 6, 7), __builtin_shufflevector(t1, t3, 2, 3, 6, 7)}};
 }
 FELDSPAR_INLINE Real4 load_quads(const double* const (&line)[kWidth]) {
     return transposed(load_quad(line[0]), load_quad(line[1]), load_quad(line[2]), load_quad(line[3]));
@@ -242,7 +251,8 @@ FELDSPAR_INLINE void store_quads(double* const (&line)[kWidth], const Real4& v) 
 #else
 FELDSPAR_INLINE Real4 load_quads(const double* const (&line)[kWidth]) {
     const Real a = load(line[0]), b = load(line[1]), c = load(line[0] + 2), d = load(line[1] + 2);
-    return {{__builtin_shufflevector(a, b, 0, 2), __builtin_shufflevector(a, b, 1, 3), __builtin_shufflevector(c, d, 0, 2), __builtin_shufflevector(c, d, 1, 3)}};
+    return {{__builtin_shufflevector(a, b, 0, 2), __builtin_shufflevector(a, b, 1, 3), __builtin_shufflevector(c, d, 0, 2),
+             __builtin_shufflevector(c, d, 1, 3)}};
 }
 FELDSPAR_INLINE void store_quads(double* const (&line)[kWidth], const Real4& v) {
     for (int half = 0; half < 2; ++half) {

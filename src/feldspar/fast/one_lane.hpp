@@ -1,4 +1,5 @@
-// The vectors of lanes.hpp with a single lane: a thread of a device is a lane of a pack (gpu/). Included only by pack_kernels.hpp.
+// The vectors of lanes.hpp with a single lane: a thread of a device is a lane of a pack (gpu/). Included only by
+// pack_kernels.hpp.
 #pragma once
 
 #include <cstdint>
@@ -38,9 +39,18 @@ struct Real {
     FELDSPAR_INLINE Real(double value) : v(value) {}
     FELDSPAR_INLINE double& operator[](int) { return v; }
     FELDSPAR_INLINE double operator[](int) const { return v; }
-    FELDSPAR_INLINE Real& operator+=(Real o) { v += o.v; return *this; }
-    FELDSPAR_INLINE Real& operator-=(Real o) { v -= o.v; return *this; }
-    FELDSPAR_INLINE Real& operator*=(Real o) { v *= o.v; return *this; }
+    FELDSPAR_INLINE Real& operator+=(Real o) {
+        v += o.v;
+        return *this;
+    }
+    FELDSPAR_INLINE Real& operator-=(Real o) {
+        v -= o.v;
+        return *this;
+    }
+    FELDSPAR_INLINE Real& operator*=(Real o) {
+        v *= o.v;
+        return *this;
+    }
     FELDSPAR_INLINE friend Real operator-(Real a) { return -a.v; }
     FELDSPAR_INLINE friend Real operator+(Real a, Real b) { return a.v + b.v; }
     FELDSPAR_INLINE friend Real operator-(Real a, Real b) { return a.v - b.v; }

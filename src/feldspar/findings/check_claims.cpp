@@ -1,12 +1,13 @@
-// Claims held against the studies that they name, before anything is evaluated: no statement may speak of what a study does not have.
+// Claims held against the studies that they name, before anything is evaluated: no statement may speak of what a study does not
+// have.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/job/toml_reader.hpp"
 #include "feldspar/findings/claims.hpp"
+#include "feldspar/job/toml_reader.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
@@ -20,7 +21,9 @@ const std::map<std::string, std::set<MethodId>, std::less<>>& summary_properties
         std::map<std::string, std::set<MethodId>, std::less<>> map;
         for (const RockProperty& property : rock_properties()) {
             using enum RockProperty::Source;
-            if (property.source == test || property.source == ratio || property.source == envelope || property.source == shear_envelope) map[property.kept_name()] = property.tests;
+            if (property.source == test || property.source == ratio || property.source == envelope ||
+                property.source == shear_envelope)
+                map[property.kept_name()] = property.tests;
         }
         return map;
     }();
@@ -31,13 +34,15 @@ const std::map<std::string, std::set<MethodId>, std::less<>>& summary_properties
 [[noreturn]] void fail(const ClaimList& list, const Statement& statement, const std::string& key, const std::string& problem,
                        const std::string& allowed, const std::string& suggestion = {}) {
     const auto line = statement.lines.find(key);
-    throw InputError({list.file.string(), line == statement.lines.end() ? statement.lines.at("") : line->second, 1, "claim.statement." + key}, problem,
-                     allowed, suggestion);
+    throw InputError(
+        {list.file.string(), line == statement.lines.end() ? statement.lines.at("") : line->second, 1, "claim.statement." + key},
+        problem, allowed, suggestion);
 }
 
 class StatementCheck {
 public:
-    StatementCheck(const ClaimList& list, const Statement& statement, const Study& study) : list_(list), statement_(statement), study_(study) {}
+    StatementCheck(const ClaimList& list, const Statement& statement, const Study& study)
+        : list_(list), statement_(statement), study_(study) {}
 
     void run() const {
         check_quantity("property", statement_.first.quantity);
@@ -62,12 +67,14 @@ private:
             if (kinds.empty()) {
                 std::vector<std::string_view> names;
                 for (const auto& [known, tests] : summary_properties()) names.push_back(known);
-                fail(list_, statement_, key, "'" + property + "' is not a property", listed(names) + ", or a number of the ledger as 'ms_per_step of brazilian'",
-                     did_you_mean(property, names));
+                fail(list_, statement_, key, "'" + property + "' is not a property",
+                     listed(names) + ", or a number of the ledger as 'ms_per_step of brazilian'", did_you_mean(property, names));
             }
             for (const MethodId kind : kinds)
                 if (std::none_of(study_.runs.begin(), study_.runs.end(), [&](const Run& run) { return run.test().kind == kind; }))
-                    fail(list_, statement_, key, fmt::format("'{}' needs a test that the study '{}' does not run: {}", property, statement_.study, name(kind)),
+                    fail(list_, statement_, key,
+                         fmt::format("'{}' needs a test that the study '{}' does not run: {}", property, statement_.study,
+                                     name(kind)),
                          "a property of the study's tests");
         }
     }
@@ -76,7 +83,8 @@ private:
         const auto found = std::find(study_.axes.begin(), study_.axes.end(), axis);
         if (found == study_.axes.end()) {
             const std::vector<std::string_view> names(study_.axes.begin(), study_.axes.end());
-            fail(list_, statement_, key, fmt::format("'{}' is not an axis of the study '{}'", axis, statement_.study), listed(names), did_you_mean(axis, names));
+            fail(list_, statement_, key, fmt::format("'{}' is not an axis of the study '{}'", axis, statement_.study),
+                 listed(names), did_you_mean(axis, names));
         }
         return static_cast<std::size_t>(found - study_.axes.begin());
     }
@@ -89,7 +97,8 @@ private:
             if (there == label) return;
             if (std::find(labels.begin(), labels.end(), there) == labels.end()) labels.push_back(there);
         }
-        fail(list_, statement_, key, fmt::format("'{}' is not a value of the axis '{}' of the study '{}'", label, axis, statement_.study), listed(labels),
+        fail(list_, statement_, key,
+             fmt::format("'{}' is not a value of the axis '{}' of the study '{}'", label, axis, statement_.study), listed(labels),
              did_you_mean(label, labels));
     }
 
@@ -98,7 +107,8 @@ private:
             for (const std::string& label : labels) check_label(key, axis, label);
     }
 
-    void check_moving(const std::string& axis_key, const std::string& from_key, const std::string& to_key, const Side& side) const {
+    void check_moving(const std::string& axis_key, const std::string& from_key, const std::string& to_key,
+                      const Side& side) const {
         if (side.axis.empty()) return;
         (void)axis_number(axis_key, side.axis);
         if (!side.from.empty()) check_label(from_key, side.axis, side.from);
@@ -118,9 +128,12 @@ private:
             const auto settled = [&](const auto& side) { return side.second->contains(axis) || moves(side.first, axis); };
             if (std::none_of(sides.begin(), sides.end(), settled)) continue;
             for (const auto& side : sides) {
-                if (!settled(side)) fail(list_, statement_, side.first, "does not say which value of the axis '" + axis + "' is meant", "a label of that axis");
+                if (!settled(side))
+                    fail(list_, statement_, side.first, "does not say which value of the axis '" + axis + "' is meant",
+                         "a label of that axis");
                 if (side.second->contains(axis) && moves(side.first, axis))
-                    fail(list_, statement_, side.first, "fixes the axis '" + axis + "', along which it moves", "labels of the other axes");
+                    fail(list_, statement_, side.first, "fixes the axis '" + axis + "', along which it moves",
+                         "labels of the other axes");
             }
         }
     }
@@ -129,7 +142,8 @@ private:
         const std::size_t a = axis_number("axis", statement_.first.axis);
         for (const Point& point : study_.points)
             if (!std::isfinite(point.values[a].number))
-                fail(list_, statement_, "axis", "'" + point.values[a].label + "' is not a number, which linear_with needs", "an axis of numbers");
+                fail(list_, statement_, "axis", "'" + point.values[a].label + "' is not a number, which linear_with needs",
+                     "an axis of numbers");
     }
 
     void check_laboratory() const {
@@ -155,7 +169,8 @@ std::set<MethodId> tests_behind(const std::string& property) {
     const std::vector<std::string>& columns = number_columns();
     if (std::find(columns.begin(), columns.end(), property.substr(0, of)) == columns.end()) return {};
     // a column of a test that is run once on a packing: under confinement there is one for each pressure
-    if (const auto method = find_method(property.substr(of + 4)); method && !method_of(*method).specimen.confined) return {*method};
+    if (const auto method = find_method(property.substr(of + 4)); method && !method_of(*method).specimen.confined)
+        return {*method};
     return {};
 }
 
@@ -181,7 +196,8 @@ StudiesByName read_studies(const ClaimList& list) {
     const auto read = [&](const Statement& statement, const std::string& key, const std::string& study) {
         if (studies.contains(study)) return;
         const std::filesystem::path file = list.file.parent_path() / (study + ".toml");
-        if (!std::filesystem::exists(file)) fail(list, statement, key, "there is no study file " + file.string(), "the stem of a study file beside the claims");
+        if (!std::filesystem::exists(file))
+            fail(list, statement, key, "there is no study file " + file.string(), "the stem of a study file beside the claims");
         studies[study].study = read_study(file);
     };
     for (const Claim& claim : list.claims)

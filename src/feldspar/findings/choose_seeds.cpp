@@ -8,13 +8,17 @@ namespace feldspar {
 
 std::vector<std::uint64_t> choose_seeds(const Job& job, std::optional<int> wanted, int usual) {
     if (!job.specimen.packing_file.empty()) {
-        if (wanted && *wanted > 1) throw InputError({{}, 0, 0, "--seeds"}, "several packings are asked for, but the job loads one", "--seeds 1, or a job without a packing");
+        if (wanted && *wanted > 1)
+            throw InputError({{}, 0, 0, "--seeds"}, "several packings are asked for, but the job loads one",
+                             "--seeds 1, or a job without a packing");
         return {job.seeds.front()};
     }
-    if (job.specimen.given_cells.given() && !wanted && job.seeds.size() == 1) return job.seeds;   // other seeds have the same cells
+    if (job.specimen.given_cells.given() && !wanted && job.seeds.size() == 1)
+        return job.seeds;  // other seeds have the same cells
     if (!wanted && job.seeds.size() > 1) return job.seeds;
     const auto count = static_cast<std::size_t>(wanted.value_or(usual));
-    std::vector<std::uint64_t> seeds(job.seeds.begin(), job.seeds.begin() + static_cast<std::ptrdiff_t>(std::min(count, job.seeds.size())));
+    std::vector<std::uint64_t> seeds(job.seeds.begin(),
+                                     job.seeds.begin() + static_cast<std::ptrdiff_t>(std::min(count, job.seeds.size())));
     for (std::uint64_t seed = 1; seeds.size() < count; ++seed)
         if (std::find(seeds.begin(), seeds.end(), seed) == seeds.end()) seeds.push_back(seed);
     return seeds;

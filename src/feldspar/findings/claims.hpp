@@ -18,17 +18,18 @@ namespace feldspar {
 
 /// How a statement is decided. Every rule makes one number a packing, and judges the 95 % interval of their mean.
 enum class Rule {
-    greater,             ///< first minus second, same packing: above 0
-    rises_with,          ///< each step along an axis, and its ends: above 0
-    falls_with,          ///< the same: below 0
-    negligible,          ///< each step along an axis, and its ends: inside the bound
-    matters,             ///< the ends of an axis: outside the bound
-    influence_greater,   ///< relative change over an axis, first minus second, each counted positive in its mean: above 0
-    linear_with,         ///< departure from the straight line through an axis' ends, as a share of the change between them: inside
-    between,             ///< first from the nearer bound, second and third, both ways: above 0
-    closer,              ///< distance from third minus distance from second: above 0
-    above, below,        ///< the value, or first over second: above, below a number
-    within               ///< the value, or first over second, over a number or the laboratory's value, less 1: inside the tolerance
+    greater,            ///< first minus second, same packing: above 0
+    rises_with,         ///< each step along an axis, and its ends: above 0
+    falls_with,         ///< the same: below 0
+    negligible,         ///< each step along an axis, and its ends: inside the bound
+    matters,            ///< the ends of an axis: outside the bound
+    influence_greater,  ///< relative change over an axis, first minus second, each counted positive in its mean: above 0
+    linear_with,        ///< departure from the straight line through an axis' ends, as a share of the change between them: inside
+    between,            ///< first from the nearer bound, second and third, both ways: above 0
+    closer,             ///< distance from third minus distance from second: above 0
+    above,
+    below,  ///< the value, or first over second: above, below a number
+    within  ///< the value, or first over second, over a number or the laboratory's value, less 1: inside the tolerance
 };
 
 const char* name(Rule rule);
@@ -39,9 +40,9 @@ using Selection = std::map<std::string, std::vector<std::string>>;
 /// A property as PropertySummary names it, a number of the ledger of one kind of test ("ms_per_step of brazilian"), or a quotient
 /// of two of these on the same packing.
 struct Quantity {
-    std::string text;      ///< as written
+    std::string text;  ///< as written
     std::string property;
-    std::string divisor;   ///< empty if it is none
+    std::string divisor;  ///< empty if it is none
 };
 
 /// What may still be called nothing: a share of the value, or an amount of the quantity's own unit.
@@ -53,32 +54,32 @@ struct Bound {
 /// One side of a comparison.
 struct Side {
     Quantity quantity;
-    Selection selection;       ///< one label an axis
-    std::string axis;          ///< along which the side moves; empty if it stands still
-    std::string from, to;      ///< labels; empty = the axis' first and last
+    Selection selection;   ///< one label an axis
+    std::string axis;      ///< along which the side moves; empty if it stands still
+    std::string from, to;  ///< labels; empty = the axis' first and last
 };
 
 /// One sentence that can be decided, as it stands in the claims file.
 struct Statement {
     std::string says;
-    std::string study;                 ///< stem of a study file beside the claims file
-    std::vector<std::string> also;     ///< studies with the same axes, shown beside it, without a vote
+    std::string study;              ///< stem of a study file beside the claims file
+    std::vector<std::string> also;  ///< studies with the same axes, shown beside it, without a vote
     Rule rule = Rule::greater;
     Side first, second;
-    std::vector<Quantity> also_property;   ///< other definitions of the property, shown beside it, without a vote
-    Selection third;                   ///< between, closer
-    Selection where;                   ///< only these labels of the axes
-    Bound bound;                       ///< negligible, matters, linear_with, within
-    double number = std::numeric_limits<double>::quiet_NaN();   ///< above, below, within; SI
-    int packings = 5;                  ///< at least so many
-    bool has_second = false;           ///< `second` was given
-    std::string not_evaluated;         ///< why it cannot be decided; then there is no study
-    std::map<std::string, int> lines;  ///< of its keys in the file; "" is its head
+    std::vector<Quantity> also_property;  ///< other definitions of the property, shown beside it, without a vote
+    Selection third;                      ///< between, closer
+    Selection where;                      ///< only these labels of the axes
+    Bound bound;                          ///< negligible, matters, linear_with, within
+    double number = std::numeric_limits<double>::quiet_NaN();  ///< above, below, within; SI
+    int packings = 5;                                          ///< at least so many
+    bool has_second = false;                                   ///< `second` was given
+    std::string not_evaluated;                                 ///< why it cannot be decided; then there is no study
+    std::map<std::string, int> lines;                          ///< of its keys in the file; "" is its head
 };
 
 struct Claim {
-    std::string id;       ///< "C08"
-    std::string figure;   ///< where it stands in the source
+    std::string id;      ///< "C08"
+    std::string figure;  ///< where it stands in the source
     std::string says;
     std::vector<Statement> statements;
 };
@@ -99,7 +100,8 @@ ClaimList parse_claims(const std::string& text, const std::filesystem::path& fil
 /// A study and what the ledger has of it.
 struct StudyResults {
     Study study;
-    std::vector<PointResults> points;   ///< in the study's order; properties also hold the ledger's numbers ("ms_per_step of brazilian")
+    std::vector<PointResults>
+        points;  ///< in the study's order; properties also hold the ledger's numbers ("ms_per_step of brazilian")
 };
 
 using StudiesByName = std::map<std::string, StudyResults>;
@@ -129,20 +131,20 @@ const char* name(Verdict verdict);
 
 /// One number a packing, and what follows from their mean.
 struct Comparison {
-    std::string what;          ///< the labels that are compared, in words
-    std::string unit;          ///< of the interval: "MPa", "%", "deg" or nothing
-    MeanInterval interval;     ///< in that unit; its count is the number of packings
+    std::string what;       ///< the labels that are compared, in words
+    std::string unit;       ///< of the interval: "MPa", "%", "deg" or nothing
+    MeanInterval interval;  ///< in that unit; its count is the number of packings
     Verdict verdict = Verdict::undecided;
 };
 
 struct StatementResult {
     Statement statement;
     std::string study;
-    bool votes = true;   ///< false for `also`
+    bool votes = true;  ///< false for `also`
     Verdict verdict = Verdict::undecided;
     std::vector<Comparison> comparisons;
-    int runs = 0;        ///< that bear on the statement
-    int missing = 0;     ///< of these: neither done nor failed
+    int runs = 0;     ///< that bear on the statement
+    int missing = 0;  ///< of these: neither done nor failed
     int failed = 0;
 
     int count(Verdict wanted) const;
@@ -157,8 +159,9 @@ struct ClaimResult {
 /// Decides a claim that check_claims() has let pass.
 ClaimResult evaluate(const Claim& claim, const StudiesByName& studies);
 
-/// One verdict for several: in part, if some are reproduced and some contradicted; contradicted, if some are and none is reproduced. If none
-/// is contradicted: not run, if any is; reproduced, only if all are; not evaluated, if all are; else undecided.
+/// One verdict for several: in part, if some are reproduced and some contradicted; contradicted, if some are and none is
+/// reproduced. If none is contradicted: not run, if any is; reproduced, only if all are; not evaluated, if all are; else
+/// undecided.
 Verdict together(std::span<const Verdict> verdicts);
 
 /// A line for each comparison.

@@ -13,13 +13,15 @@
 namespace feldspar {
 namespace {
 
-constexpr Verdict all_verdicts[] = {Verdict::reproduced, Verdict::contradicted, Verdict::in_part, Verdict::undecided, Verdict::not_run, Verdict::not_evaluated};
+constexpr Verdict all_verdicts[] = {Verdict::reproduced, Verdict::contradicted, Verdict::in_part,
+                                    Verdict::undecided,  Verdict::not_run,      Verdict::not_evaluated};
 
 /// "11 of 12 reproduced, 1 undecided"
 std::string tally(std::size_t total, const std::function<int(Verdict)>& count) {
     std::vector<std::string> parts;
     for (const Verdict verdict : all_verdicts)
-        if (const int n = count(verdict); n > 0) parts.push_back(fmt::format("{}{} {}", n, parts.empty() ? fmt::format(" of {}", total) : "", name(verdict)));
+        if (const int n = count(verdict); n > 0)
+            parts.push_back(fmt::format("{}{} {}", n, parts.empty() ? fmt::format(" of {}", total) : "", name(verdict)));
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -46,7 +48,8 @@ std::string place(const Claim& claim) {
 std::string lacking(const StatementResult& statement) {
     std::string text;
     if (statement.missing > 0) text = fmt::format("{} of {} runs missing", statement.missing, statement.runs);
-    if (statement.failed > 0) text += fmt::format("{}{} of {} runs failed", text.empty() ? "" : ", ", statement.failed, statement.runs);
+    if (statement.failed > 0)
+        text += fmt::format("{}{} of {} runs failed", text.empty() ? "" : ", ", statement.failed, statement.runs);
     return text;
 }
 
@@ -54,7 +57,8 @@ std::string rule_text(const Statement& statement) {
     std::string text = fmt::format("{}: {}", name(statement.rule), statement.first.quantity.text);
     if (statement.second.quantity.text != statement.first.quantity.text) text += " against " + statement.second.quantity.text;
     if (std::isfinite(statement.bound.size))
-        text += statement.bound.relative ? fmt::format(", bound {:g} %", 100.0 * statement.bound.size) : fmt::format(", bound {:g}", statement.bound.size);
+        text += statement.bound.relative ? fmt::format(", bound {:g} %", 100.0 * statement.bound.size)
+                                         : fmt::format(", bound {:g}", statement.bound.size);
     return text;
 }
 
@@ -73,15 +77,21 @@ std::string csv_number(double value) { return std::isfinite(value) ? fmt::format
 }  // namespace
 
 std::string claims_csv(std::span<const ClaimResult> results) {
-    std::string text = "claim,figure,claim_verdict,statement,study,votes,statement_verdict,runs,missing,failed,rule,compared,mean,low,high,unit,packings,verdict\n";
+    std::string text =
+        "claim,figure,claim_verdict,statement,study,votes,statement_verdict,runs,missing,failed,rule,compared,mean,low,high,unit,"
+        "packings,verdict\n";
     for (const ClaimResult& claim : results)
         for (const StatementResult& s : claim.statements) {
-            const std::string head = fmt::format("{},{},{},{},{},{},{},{},{},{}", csv_cell(claim.claim.id), csv_cell(claim.claim.figure), name(claim.verdict),
-                                                 csv_cell(s.statement.says), csv_cell(s.study), s.votes ? "yes" : "no", name(s.verdict), s.runs, s.missing, s.failed);
-            if (!s.statement.not_evaluated.empty()) text += fmt::format("{},,{},,,,,,{}\n", head, csv_cell(s.statement.not_evaluated), name(s.verdict));
+            const std::string head =
+                fmt::format("{},{},{},{},{},{},{},{},{},{}", csv_cell(claim.claim.id), csv_cell(claim.claim.figure),
+                            name(claim.verdict), csv_cell(s.statement.says), csv_cell(s.study), s.votes ? "yes" : "no",
+                            name(s.verdict), s.runs, s.missing, s.failed);
+            if (!s.statement.not_evaluated.empty())
+                text += fmt::format("{},,{},,,,,,{}\n", head, csv_cell(s.statement.not_evaluated), name(s.verdict));
             for (const Comparison& c : s.comparisons)
-                text += fmt::format("{},{},{},{},{},{},{},{},{}\n", head, csv_cell(rule_text(s.statement)), csv_cell(c.what), csv_number(c.interval.mean),
-                                    csv_number(c.interval.low), csv_number(c.interval.high), c.unit, c.interval.count, name(c.verdict));
+                text += fmt::format("{},{},{},{},{},{},{},{},{}\n", head, csv_cell(rule_text(s.statement)), csv_cell(c.what),
+                                    csv_number(c.interval.mean), csv_number(c.interval.low), csv_number(c.interval.high), c.unit,
+                                    c.interval.count, name(c.verdict));
         }
     return text;
 }
@@ -89,7 +99,8 @@ std::string claims_csv(std::span<const ClaimResult> results) {
 std::string claims_text(std::span<const ClaimResult> results) {
     std::string text;
     for (const ClaimResult& claim : results) {
-        text += fmt::format("{}  {}: {}\n  {}: {}\n", claim.claim.id, place(claim.claim), claim.claim.says, name(claim.verdict), tally(claim));
+        text += fmt::format("{}  {}: {}\n  {}: {}\n", claim.claim.id, place(claim.claim), claim.claim.says, name(claim.verdict),
+                            tally(claim));
         for (const StatementResult& s : claim.statements) {
             text += fmt::format("  - {}\n", s.statement.says);
             if (!s.statement.not_evaluated.empty()) {
@@ -97,37 +108,46 @@ std::string claims_text(std::span<const ClaimResult> results) {
                 continue;
             }
             const std::string lack = lacking(s);
-            text += fmt::format("    {}{}: {} ({}){}; {}\n", s.study, s.votes ? "" : " (no vote)", name(s.verdict), tally(s), lack.empty() ? "" : ", " + lack,
-                                rule_text(s.statement));
+            text += fmt::format("    {}{}: {} ({}){}; {}\n", s.study, s.votes ? "" : " (no vote)", name(s.verdict), tally(s),
+                                lack.empty() ? "" : ", " + lack, rule_text(s.statement));
             for (const Comparison& c : s.comparisons)
                 if (c.interval.count > 0) text += fmt::format("      {:14} {}: {}\n", name(c.verdict), c.what, interval_text(c));
         }
         text += "\n";
     }
     text += fmt::format("Claims: {}\n", tally(results.size(), [&](Verdict verdict) {
-        return static_cast<int>(std::count_if(results.begin(), results.end(), [&](const ClaimResult& claim) { return claim.verdict == verdict; }));
-    }));
+                            return static_cast<int>(std::count_if(results.begin(), results.end(), [&](const ClaimResult& claim) {
+                                return claim.verdict == verdict;
+                            }));
+                        }));
     return text;
 }
 
 std::string claims_markdown(const ClaimList& list, std::span<const ClaimResult> results) {
-    std::string text = fmt::format("# {}\n\n{}\n\n| claim | figure | what it says | verdict | statements |\n|---|---|---|---|---|\n", list.title, list.source);
+    std::string text =
+        fmt::format("# {}\n\n{}\n\n| claim | figure | what it says | verdict | statements |\n|---|---|---|---|---|\n", list.title,
+                    list.source);
     for (const ClaimResult& claim : results)
-        text += fmt::format("| {} | {} | {} | {} | {} |\n", claim.claim.id, claim.claim.figure, claim.claim.says, name(claim.verdict), tally(claim));
+        text += fmt::format("| {} | {} | {} | {} | {} |\n", claim.claim.id, claim.claim.figure, claim.claim.says,
+                            name(claim.verdict), tally(claim));
     for (const ClaimResult& claim : results) {
-        text += fmt::format("\n## {}: {}\n\n{}: {}.\n", claim.claim.id, name(claim.verdict), place(claim.claim), claim.claim.says);
+        text +=
+            fmt::format("\n## {}: {}\n\n{}: {}.\n", claim.claim.id, name(claim.verdict), place(claim.claim), claim.claim.says);
         for (const StatementResult& s : claim.statements) {
             if (!s.statement.not_evaluated.empty()) {
                 text += fmt::format("\n**{}**: not evaluated, because {}.\n", s.statement.says, s.statement.not_evaluated);
                 continue;
             }
             const std::string lack = lacking(s);
-            text += fmt::format("\n**{}**: {} ({}){}. Study `{}`{}, `{}`.\n\n| compared | mean | 95 % interval | packings | |\n|---|---|---|---|---|\n", s.statement.says,
-                                name(s.verdict), tally(s), lack.empty() ? "" : ", " + lack, s.study, s.votes ? "" : " (shown beside, without a vote)",
-                                rule_text(s.statement));
+            text += fmt::format(
+                "\n**{}**: {} ({}){}. Study `{}`{}, `{}`.\n\n| compared | mean | 95 % interval | packings | "
+                "|\n|---|---|---|---|---|\n",
+                s.statement.says, name(s.verdict), tally(s), lack.empty() ? "" : ", " + lack, s.study,
+                s.votes ? "" : " (shown beside, without a vote)", rule_text(s.statement));
             for (const Comparison& c : s.comparisons)
-                text += fmt::format("| {} | {}{} | {} to {} | {} | {} |\n", c.what, number(c.interval.mean), c.unit.empty() ? "" : " " + c.unit,
-                                    number(c.interval.low), number(c.interval.high), c.interval.count, name(c.verdict));
+                text += fmt::format("| {} | {}{} | {} to {} | {} | {} |\n", c.what, number(c.interval.mean),
+                                    c.unit.empty() ? "" : " " + c.unit, number(c.interval.low), number(c.interval.high),
+                                    c.interval.count, name(c.verdict));
         }
     }
     return text;

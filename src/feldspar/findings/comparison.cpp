@@ -19,7 +19,7 @@ constexpr long long most_subsets = 2000;
 
 /// Interval and chance of a change of `mean` with this standard error.
 void judge(Change& change, double standard_error, double degrees_of_freedom) {
-    if (!(standard_error > 0.0)) {   // the packings agree to the last digit
+    if (!(standard_error > 0.0)) {  // the packings agree to the last digit
         change.low = change.high = change.mean;
         change.chance = change.mean == 0.0 ? 1.0 : 0.0;
         return;
@@ -85,11 +85,13 @@ Subsample subsample(std::span<const double> values, int k, double scale) {
             for (std::size_t i = 0; i < chosen.size(); ++i) part[i] = values[static_cast<std::size_t>(chosen[i])];
             take(part);
         } while (next_subset(chosen, n));
-    } else {   // runs of packings, taken with every stride, stand for all subsets
+    } else {  // runs of packings, taken with every stride, stand for all subsets
         for (int stride = 1; stride < n && counted < most_subsets; ++stride) {
             if (std::gcd(stride, n) != 1) continue;
             for (int first = 0; first < n; ++first) {
-                for (int i = 0; i < k; ++i) part[static_cast<std::size_t>(i)] = values[static_cast<std::size_t>((first + static_cast<long long>(i) * stride) % n)];
+                for (int i = 0; i < k; ++i)
+                    part[static_cast<std::size_t>(i)] =
+                        values[static_cast<std::size_t>((first + static_cast<long long>(i) * stride) % n)];
                 take(part);
             }
         }
@@ -127,24 +129,27 @@ Change change_between_means(const PropertyStatistics& base, const PropertyStatis
     change.mean = b.mean / a.mean - 1.0;
     if (change.count < 2) return change;
     const double scale = std::abs(a.mean);
-    const double share_a = std::pow(a.standard_deviation / scale, 2) / a.count, share_b = std::pow(b.standard_deviation / scale, 2) / b.count;
+    const double share_a = std::pow(a.standard_deviation / scale, 2) / a.count,
+                 share_b = std::pow(b.standard_deviation / scale, 2) / b.count;
     const double variance = share_a + share_b;
-    const double freedom = variance > 0.0 ? variance * variance / (share_a * share_a / (a.count - 1) + share_b * share_b / (b.count - 1))
-                                          : a.count + b.count - 2.0;
-    change.deviation = std::sqrt(0.5 * (a.standard_deviation * a.standard_deviation + b.standard_deviation * b.standard_deviation)) / scale;
+    const double freedom = variance > 0.0
+                               ? variance * variance / (share_a * share_a / (a.count - 1) + share_b * share_b / (b.count - 1))
+                               : a.count + b.count - 2.0;
+    change.deviation =
+        std::sqrt(0.5 * (a.standard_deviation * a.standard_deviation + b.standard_deviation * b.standard_deviation)) / scale;
     judge(change, std::sqrt(variance), freedom);
     return change;
 }
 
 int packings_for_change(const Change& change, double half_width) {
     const double samples = change.by_packing ? 1.0 : 2.0;
-    return smallest_count(half_width, [&](int n) {
-        return student_quantile(samples * (n - 1)) * change.deviation * std::sqrt(samples / n);
-    });
+    return smallest_count(half_width,
+                          [&](int n) { return student_quantile(samples * (n - 1)) * change.deviation * std::sqrt(samples / n); });
 }
 
 int packings_for_mean(double deviation, double half_width) {
-    return smallest_count(half_width, [&](int n) { return student_quantile(n - 1.0) * deviation / std::sqrt(static_cast<double>(n)); });
+    return smallest_count(half_width,
+                          [&](int n) { return student_quantile(n - 1.0) * deviation / std::sqrt(static_cast<double>(n)); });
 }
 
 std::vector<bool> stand_together(std::span<const double> chances) {

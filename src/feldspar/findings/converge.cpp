@@ -21,15 +21,18 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 bool is_compared(const std::string& property) {
     const RockProperty* known = kept_rock_property(property);
     if (known == nullptr) return false;
-    return known->source == RockProperty::Source::confined_strength || (known->source == RockProperty::Source::test && known->reported());
+    return known->source == RockProperty::Source::confined_strength ||
+           (known->source == RockProperty::Source::test && known->reported());
 }
 
 std::vector<std::string> compared_properties(std::span<const PointResults> points, const std::vector<std::size_t>& which) {
     std::vector<std::string> found;
     for (const std::size_t p : which)
         for (const auto& [property, statistics] : points[p].properties.values)
-            if (is_compared(property) && std::find(found.begin(), found.end(), property) == found.end()) found.push_back(property);
-    std::sort(found.begin(), found.end(), [](const std::string& a, const std::string& b) { return user_quantity(a).rank < user_quantity(b).rank; });
+            if (is_compared(property) && std::find(found.begin(), found.end(), property) == found.end())
+                found.push_back(property);
+    std::sort(found.begin(), found.end(),
+              [](const std::string& a, const std::string& b) { return user_quantity(a).rank < user_quantity(b).rank; });
     return found;
 }
 
@@ -59,14 +62,15 @@ std::string percent(double share) {
 /// The same rounded upwards, for "within".
 std::string percent_up(double share) {
     const double size = 100.0 * std::abs(share);
-    return size >= 9.95 ? fmt::format("{:.0f} %", std::ceil(size - 1e-9)) : fmt::format("{:.1f} %", 0.1 * std::ceil(10.0 * size - 1e-9));
+    return size >= 9.95 ? fmt::format("{:.0f} %", std::ceil(size - 1e-9))
+                        : fmt::format("{:.1f} %", 0.1 * std::ceil(10.0 * size - 1e-9));
 }
 
 std::string change_words(const PropertyAlong& along, const ValueAt& value) {
     const Change& change = value.change;
     const double least = std::min(std::abs(change.low), std::abs(change.high));
-    return fmt::format("{} by {} from {} to {} ({} to {})", change.mean > 0.0 ? "grows" : "falls", percent(change.mean), along.values[along.base].label, value.label,
-                       percent(least), percent(change.bound()));
+    return fmt::format("{} by {} from {} to {} ({} to {})", change.mean > 0.0 ? "grows" : "falls", percent(change.mean),
+                       along.values[along.base].label, value.label, percent(least), percent(change.bound()));
 }
 
 std::string packings_words(int packings) {
@@ -75,11 +79,14 @@ std::string packings_words(int packings) {
 }
 
 /// Half the interval at which either "independent" or "depends" could be said of such a change.
-double deciding_half_width(const Change& change, double within) { return std::max(within - std::abs(change.mean), std::abs(change.mean)); }
+double deciding_half_width(const Change& change, double within) {
+    return std::max(within - std::abs(change.mean), std::abs(change.mean));
+}
 
 /// "E", "UCS": a property without its unit.
 std::string short_name(const std::string& property) {
-    if (const auto pressure_MPa = pressure_of_confined_strength_MPa(property)) return fmt::format("sigma_1 at {:g} MPa", *pressure_MPa);
+    if (const auto pressure_MPa = pressure_of_confined_strength_MPa(property))
+        return fmt::format("sigma_1 at {:g} MPa", *pressure_MPa);
     return property.substr(0, property.find('_'));
 }
 
@@ -112,10 +119,12 @@ Finding summed(const std::vector<PropertyAlong>& properties) {
     }
     std::vector<std::string> parts;
     for (const PropertyAlong& p : properties)
-        if (p.verdict.dependence == Dependence::depends) parts.push_back(short_name(p.property) + " " + after_colon(p.verdict.words));
+        if (p.verdict.dependence == Dependence::depends)
+            parts.push_back(short_name(p.property) + " " + after_colon(p.verdict.words));
     const bool depends = !parts.empty();
     for (const PropertyAlong& p : properties)
-        if (p.verdict.dependence == Dependence::undecided) parts.push_back((depends ? "undecided " : "") + short_name(p.property) + ": " + after_colon(p.verdict.words));
+        if (p.verdict.dependence == Dependence::undecided)
+            parts.push_back((depends ? "undecided " : "") + short_name(p.property) + ": " + after_colon(p.verdict.words));
     const std::string same = names_of(properties, Dependence::independent);
     if (!same.empty()) parts.push_back(fmt::format("{} independent within {}", same, percent_up(independent_bound)));
     verdict.words = fmt::format("{}: {}", name(verdict.dependence), fmt::join(parts, "; "));
@@ -124,7 +133,8 @@ Finding summed(const std::vector<PropertyAlong>& properties) {
 
 AxisResult judge_axis(const ConvergeAxis& axis, std::size_t a, std::span<const PointResults> points) {
     AxisResult result{axis, {}, {}};
-    for (const std::string& property : compared_properties(points, axis.points)) result.properties.push_back(along(axis, a, points, property));
+    for (const std::string& property : compared_properties(points, axis.points))
+        result.properties.push_back(along(axis, a, points, property));
     return result;
 }
 
@@ -137,7 +147,8 @@ std::vector<std::vector<bool>> standing(const AxisResult& axis) {
     std::vector<std::vector<bool>> result;
     std::size_t next = 0;
     for (const PropertyAlong& p : axis.properties) {
-        result.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(next), flat.begin() + static_cast<std::ptrdiff_t>(next + p.values.size()));
+        result.emplace_back(flat.begin() + static_cast<std::ptrdiff_t>(next),
+                            flat.begin() + static_cast<std::ptrdiff_t>(next + p.values.size()));
         next += p.values.size();
     }
     return result;
@@ -161,12 +172,15 @@ Finding summed(const std::vector<SeedResult>& seeds, double within) {
         verdict.dependence = std::max(verdict.dependence, s.verdict.dependence);
         verdict.bound = std::isfinite(s.verdict.bound) ? std::max(verdict.bound, s.verdict.bound) : nan;
         verdict.packings = std::max(verdict.packings, s.verdict.packings);
-        parts.push_back(std::isfinite(s.verdict.bound) ? fmt::format("{} +- {}", short_name(s.property), percent_up(s.verdict.bound)) : short_name(s.property) + " without an interval");
+        parts.push_back(std::isfinite(s.verdict.bound)
+                            ? fmt::format("{} +- {}", short_name(s.property), percent_up(s.verdict.bound))
+                            : short_name(s.property) + " without an interval");
     }
     if (seeds.empty()) return {Dependence::undecided, "undecided: no property could be read", nan, 0};
     const bool enough = verdict.dependence == Dependence::independent;
     verdict.words = fmt::format("{}: {}", enough ? "enough packings" : "not enough packings", fmt::join(parts, ", "));
-    if (!enough && verdict.packings > 0) verdict.words += fmt::format("; {} give +- {} for all", packings_words(verdict.packings), percent(within));
+    if (!enough && verdict.packings > 0)
+        verdict.words += fmt::format("; {} give +- {} for all", packings_words(verdict.packings), percent(within));
     return verdict;
 }
 
@@ -174,16 +188,20 @@ std::string overall_of(const Convergence& result) {
     std::string independent, undecided, depends;
     const auto add = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : "; ") + item; };
     for (const AxisResult& axis : result.axes) {
-        if (axis.verdict.dependence == Dependence::independent) add(independent, fmt::format("{} (within {})", axis.axis.name, percent_up(axis.verdict.bound)));
+        if (axis.verdict.dependence == Dependence::independent)
+            add(independent, fmt::format("{} (within {})", axis.axis.name, percent_up(axis.verdict.bound)));
         if (axis.verdict.dependence == Dependence::undecided) add(undecided, axis.axis.name);
-        if (axis.verdict.dependence == Dependence::depends) add(depends, fmt::format("{} ({})", axis.axis.name, names_of(axis.properties, Dependence::depends)));
+        if (axis.verdict.dependence == Dependence::depends)
+            add(depends, fmt::format("{} ({})", axis.axis.name, names_of(axis.properties, Dependence::depends)));
     }
     std::string text;
     if (!depends.empty()) text += fmt::format("The answer depends on {}. ", depends);
     if (!independent.empty()) text += fmt::format("It is independent of {}. ", independent);
     if (!undecided.empty()) text += fmt::format("Undecided: {}. ", undecided);
     const std::string& seeds = result.seed_verdict.words;
-    if (!seeds.empty()) text += std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(seeds.front())))) + seeds.substr(1) + ".";
+    if (!seeds.empty())
+        text +=
+            std::string(1, static_cast<char>(std::toupper(static_cast<unsigned char>(seeds.front())))) + seeds.substr(1) + ".";
     return text;
 }
 
@@ -191,9 +209,12 @@ std::string overall_of(const Convergence& result) {
 
 const char* name(Dependence dependence) {
     switch (dependence) {
-        case Dependence::independent: return "independent";
-        case Dependence::undecided: return "undecided";
-        case Dependence::depends: return "depends";
+        case Dependence::independent:
+            return "independent";
+        case Dependence::undecided:
+            return "undecided";
+        case Dependence::depends:
+            return "depends";
     }
     return "?";
 }
@@ -227,19 +248,23 @@ Finding judge_property(const PropertyAlong& along, const std::vector<bool>& stan
         verdict.dependence = Dependence::independent;
         verdict.words = "independent within " + percent_up(verdict.bound);
     } else {
-        verdict.words = fmt::format("undecided: the scatter of {} packings allows no statement below {}; {}", least_count, percent_up(verdict.bound),
-                                    packings_words(std::max(verdict.packings, least_count + 1)));
+        verdict.words = fmt::format("undecided: the scatter of {} packings allows no statement below {}; {}", least_count,
+                                    percent_up(verdict.bound), packings_words(std::max(verdict.packings, least_count + 1)));
     }
     return verdict;
 }
 
 Finding judge_packings(const MeanInterval& mean, double within) {
-    if (mean.count < 2) return {Dependence::undecided, "undecided: one packing has no scatter to judge by; two at least would", nan, 0};
+    if (mean.count < 2)
+        return {Dependence::undecided, "undecided: one packing has no scatter to judge by; two at least would", nan, 0};
     const double scale = std::abs(mean.mean), half = mean.half_width() / scale;
-    if (half <= within) return {Dependence::independent, fmt::format("known to +- {} with {} packings", percent_up(half), mean.count), half, 0};
+    if (half <= within)
+        return {Dependence::independent, fmt::format("known to +- {} with {} packings", percent_up(half), mean.count), half, 0};
     const int packings = std::max(packings_for_mean(mean.standard_deviation / scale, within), mean.count + 1);
-    return {Dependence::undecided, fmt::format("known to +- {} only with {} packings; {} give +- {}", percent_up(half), mean.count, packings_words(packings), percent(within)), half,
-            packings};
+    return {Dependence::undecided,
+            fmt::format("known to +- {} only with {} packings; {} give +- {}", percent_up(half), mean.count,
+                        packings_words(packings), percent(within)),
+            half, packings};
 }
 
 Convergence judge_convergence(const ConvergePlan& plan, std::span<const PointResults> points) {
@@ -247,7 +272,8 @@ Convergence judge_convergence(const ConvergePlan& plan, std::span<const PointRes
     for (std::size_t a = 0; a < plan.axes.size(); ++a) {
         AxisResult axis = judge_axis(plan.axes[a], a, points);
         const std::vector<std::vector<bool>> stands = standing(axis);
-        for (std::size_t p = 0; p < axis.properties.size(); ++p) axis.properties[p].verdict = judge_property(axis.properties[p], stands[p], plan.within);
+        for (std::size_t p = 0; p < axis.properties.size(); ++p)
+            axis.properties[p].verdict = judge_property(axis.properties[p], stands[p], plan.within);
         axis.verdict = summed(axis.properties);
         result.axes.push_back(std::move(axis));
     }

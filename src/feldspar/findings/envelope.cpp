@@ -9,11 +9,11 @@
 
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/error.hpp"
+#include "feldspar/findings/choose_seeds.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/strength_envelope.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/user_units.hpp"
-#include "feldspar/findings/choose_seeds.hpp"
 
 namespace feldspar {
 
@@ -27,13 +27,16 @@ bool has(const Job& job, MethodId kind) {
 
 /// The job's first test of a kind, else one with default settings.
 TestSpec pattern_of(const Job& job, MethodId kind) {
-    const auto found = std::find_if(job.tests.begin(), job.tests.end(), [kind](const TestSpec& test) { return test.kind == kind; });
+    const auto found =
+        std::find_if(job.tests.begin(), job.tests.end(), [kind](const TestSpec& test) { return test.kind == kind; });
     if (found != job.tests.end()) return *found;
     const MethodSpecimen& method = method_of(kind).specimen;
     TestSpec test = usual_test(kind);
     if (method.confined) test.stop_fraction = enough_fall;
-    test.control = usual_control(kind, std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.numerics.kind == NumericsKind::adaptive; }));
-    const bool particles = std::any_of(job.variants.begin(), job.variants.end(), [](const Variant& v) { return v.model.kind != GrainKind::flexible; });
+    test.control = usual_control(kind, std::any_of(job.variants.begin(), job.variants.end(),
+                                                   [](const Variant& v) { return v.numerics.kind == NumericsKind::adaptive; }));
+    const bool particles = std::any_of(job.variants.begin(), job.variants.end(),
+                                       [](const Variant& v) { return v.model.kind != GrainKind::flexible; });
     if (method.own_disc || (particles && !method.glued)) test.plate_mu = method.plate_mu;
     return test;
 }
@@ -48,7 +51,9 @@ std::vector<double> stresses_of(const Job& job, const EnvelopeOptions& options, 
         stresses = default_series(expected);
         std::vector<double> shown;
         for (const double s : stresses) shown.push_back(s * MPa);
-        remarks.push_back(fmt::format("The job has no biaxial test: sigma_3 = {:g} MPa, from an expected uniaxial strength of {:.3g} MPa.", fmt::join(shown, ", "), expected * MPa));
+        remarks.push_back(
+            fmt::format("The job has no biaxial test: sigma_3 = {:g} MPa, from an expected uniaxial strength of {:.3g} MPa.",
+                        fmt::join(shown, ", "), expected * MPa));
     }
     std::sort(stresses.begin(), stresses.end());
     stresses.erase(std::unique(stresses.begin(), stresses.end()), stresses.end());
@@ -59,7 +64,10 @@ void check_outline(const Job& job) {
     const Shape shape = job.specimen.outline.shape;
     if (shape == Shape::disc || shape == Shape::half_disc || shape == Shape::ring)
         throw InputError({job.file.string(), 0, 0, "specimen.shape"},
-                         fmt::format("an envelope needs compression tests, which press on flat ends, and a {} has none", shape == Shape::disc ? "disc" : shape == Shape::ring ? "ring" : "half disc"),
+                         fmt::format("an envelope needs compression tests, which press on flat ends, and a {} has none",
+                                     shape == Shape::disc   ? "disc"
+                                     : shape == Shape::ring ? "ring"
+                                                            : "half disc"),
                          "shape = \"rectangle\"; the Brazilian test cuts its own disc");
 }
 
@@ -89,7 +97,8 @@ EnvelopePlan plan_envelope(const Job& job, const EnvelopeOptions& options) {
     Job whole = job;
     whole.seeds = choose_seeds(job, options.seeds, usual_packings);
     for (Variant& variant : whole.variants) variant.seeds.clear();
-    const MethodId compression = method_of_strength("UCS"), confined = method_of_confined_strength(), tension = method_of_strength("DTS"), splitting = method_of_strength("BTS");
+    const MethodId compression = method_of_strength("UCS"), confined = method_of_confined_strength(),
+                   tension = method_of_strength("DTS"), splitting = method_of_strength("BTS");
     whole.tests = {pattern_of(job, compression)};
     for (const double sigma3_Pa : stresses_of(job, options, plan.remarks)) {
         whole.tests.push_back(pattern_of(job, confined));
@@ -102,12 +111,15 @@ EnvelopePlan plan_envelope(const Job& job, const EnvelopeOptions& options) {
         whole.tests.push_back(pattern_of(job, splitting));
         whole.tests.back().specimen = *disc;
     } else {
-        plan.remarks.emplace_back("No Brazilian test: the specimen is a polygon, which does not say how large the disc is to be.");
+        plan.remarks.emplace_back(
+            "No Brazilian test: the specimen is a polygon, which does not say how large the disc is to be.");
     }
     for (TestSpec& test : whole.tests) test.seeds.clear();
     for (const MethodId kind : {compression, tension, splitting})
-        if (!has(job, kind) && has(whole, kind)) plan.remarks.push_back(fmt::format("The job has no {} test: one with default settings was added.", name(kind)));
-    plan.study = study_of(whole, job.name + "-envelope", options.results.value_or(std::filesystem::path("results") / (job.name + "-envelope")));
+        if (!has(job, kind) && has(whole, kind))
+            plan.remarks.push_back(fmt::format("The job has no {} test: one with default settings was added.", name(kind)));
+    plan.study = study_of(whole, job.name + "-envelope",
+                          options.results.value_or(std::filesystem::path("results") / (job.name + "-envelope")));
     plan.study.title = "Strength envelope of " + job.name;
     return plan;
 }

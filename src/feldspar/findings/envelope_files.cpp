@@ -9,10 +9,10 @@
 
 #include "feldspar/base/printable.hpp"
 #include "feldspar/base/text_table.hpp"
+#include "feldspar/findings/envelope.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/html_page.hpp"
 #include "feldspar/output/report_assets.hpp"
-#include "feldspar/findings/envelope.hpp"
 #include "feldspar/study/report_json.hpp"
 #include "feldspar/study/study_table.hpp"
 
@@ -20,8 +20,8 @@ namespace feldspar {
 
 namespace {
 
-/// Where a test stands in the plane of principal stresses (Pa, compression positive): direct tension at (-DTS, 0), the Brazilian test at
-/// the stresses of an elastic disc's centre, (-BTS, 3 BTS).
+/// Where a test stands in the plane of principal stresses (Pa, compression positive): direct tension at (-DTS, 0), the Brazilian
+/// test at the stresses of an elastic disc's centre, (-BTS, 3 BTS).
 struct StressState {
     double sigma3_Pa;
     double sigma1_Pa;
@@ -34,7 +34,9 @@ StressState state_of(const TestResult& result) {
     return {least * strength + result.test.sigma3_Pa, most * strength};
 }
 
-bool counts(const TestResult& result) { return result.properties.peak_reached && std::isfinite(result.properties.peak_stress_Pa); }
+bool counts(const TestResult& result) {
+    return result.properties.peak_reached && std::isfinite(result.properties.peak_stress_Pa);
+}
 
 Json tests_json(std::span<const TestResult> results) {
     Json list = Json::array();
@@ -92,7 +94,9 @@ Json curves_json(const CurvePair& pair) {
 }
 
 Json judgement_json(const CurveJudgement& judgement) {
-    return {{"misfit_MPa", json_number(judgement.misfit_Pa * MPa)}, {"means_within_interval", judgement.through}, {"means_with_interval", judgement.judged}};
+    return {{"misfit_MPa", json_number(judgement.misfit_Pa * MPa)},
+            {"means_within_interval", judgement.through},
+            {"means_with_interval", judgement.judged}};
 }
 
 Json measured_json(const EnvelopeFits& fits) {
@@ -136,7 +140,8 @@ Json envelope_json(const PointResults& point, bool with_tension) {
 Json laboratory_with_points(const Job& job) {
     Json json = laboratory_json(job);
     json["confined"] = Json::array();
-    for (const ConfinedStrength& c : job.laboratory_confined) json["confined"].push_back({json_number(c.sigma3_Pa * MPa), json_number(c.sigma1_Pa * MPa)});
+    for (const ConfinedStrength& c : job.laboratory_confined)
+        json["confined"].push_back({json_number(c.sigma3_Pa * MPa), json_number(c.sigma1_Pa * MPa)});
     return json;
 }
 
@@ -156,29 +161,37 @@ Json whole_json(const Study& study, std::span<const PointResults> points, bool w
 
 std::string csv(const Study& study, std::span<const PointResults> points, const Provenance& provenance) {
     std::string text = fmt::format(
-        "# {}: strengths of all tests\n# signs: compression positive; sigma3 and sigma1: direct tension (-DTS, 0), Brazilian test (-BTS, 3 BTS) as at the centre "
-        "of an elastic disc\n# feldspar {}, commit {}\n# columns: variant; test; seed of the packing; sigma3 [MPa]; sigma1 [MPa]; strength [MPa], a positive "
-        "magnitude; peak_reached 1 or 0 (then the strength is a lower bound and is in no fit); grade of the quasi-static evidence\n"
+        "# {}: strengths of all tests\n# signs: compression positive; sigma3 and sigma1: direct tension (-DTS, 0), Brazilian "
+        "test (-BTS, 3 BTS) as at the centre "
+        "of an elastic disc\n# feldspar {}, commit {}\n# columns: variant; test; seed of the packing; sigma3 [MPa]; sigma1 "
+        "[MPa]; strength [MPa], a positive "
+        "magnitude; peak_reached 1 or 0 (then the strength is a lower bound and is in no fit); grade of the quasi-static "
+        "evidence\n"
         "variant,test,seed,sigma3_MPa,sigma1_MPa,strength_MPa,peak_reached,grade\n",
         printable(study.title, LineEnds::escaped), provenance.version, provenance.commit);
     for (const PointResults& point : points)
         for (const TestResult& r : point.results) {
             const StressState state = state_of(r);
-            text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(point_label(point)), name(r.test.kind), r.seed, csv_number(state.sigma3_Pa * MPa),
-                                csv_number(state.sigma1_Pa * MPa), csv_number(r.properties.peak_stress_Pa * MPa), counts(r) ? 1 : 0, r.evidence.grade);
+            text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_cell(point_label(point)), name(r.test.kind), r.seed,
+                                csv_number(state.sigma3_Pa * MPa), csv_number(state.sigma1_Pa * MPa),
+                                csv_number(r.properties.peak_stress_Pa * MPa), counts(r) ? 1 : 0, r.evidence.grade);
         }
     return text;
 }
 
 std::string interval_text(const MeanInterval& interval, double factor) {
-    return interval.count < 2 ? "-" : fmt::format("{} .. {}", table_number(interval.low * factor), table_number(interval.high * factor));
+    return interval.count < 2
+               ? "-"
+               : fmt::format("{} .. {}", table_number(interval.low * factor), table_number(interval.high * factor));
 }
 
 std::string strength_table(const EnvelopeFits& fits, std::size_t columns) {
     std::vector<Row> rows{{"sigma_3 MPa", "sigma_1 MPa", "95 % interval", "n", "line", "parabola"}};
     for (const StrengthAt& s : fits.strengths)
-        rows.push_back({fmt::format("{:g}", s.sigma3_Pa * MPa), table_number(s.sigma1_Pa.mean * MPa), interval_text(s.sigma1_Pa, MPa), std::to_string(s.sigma1_Pa.count),
-                        table_number(fits.joint.mohr_coulomb_at(s.sigma3_Pa) * MPa), table_number(fits.joint.hoek_brown_at(s.sigma3_Pa) * MPa)});
+        rows.push_back({fmt::format("{:g}", s.sigma3_Pa * MPa), table_number(s.sigma1_Pa.mean * MPa),
+                        interval_text(s.sigma1_Pa, MPa), std::to_string(s.sigma1_Pa.count),
+                        table_number(fits.joint.mohr_coulomb_at(s.sigma3_Pa) * MPa),
+                        table_number(fits.joint.hoek_brown_at(s.sigma3_Pa) * MPa)});
     return aligned(rows, 0, columns);
 }
 
@@ -191,10 +204,11 @@ std::string constant_table(const Job& job, const EnvelopeFits& fits, std::size_t
     };
     const auto add = [&](const std::string& property, const MeanInterval& interval, const std::string& joint) {
         const UserQuantity quantity = user_quantity(property);
-        rows.push_back({quantity.label, quantity.unit, table_number(interval.mean * quantity.factor), interval_text(interval, quantity.factor), std::to_string(interval.count), joint,
-                        laboratory(property)});
+        rows.push_back({quantity.label, quantity.unit, table_number(interval.mean * quantity.factor),
+                        interval_text(interval, quantity.factor), std::to_string(interval.count), joint, laboratory(property)});
     };
-    for (const EnvelopeConstant& c : fits.constants) add(c.property, c.packings, table_number(c.joint * user_quantity(c.property).factor));
+    for (const EnvelopeConstant& c : fits.constants)
+        add(c.property, c.packings, table_number(c.joint * user_quantity(c.property).factor));
     add("UCS_Pa", fits.UCS_measured, "measured");
     for (const TensileStrength& t : fits.tension) add(t.property, t.measured, "measured");
     return aligned(rows, 2, columns, 2);
@@ -203,20 +217,21 @@ std::string constant_table(const Job& job, const EnvelopeFits& fits, std::size_t
 std::string goodness_table(const CurvePair& joint, std::size_t columns) {
     const auto R2 = [](double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : std::string("-"); };
     return aligned({{"Joint fit", "rms residual MPa", "R2"},
-                          {"Mohr-Coulomb line", table_number(joint.mohr_coulomb.rms_Pa * MPa), R2(joint.mohr_coulomb.R2)},
-                          {"Hoek-Brown parabola", table_number(joint.hoek_brown.rms_Pa * MPa), R2(joint.hoek_brown.R2)}},
-                         1, columns);
+                    {"Mohr-Coulomb line", table_number(joint.mohr_coulomb.rms_Pa * MPa), R2(joint.mohr_coulomb.R2)},
+                    {"Hoek-Brown parabola", table_number(joint.hoek_brown.rms_Pa * MPa), R2(joint.hoek_brown.R2)}},
+                   1, columns);
 }
 
 std::string grades_text(std::span<const TestResult> results) {
     const Json grades = grades_json(results);
-    return fmt::format("Quasi-static: {} runs of grade A, {} B, {} C (strength not shown to be that of slow loading).\n", grades["A"].get<int>(), grades["B"].get<int>(), grades["C"].get<int>());
+    return fmt::format("Quasi-static: {} runs of grade A, {} B, {} C (strength not shown to be that of slow loading).\n",
+                       grades["A"].get<int>(), grades["B"].get<int>(), grades["C"].get<int>());
 }
 
 }  // namespace
 
-void write_envelope(const std::filesystem::path& directory, const Study& study, std::span<const PointResults> points, bool with_tension,
-                    const Provenance& provenance) {
+void write_envelope(const std::filesystem::path& directory, const Study& study, std::span<const PointResults> points,
+                    bool with_tension, const Provenance& provenance) {
     const Json json = whole_json(study, points, with_tension, provenance);
     write_beside(directory / "envelope.csv", csv(study, points, provenance));
     write_beside(directory / "envelope.json", json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -233,8 +248,10 @@ std::string envelope_text(const Study& study, std::span<const PointResults> poin
             text += "No compression test has reached its peak.\n";
             continue;
         }
-        text += strength_table(fits, columns) + "\n" + constant_table(study.points.front().job, fits, columns) + "\n" + goodness_table(fits.joint, columns) + "\n";
-        text += wrapped_text(fits.verdict, {}, columns) + wrapped_text(grades_text(point.results), {}, columns) + wrapped_text(fits.method, {}, columns);
+        text += strength_table(fits, columns) + "\n" + constant_table(study.points.front().job, fits, columns) + "\n" +
+                goodness_table(fits.joint, columns) + "\n";
+        text += wrapped_text(fits.verdict, {}, columns) + wrapped_text(grades_text(point.results), {}, columns) +
+                wrapped_text(fits.method, {}, columns);
     }
     return text;
 }

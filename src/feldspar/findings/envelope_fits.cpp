@@ -27,14 +27,16 @@ using BySeed = std::map<std::uint64_t, double>;
 BySeed strengths_of(std::span<const TestResult> results, MethodId kind) {
     BySeed found;
     for (const TestResult& r : results)
-        if (r.test.kind == kind && r.properties.peak_reached && std::isfinite(r.properties.peak_stress_Pa)) found.emplace(r.seed, r.properties.peak_stress_Pa);
+        if (r.test.kind == kind && r.properties.peak_reached && std::isfinite(r.properties.peak_stress_Pa))
+            found.emplace(r.seed, r.properties.peak_stress_Pa);
     return found;
 }
 
 std::vector<StrengthPoint> compression_points(std::span<const TestResult> results) {
     std::map<std::pair<std::uint64_t, double>, double> found;
     for (const TestResult& r : results) {
-        if (!method_of(r.test).loading.on_envelope || !r.properties.peak_reached || !std::isfinite(r.properties.peak_stress_Pa)) continue;
+        if (!method_of(r.test).loading.on_envelope || !r.properties.peak_reached || !std::isfinite(r.properties.peak_stress_Pa))
+            continue;
         found.emplace(std::pair(r.seed, r.test.sigma3_Pa), r.properties.peak_stress_Pa);
     }
     std::vector<StrengthPoint> points;
@@ -75,7 +77,8 @@ std::vector<CurvePair> fit_packings(const std::vector<StrengthPoint>& points, co
         const std::span<const StrengthPoint> own(from, to);
         if (own.size() >= 2) {
             const auto tension = DTS.find(from->seed);
-            fits.push_back(fit_curves(own, with_tension && tension != DTS.end() ? std::vector{tension->second} : std::vector<double>{}));
+            fits.push_back(
+                fit_curves(own, with_tension && tension != DTS.end() ? std::vector{tension->second} : std::vector<double>{}));
         }
         from = to;
     }
@@ -129,28 +132,35 @@ CurveJudgement judge_curve(const std::vector<StrengthAt>& strengths, const Curve
 }
 
 std::string misfits(const EnvelopeFits& fits) {
-    return fmt::format("the mean strengths lie {:.3g} MPa (rms) from the line and {:.3g} MPa from the parabola", fits.mohr_coulomb.misfit_Pa * MPa,
-                       fits.hoek_brown.misfit_Pa * MPa);
+    return fmt::format("the mean strengths lie {:.3g} MPa (rms) from the line and {:.3g} MPa from the parabola",
+                       fits.mohr_coulomb.misfit_Pa * MPa, fits.hoek_brown.misfit_Pa * MPa);
 }
 
 std::string verdict_of(const EnvelopeFits& fits) {
     if (fits.packings.empty()) return "No packing has strengths at two different confining stresses: there is nothing to fit.";
     if (fits.strengths.size() < 3)
-        return "Two confining stresses determine a curve with two constants: line and parabola both go through them, and nothing can be said of their fit.";
+        return "Two confining stresses determine a curve with two constants: line and parabola both go through them, and nothing "
+               "can be said of their fit.";
     const CurveJudgement &line = fits.mohr_coulomb, &parabola = fits.hoek_brown;
-    if (!std::isfinite(parabola.misfit_Pa)) return "The parabola does not exist: the strengths do not grow as Hoek-Brown's do. See the line's residuals.";
+    if (!std::isfinite(parabola.misfit_Pa))
+        return "The parabola does not exist: the strengths do not grow as Hoek-Brown's do. See the line's residuals.";
     const bool line_is_better = line.misfit_Pa < parabola.misfit_Pa;
     const char* better = line_is_better ? "the Mohr-Coulomb line" : "the Hoek-Brown parabola";
     if (line.judged == 0)
         return fmt::format("One packing: {}; whether that is more than scatter, only further packings can tell.", misfits(fits));
     const bool line_fits = line.through == line.judged, parabola_fits = parabola.through == parabola.judged;
-    const std::string scatter = fmt::format("{}; packings scatter by {:.3g} MPa (standard deviation)", misfits(fits), fits.scatter_Pa * MPa);
-    if (line_fits && parabola_fits) return fmt::format("Both curves stay within the 95 % intervals of all {} mean strengths: {}.", line.judged, scatter);
+    const std::string scatter =
+        fmt::format("{}; packings scatter by {:.3g} MPa (standard deviation)", misfits(fits), fits.scatter_Pa * MPa);
+    if (line_fits && parabola_fits)
+        return fmt::format("Both curves stay within the 95 % intervals of all {} mean strengths: {}.", line.judged, scatter);
     if (line_fits != parabola_fits)
-        return fmt::format("{} stays within the 95 % intervals of all {} mean strengths, {} only within {}: {}.", line_fits ? "The Mohr-Coulomb line" : "The Hoek-Brown parabola",
-                           line.judged, line_fits ? "the Hoek-Brown parabola" : "the Mohr-Coulomb line", line_fits ? parabola.through : line.through, scatter);
-    return fmt::format("Neither curve stays within the 95 % intervals of all {} mean strengths (line: {}, parabola: {}); {} is nearer: {}.", line.judged, line.through,
-                       parabola.through, better, scatter);
+        return fmt::format("{} stays within the 95 % intervals of all {} mean strengths, {} only within {}: {}.",
+                           line_fits ? "The Mohr-Coulomb line" : "The Hoek-Brown parabola", line.judged,
+                           line_fits ? "the Hoek-Brown parabola" : "the Mohr-Coulomb line",
+                           line_fits ? parabola.through : line.through, scatter);
+    return fmt::format(
+        "Neither curve stays within the 95 % intervals of all {} mean strengths (line: {}, parabola: {}); {} is nearer: {}.",
+        line.judged, line.through, parabola.through, better, scatter);
 }
 
 std::string method_of(const EnvelopeFits& fits) {
@@ -160,11 +170,15 @@ std::string method_of(const EnvelopeFits& fits) {
         if (s.sigma3_Pa > 0.0) confined.push_back(s.sigma3_Pa * MPa);
     const bool uniaxial = fits.strengths.front().sigma3_Pa == 0.0;
     return fmt::format(
-        "Mohr-Coulomb (sigma_1 = UCS_fitted + N sigma_3) and Hoek-Brown (intact rock: s = 1, a = 0.5; linear in sigma_3 after squaring) by least squares on the "
-        "{}biaxial tests at sigma_3 = {:g} MPa, sigma_3 from {:g} to {:g} MPa; {}. Fitted on each of {}, then mean and 95 % interval over "
+        "Mohr-Coulomb (sigma_1 = UCS_fitted + N sigma_3) and Hoek-Brown (intact rock: s = 1, a = 0.5; linear in sigma_3 after "
+        "squaring) by least squares on the "
+        "{}biaxial tests at sigma_3 = {:g} MPa, sigma_3 from {:g} to {:g} MPa; {}. Fitted on each of {}, then mean and 95 % "
+        "interval over "
         "packings by Student's distribution; the joint fit takes all {} strengths at once.",
-        uniaxial ? "uniaxial and " : "", fmt::join(confined, ", "), fits.strengths.front().sigma3_Pa * MPa, fits.strengths.back().sigma3_Pa * MPa,
-        fits.with_tension ? "the parabola also goes through the direct tensile strengths (sigma_3 = -DTS, sigma_1 = 0)" : "no tensile points",
+        uniaxial ? "uniaxial and " : "", fmt::join(confined, ", "), fits.strengths.front().sigma3_Pa * MPa,
+        fits.strengths.back().sigma3_Pa * MPa,
+        fits.with_tension ? "the parabola also goes through the direct tensile strengths (sigma_3 = -DTS, sigma_1 = 0)"
+                          : "no tensile points",
         counted(fits.packings.size(), "packing"), fits.points.size());
 }
 
@@ -200,7 +214,8 @@ CurvePair fit_curves(std::span<const StrengthPoint> points, const std::vector<do
     pair.hoek_brown_tension_Pa = 0.5 * pair.fit.hoek_brown_UCS_Pa * (std::sqrt(mi * mi + 4.0) - mi);
     pair.mohr_coulomb = goodness(points, [&](double s) { return pair.mohr_coulomb_at(s); });
     pair.hoek_brown = goodness(points, [&](double s) { return pair.hoek_brown_at(s); });
-    if (stresses_of(points) < 3) pair.mohr_coulomb.R2 = pair.hoek_brown.R2 = nan;   // a line through two mean strengths says nothing of lines
+    if (stresses_of(points) < 3)
+        pair.mohr_coulomb.R2 = pair.hoek_brown.R2 = nan;  // a line through two mean strengths says nothing of lines
     return pair;
 }
 

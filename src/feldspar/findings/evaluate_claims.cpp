@@ -15,19 +15,25 @@ namespace feldspar {
 namespace {
 
 using BySeed = std::map<std::uint64_t, double>;
-using Labels = std::vector<std::string>;   // of a point, one for each axis
+using Labels = std::vector<std::string>;  // of a point, one for each axis
 
 /// What an interval is held against.
 struct Target {
     enum class Kind { above, below, inside, outside } kind = Kind::above;
-    double limit = 0.0;   ///< inside and outside: -limit ... limit
+    double limit = 0.0;  ///< inside and outside: -limit ... limit
 
     Verdict operator()(const MeanInterval& interval) const {
         if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return Verdict::undecided;
         const bool in = interval.low > -limit && interval.high < limit;
         const bool out = interval.low > limit || interval.high < -limit;
-        const bool yes = kind == Kind::above ? interval.low > limit : kind == Kind::below ? interval.high < limit : kind == Kind::inside ? in : out;
-        const bool no = kind == Kind::above ? interval.high < limit : kind == Kind::below ? interval.low > limit : kind == Kind::inside ? out : in;
+        const bool yes = kind == Kind::above    ? interval.low > limit
+                         : kind == Kind::below  ? interval.high < limit
+                         : kind == Kind::inside ? in
+                                                : out;
+        const bool no = kind == Kind::above    ? interval.high < limit
+                        : kind == Kind::below  ? interval.low > limit
+                        : kind == Kind::inside ? out
+                                               : in;
         return yes ? Verdict::reproduced : no ? Verdict::contradicted : Verdict::undecided;
     }
 };
@@ -82,7 +88,8 @@ double sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
 /// One statement on one study.
 class Evaluation {
 public:
-    Evaluation(const Statement& statement, const std::string& name, const StudyResults& results) : statement_(statement), results_(results) {
+    Evaluation(const Statement& statement, const std::string& name, const StudyResults& results)
+        : statement_(statement), results_(results) {
         result_.statement = statement;
         result_.study = name;
         for (std::size_t p = 0; p < results.study.points.size(); ++p) points_[labels_of(p)] = p;
@@ -110,13 +117,14 @@ private:
     }
 
     bool settled(const std::string& axis) const {
-        return statement_.first.selection.contains(axis) || statement_.second.selection.contains(axis) || statement_.third.contains(axis) ||
-               axis == statement_.first.axis || axis == statement_.second.axis;
+        return statement_.first.selection.contains(axis) || statement_.second.selection.contains(axis) ||
+               statement_.third.contains(axis) || axis == statement_.first.axis || axis == statement_.second.axis;
     }
 
     bool allowed(const std::string& axis, const std::string& label) const {
         const auto chosen = statement_.where.find(axis);
-        return chosen == statement_.where.end() || std::find(chosen->second.begin(), chosen->second.end(), label) != chosen->second.end();
+        return chosen == statement_.where.end() ||
+               std::find(chosen->second.begin(), chosen->second.end(), label) != chosen->second.end();
     }
 
     /// One point for each combination of the labels on the axes that the statement leaves free.
@@ -187,7 +195,9 @@ private:
         return quantity.divisor.empty() ? above : quotient(above, property(point, quantity.divisor));
     }
 
-    double number(const Labels& labels, const std::string& axis) const { return results_.study.points[points_.at(labels)].values[axis_number(axis)].number; }
+    double number(const Labels& labels, const std::string& axis) const {
+        return results_.study.points[points_.at(labels)].values[axis_number(axis)].number;
+    }
 
     void count_runs(std::size_t point, int& runs, int& missing, int& failed) const {
         std::set<MethodId> kinds;
@@ -199,9 +209,11 @@ private:
             if (run.point != point || !kinds.contains(run.test().kind)) continue;
             ++runs;
             const bool done = std::any_of(there.results.begin(), there.results.end(), [&](const TestResult& result) {
-                return result.seed == run.seed() && result.test.kind == run.test().kind && result.test.sigma3_Pa == run.test().sigma3_Pa;
+                return result.seed == run.seed() && result.test.kind == run.test().kind &&
+                       result.test.sigma3_Pa == run.test().sigma3_Pa;
             });
-            const bool lost = std::any_of(there.failed.begin(), there.failed.end(), [&](const RunRecord& record) { return record.id == run.id; });
+            const bool lost = std::any_of(there.failed.begin(), there.failed.end(),
+                                          [&](const RunRecord& record) { return record.id == run.id; });
             if (!done) ++(lost ? failed : missing);
         }
     }
@@ -213,8 +225,10 @@ private:
         int runs = 0, missing = 0, failed = 0;
         for (const std::size_t point : here_) count_runs(point, runs, missing, failed);
         here_.clear();
-        if (comparison.interval.count >= statement_.packings) comparison.verdict = target(comparison.interval);
-        else if (missing > 0) comparison.verdict = Verdict::not_run;
+        if (comparison.interval.count >= statement_.packings)
+            comparison.verdict = target(comparison.interval);
+        else if (missing > 0)
+            comparison.verdict = Verdict::not_run;
         result_.comparisons.push_back(std::move(comparison));
     }
 
@@ -243,30 +257,41 @@ private:
     std::string words(const Side& side, const std::string& from, const std::string& to) const {
         const std::string chosen = words(side.selection);
         const bool two = statement_.first.quantity.text != statement_.second.quantity.text;
-        return fmt::format("{}{}{} {} to {}", two ? side.quantity.text + " " : "", chosen.empty() ? "" : chosen + ", ", side.axis, from, to);
+        return fmt::format("{}{}{} {} to {}", two ? side.quantity.text + " " : "", chosen.empty() ? "" : chosen + ", ", side.axis,
+                           from, to);
     }
 
     void compare(const Labels& base) {
         switch (statement_.rule) {
-            case Rule::greater: return compare_greater(base);
+            case Rule::greater:
+                return compare_greater(base);
             case Rule::rises_with:
             case Rule::falls_with:
-            case Rule::negligible: return compare_steps(base);
-            case Rule::matters: return compare_ends(base);
-            case Rule::influence_greater: return compare_influences(base);
-            case Rule::linear_with: return compare_line(base);
-            case Rule::between: return compare_between(base);
-            case Rule::closer: return compare_distances(base);
+            case Rule::negligible:
+                return compare_steps(base);
+            case Rule::matters:
+                return compare_ends(base);
+            case Rule::influence_greater:
+                return compare_influences(base);
+            case Rule::linear_with:
+                return compare_line(base);
+            case Rule::between:
+                return compare_between(base);
+            case Rule::closer:
+                return compare_distances(base);
             case Rule::above:
             case Rule::below:
-            case Rule::within: return compare_value(base);
+            case Rule::within:
+                return compare_value(base);
         }
     }
 
     void compare_greater(const Labels& base) {
         const Quantity& quantity = statement_.first.quantity;
-        const BySeed first = values(with(base, statement_.first.selection), quantity), second = values(with(base, statement_.second.selection), quantity);
-        judge(words(base, words(statement_.first.selection) + " less " + words(statement_.second.selection)), difference(first, second), shown_as(quantity), {});
+        const BySeed first = values(with(base, statement_.first.selection), quantity),
+                     second = values(with(base, statement_.second.selection), quantity);
+        judge(words(base, words(statement_.first.selection) + " less " + words(statement_.second.selection)),
+              difference(first, second), shown_as(quantity), {});
     }
 
     void compare_steps(const Labels& base) {
@@ -288,23 +313,30 @@ private:
         const BySeed before = values(with(base, side.selection, side.axis, from), side.quantity);
         const BySeed after = values(with(base, side.selection, side.axis, to), side.quantity);
         const std::string chosen = words(side.selection);
-        const std::string what = words(base, fmt::format("{}{} {} to {}", chosen.empty() ? "" : chosen + ", ", side.axis, from, to));
+        const std::string what =
+            words(base, fmt::format("{}{} {} to {}", chosen.empty() ? "" : chosen + ", ", side.axis, from, to));
         using enum Target::Kind;
         const Rule rule = statement_.rule;
         if (rule == Rule::rises_with || rule == Rule::falls_with)
-            return judge(what, difference(after, before), shown_as(side.quantity), {rule == Rule::rises_with ? above : below, 0.0});
+            return judge(what, difference(after, before), shown_as(side.quantity),
+                         {rule == Rule::rises_with ? above : below, 0.0});
         const Target target{rule == Rule::negligible ? inside : outside, statement_.bound.size};
-        if (statement_.bound.relative) judge(what, relative_change(before, after), percent, target);
-        else judge(what, difference(after, before), unscaled(side.quantity), target);
+        if (statement_.bound.relative)
+            judge(what, relative_change(before, after), percent, target);
+        else
+            judge(what, difference(after, before), unscaled(side.quantity), target);
     }
 
     /// An amount is stated in the unit in which the property's name gives it.
-    static Shown unscaled(const Quantity& quantity) { return {quantity.property.ends_with("_Pa") && quantity.divisor.empty() ? "Pa" : shown_as(quantity).unit, 1.0}; }
+    static Shown unscaled(const Quantity& quantity) {
+        return {quantity.property.ends_with("_Pa") && quantity.divisor.empty() ? "Pa" : shown_as(quantity).unit, 1.0};
+    }
 
     void compare_influences(const Labels& base) {
         const auto change = [&](const Side& side) {
             const auto [from, to] = ends(side);
-            return relative_change(values(with(base, side.selection, side.axis, from), side.quantity), values(with(base, side.selection, side.axis, to), side.quantity));
+            return relative_change(values(with(base, side.selection, side.axis, from), side.quantity),
+                                   values(with(base, side.selection, side.axis, to), side.quantity));
         };
         const auto [from, to] = ends(statement_.first);
         const auto [than_from, than_to] = ends(statement_.second);
@@ -326,7 +358,8 @@ private:
             const double t = (number(at(labels[i]), side.axis) - x0) / (x1 - x0);
             const BySeed line = paired_by(from, to, [t](double a, double b) { return a + t * (b - a); });
             const BySeed departure = difference(values(at(labels[i]), side.quantity), line);
-            judge(words(base, fmt::format("{} {} from the line through {} and {}", side.axis, labels[i], labels.front(), labels.back())),
+            judge(words(base, fmt::format("{} {} from the line through {} and {}", side.axis, labels[i], labels.front(),
+                                          labels.back())),
                   scaled(departure, 1.0 / mean_of(change)), percent, {Target::Kind::inside, statement_.bound.size});
         }
     }
@@ -337,27 +370,33 @@ private:
 
     Three three(const Labels& base) {
         const Quantity& quantity = statement_.first.quantity;
-        return {values(with(base, statement_.first.selection), quantity), values(with(base, statement_.second.selection), quantity),
-                values(with(base, statement_.third), quantity)};
+        return {values(with(base, statement_.first.selection), quantity),
+                values(with(base, statement_.second.selection), quantity), values(with(base, statement_.third), quantity)};
     }
 
     void compare_between(const Labels& base) {
         const Quantity& quantity = statement_.first.quantity;
-        const std::string first = words(statement_.first.selection), second = words(statement_.second.selection), third = words(statement_.third);
+        const std::string first = words(statement_.first.selection), second = words(statement_.second.selection),
+                          third = words(statement_.third);
         const Three v = three(base);
-        const double up = sign(mean_of(difference(v.third, v.second)));   // +1: second is the lower bound
+        const double up = sign(mean_of(difference(v.third, v.second)));  // +1: second is the lower bound
         const auto less = [](const std::string& a, const std::string& b) { return a + " less " + b; };
         const std::set<std::size_t> here = here_;
-        judge(words(base, up > 0.0 ? less(first, second) : less(second, first)), scaled(difference(v.first, v.second), up), shown_as(quantity), {});
+        judge(words(base, up > 0.0 ? less(first, second) : less(second, first)), scaled(difference(v.first, v.second), up),
+              shown_as(quantity), {});
         here_ = here;
-        judge(words(base, up > 0.0 ? less(third, first) : less(first, third)), scaled(difference(v.third, v.first), up), shown_as(quantity), {});
+        judge(words(base, up > 0.0 ? less(third, first) : less(first, third)), scaled(difference(v.third, v.first), up),
+              shown_as(quantity), {});
     }
 
     void compare_distances(const Labels& base) {
         const Three v = three(base);
-        const auto distance = [](const BySeed& a, const BySeed& b) { return paired_by(a, b, [](double x, double y) { return std::abs(x - y); }); };
+        const auto distance = [](const BySeed& a, const BySeed& b) {
+            return paired_by(a, b, [](double x, double y) { return std::abs(x - y); });
+        };
         const std::string first = words(statement_.first.selection);
-        judge(words(base, fmt::format("{} from {} less from {}", first, words(statement_.third), words(statement_.second.selection))),
+        judge(words(base,
+                    fmt::format("{} from {} less from {}", first, words(statement_.third), words(statement_.second.selection))),
               difference(distance(v.first, v.third), distance(v.first, v.second)), shown_as(statement_.first.quantity), {});
     }
 
@@ -374,23 +413,27 @@ private:
         }
         if (statement_.rule != Rule::within) {
             const bool above = statement_.rule == Rule::above;
-            return judge(words(base, fmt::format("{}{}{} {:g}", what, what.empty() ? "" : ", ", above ? "above" : "below", statement_.number * shown.factor)), value,
-                         shown, {above ? Target::Kind::above : Target::Kind::below, statement_.number});
+            return judge(words(base, fmt::format("{}{}{} {:g}", what, what.empty() ? "" : ", ", above ? "above" : "below",
+                                                 statement_.number * shown.factor)),
+                         value, shown, {above ? Target::Kind::above : Target::Kind::below, statement_.number});
         }
         const bool stated = std::isfinite(statement_.number);
-        const double reference = stated ? statement_.number : laboratory_value(results_.study.points[points_.at(place)].job, quantity);
-        what += fmt::format("{}from {}{:g}", what.empty() ? "" : ", ", stated ? "" : "the laboratory's ", reference * shown.factor);
+        const double reference =
+            stated ? statement_.number : laboratory_value(results_.study.points[points_.at(place)].job, quantity);
+        what +=
+            fmt::format("{}from {}{:g}", what.empty() ? "" : ", ", stated ? "" : "the laboratory's ", reference * shown.factor);
         BySeed departure;
         for (const auto& [seed, v] : value) departure[seed] = statement_.bound.relative ? v / reference - 1.0 : v - reference;
-        judge(words(base, what), departure, statement_.bound.relative ? percent : unscaled(quantity), {Target::Kind::inside, statement_.bound.size});
+        judge(words(base, what), departure, statement_.bound.relative ? percent : unscaled(quantity),
+              {Target::Kind::inside, statement_.bound.size});
     }
 
     const Statement& statement_;
     const StudyResults& results_;
     StatementResult result_;
     std::map<Labels, std::size_t> points_;
-    std::set<std::size_t> here_;   // points of the comparison in hand
-    std::set<std::size_t> seen_;   // of the statement
+    std::set<std::size_t> here_;  // points of the comparison in hand
+    std::set<std::size_t> seen_;  // of the statement
 };
 
 StatementResult not_evaluated(const Statement& statement) {
@@ -403,24 +446,33 @@ StatementResult not_evaluated(const Statement& statement) {
 }  // namespace
 
 int StatementResult::count(Verdict wanted) const {
-    return static_cast<int>(std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& c) { return c.verdict == wanted; }));
+    return static_cast<int>(
+        std::count_if(comparisons.begin(), comparisons.end(), [&](const Comparison& c) { return c.verdict == wanted; }));
 }
 
 const char* name(Verdict verdict) {
     switch (verdict) {
-        case Verdict::reproduced: return "reproduced";
-        case Verdict::contradicted: return "contradicted";
-        case Verdict::in_part: return "in part";
-        case Verdict::undecided: return "undecided";
-        case Verdict::not_run: return "not run";
-        case Verdict::not_evaluated: return "not evaluated";
+        case Verdict::reproduced:
+            return "reproduced";
+        case Verdict::contradicted:
+            return "contradicted";
+        case Verdict::in_part:
+            return "in part";
+        case Verdict::undecided:
+            return "undecided";
+        case Verdict::not_run:
+            return "not run";
+        case Verdict::not_evaluated:
+            return "not evaluated";
     }
     return "";
 }
 
 Verdict together(std::span<const Verdict> verdicts) {
     const auto any = [&](Verdict wanted) { return std::find(verdicts.begin(), verdicts.end(), wanted) != verdicts.end(); };
-    const auto all = [&](Verdict wanted) { return std::all_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) { return verdict == wanted; }); };
+    const auto all = [&](Verdict wanted) {
+        return std::all_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) { return verdict == wanted; });
+    };
     if (verdicts.empty()) return Verdict::undecided;
     if (any(Verdict::in_part) || (any(Verdict::contradicted) && any(Verdict::reproduced))) return Verdict::in_part;
     if (any(Verdict::contradicted)) return Verdict::contradicted;

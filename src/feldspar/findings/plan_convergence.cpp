@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "feldspar/base/error.hpp"
-#include "feldspar/findings/converge.hpp"
 #include "feldspar/findings/choose_seeds.hpp"
+#include "feldspar/findings/converge.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/outline.hpp"
 
@@ -19,7 +19,8 @@ namespace {
 constexpr int usual_packings = 3;
 constexpr double smallest_accuracy = 0.0005, largest_accuracy = 0.1;
 constexpr double usual_paper_speed_m = 6.25e-9;
-constexpr double least_width = 5.0, good_width = 10.0;   ///< in largest grains: below the first a specimen is not one, below the second hardly
+constexpr double least_width = 5.0,
+                 good_width = 10.0;  ///< in largest grains: below the first a specimen is not one, below the second hardly
 
 /// One more value of an axis: what it is called, and the job that has it.
 struct Step {
@@ -31,8 +32,8 @@ struct Step {
 struct Draft {
     std::string name, unit;
     bool same_packings;
-    Step base;                  // the job itself is not used
-    std::vector<Step> steps;    // besides the base
+    Step base;                // the job itself is not used
+    std::vector<Step> steps;  // besides the base
 };
 
 // ---- sizes
@@ -47,12 +48,16 @@ double middle_diameter_m(const GrainSizeSpec& sizes) {
     if (sizes.kind == GrainSizeKind::log_normal) return sizes.median_m;
     for (std::size_t i = 1; i < sizes.sieve.size(); ++i) {
         const SievePoint &under = sizes.sieve[i - 1], &over = sizes.sieve[i];
-        if (over.passing >= 0.5) return under.diameter_m + (0.5 - under.passing) / (over.passing - under.passing) * (over.diameter_m - under.diameter_m);
+        if (over.passing >= 0.5)
+            return under.diameter_m +
+                   (0.5 - under.passing) / (over.passing - under.passing) * (over.diameter_m - under.diameter_m);
     }
     return sizes.sieve.back().diameter_m;
 }
 
-double coarsest_m(const GrainSizeSpec& sizes) { return sizes.kind == GrainSizeKind::sieve ? sizes.sieve.back().diameter_m : sizes.maximum_m; }
+double coarsest_m(const GrainSizeSpec& sizes) {
+    return sizes.kind == GrainSizeKind::sieve ? sizes.sieve.back().diameter_m : sizes.maximum_m;
+}
 
 double width_m(const OutlineSpec& outline) {
     const Box box = bounding_box(outline);
@@ -92,22 +97,27 @@ Step grain_step(const Job& job, double factor) {
 Step size_step(const Job& job, double factor) {
     const OutlineSpec& outline = leading_specimen(job).outline;
     const double width_mm = 1e3 * width_m(outline) * factor;
-    const std::string label = outline.shape == Shape::rectangle ? fmt::format("{:.4g} x {:.4g} mm", width_mm, 1e3 * outline.height_m * factor) : fmt::format("{:.4g} mm", width_mm);
+    const std::string label = outline.shape == Shape::rectangle
+                                  ? fmt::format("{:.4g} x {:.4g} mm", width_mm, 1e3 * outline.height_m * factor)
+                                  : fmt::format("{:.4g} mm", width_mm);
     return {label, width_mm, changed(job, [factor](SpecimenSpec& s) { s.outline = scaled(s.outline, factor); })};
 }
 
-Draft draft_of_sizes(const Job& job, const char* axis, const std::function<Step(const Job&, double)>& step, std::initializer_list<double> factors,
-                     std::vector<std::string>& remarks) {
+Draft draft_of_sizes(const Job& job, const char* axis, const std::function<Step(const Job&, double)>& step,
+                     std::initializer_list<double> factors, std::vector<std::string>& remarks) {
     Draft draft{axis, "mm", false, step(job, 1.0), {}};
     for (const double factor : factors) {
         Step next = step(job, factor);
         const double across = grains_across(next.job);
         if (across < least_width) {
-            remarks.push_back(fmt::format("Left out: {} {}, a specimen narrower than five of its largest grains.", axis, next.label));
+            remarks.push_back(
+                fmt::format("Left out: {} {}, a specimen narrower than five of its largest grains.", axis, next.label));
             continue;
         }
         if (across < good_width)
-            remarks.push_back(fmt::format("Doubtful: {} {}, a specimen only {:.1f} of its largest grains wide; ten are the least that is usual.", axis, next.label, across));
+            remarks.push_back(fmt::format(
+                "Doubtful: {} {}, a specimen only {:.1f} of its largest grains wide; ten are the least that is usual.", axis,
+                next.label, across));
         draft.steps.push_back(std::move(next));
     }
     return draft;
@@ -118,7 +128,8 @@ Draft draft_of_sizes(const Job& job, const char* axis, const std::function<Step(
 Draft draft_of_triangles(const Job& job) {
     const auto step = [&](int triangles) {
         const std::string label = triangles == 0 ? "standard (15)" : std::to_string(triangles);
-        return Step{label, triangles == 0 ? 15.0 : triangles, changed(job, [triangles](SpecimenSpec& s) { s.triangles_per_grain = triangles; })};
+        return Step{label, triangles == 0 ? 15.0 : triangles,
+                    changed(job, [triangles](SpecimenSpec& s) { s.triangles_per_grain = triangles; })};
     };
     const int own = job.specimen.triangles_per_grain;
     Draft draft{"triangles per grain", "", true, step(own), {}};
@@ -131,18 +142,22 @@ Draft draft_of_triangles(const Job& job) {
 
 struct Rate {
     std::string name, unit;
-    double base;                              // in `unit` once multiplied by `shown`
+    double base;  // in `unit` once multiplied by `shown`
     double shown;
     std::function<void(NumericsSpec&, double)> set;
     double least = 0.0, most = std::numeric_limits<double>::infinity();
 };
 
 Rate rate_of(const NumericsSpec& numerics) {
-    if (numerics.kind == NumericsKind::dynamic) return {"loading speed", "m/s", numerics.speed_m.value_or(0.0), 1.0, [](NumericsSpec& n, double v) { n.speed_m = v; }};
+    if (numerics.kind == NumericsKind::dynamic)
+        return {"loading speed", "m/s", numerics.speed_m.value_or(0.0), 1.0, [](NumericsSpec& n, double v) { n.speed_m = v; }};
     if (numerics.kind == NumericsKind::paper)
-        return {"loading speed", "nm/step", numerics.speed_m.value_or(usual_paper_speed_m), 1e9, [](NumericsSpec& n, double v) { n.speed_m = v; }};
-    if (numerics.residual_target) return {"residual target", "", *numerics.residual_target, 1.0, [](NumericsSpec& n, double v) { n.residual_target = v; }};
-    return {"accuracy", "%", numerics.accuracy, 100.0, [](NumericsSpec& n, double v) { n.accuracy = v; }, smallest_accuracy, largest_accuracy};
+        return {"loading speed", "nm/step", numerics.speed_m.value_or(usual_paper_speed_m), 1e9,
+                [](NumericsSpec& n, double v) { n.speed_m = v; }};
+    if (numerics.residual_target)
+        return {"residual target", "", *numerics.residual_target, 1.0, [](NumericsSpec& n, double v) { n.residual_target = v; }};
+    return {"accuracy",      "%", numerics.accuracy, 100.0, [](NumericsSpec& n, double v) { n.accuracy = v; }, smallest_accuracy,
+            largest_accuracy};
 }
 
 Draft draft_of_rate(const Job& job) {
@@ -150,7 +165,8 @@ Draft draft_of_rate(const Job& job) {
     const auto step = [&](double value) {
         Job other = job;
         rate.set(other.variants.front().numerics, value);
-        return Step{fmt::format("{:.3g}{}{}", value * rate.shown, rate.unit.empty() ? "" : " ", rate.unit), value * rate.shown, std::move(other)};
+        return Step{fmt::format("{:.3g}{}{}", value * rate.shown, rate.unit.empty() ? "" : " ", rate.unit), value * rate.shown,
+                    std::move(other)};
     };
     Draft draft{rate.name, rate.unit, true, step(rate.base), {}};
     for (const double factor : {4.0, 1.0 / 3.0}) {
@@ -170,14 +186,17 @@ void keep_tests(Job& job, const std::vector<std::string>& wanted) {
     const std::string has = [&] {
         std::string kinds;
         for (const TestSpec& test : job.tests)
-            if (kinds.find(name(test.kind)) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + std::string(name(test.kind));
+            if (kinds.find(name(test.kind)) == std::string::npos)
+                kinds += (kinds.empty() ? "" : ", ") + std::string(name(test.kind));
         return kinds;
     }();
     for (const std::string& kind : wanted)
         if (std::none_of(job.tests.begin(), job.tests.end(), [&](const TestSpec& test) { return name(test.kind) == kind; }))
             throw InputError({{}, 0, 0, "--test"}, fmt::format("the job has no test '{}'", kind), has);
     std::erase_if(job.tests, [&](const TestSpec& test) { return !is_wanted(test); });
-    if (job.tests.empty()) throw InputError({{}, 0, 0, "--test"}, "the job has only biaxial tests, which are not taken unless they are asked for", "--test biaxial");
+    if (job.tests.empty())
+        throw InputError({{}, 0, 0, "--test"}, "the job has only biaxial tests, which are not taken unless they are asked for",
+                         "--test biaxial");
     for (TestSpec& test : job.tests) test.seeds.clear();
 }
 
@@ -219,7 +238,8 @@ ConvergeAxis add_axis(Study& study, std::vector<Draft>& drafts, std::size_t a) {
 
 ConvergePlan plan_convergence(const Job& job, const ConvergeOptions& options) {
     if (job.has_variants() && job.variants.size() > 1)
-        throw InputError({job.file.string(), 0, 0, "variant"}, "convergence is asked of one rock at a time, but the job has several variants", "--variant NAME");
+        throw InputError({job.file.string(), 0, 0, "variant"},
+                         "convergence is asked of one rock at a time, but the job has several variants", "--variant NAME");
     ConvergePlan plan;
     plan.within = options.within;
     Job base = job;
@@ -227,7 +247,8 @@ ConvergePlan plan_convergence(const Job& job, const ConvergeOptions& options) {
     base.variants.front().seeds.clear();
     keep_tests(base, options.tests);
     std::vector<Draft> drafts = drafts_of(base, plan.remarks);
-    plan.study = study_of(base, job.name + "-converge", options.results.value_or(std::filesystem::path("results") / (job.name + "-converge")));
+    plan.study = study_of(base, job.name + "-converge",
+                          options.results.value_or(std::filesystem::path("results") / (job.name + "-converge")));
     plan.study.title = "Convergence of " + job.name;
     plan.study.axes.clear();
     plan.study.points.front().values.clear();

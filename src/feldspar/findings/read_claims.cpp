@@ -3,16 +3,17 @@
 
 #include <set>
 
-#include "feldspar/job/toml_reader.hpp"
 #include "feldspar/findings/claims.hpp"
+#include "feldspar/job/toml_reader.hpp"
 #include "feldspar/study/base_job.hpp"
 
 namespace feldspar {
 namespace {
 
 constexpr std::string_view statement_keys[] = {
-    "says", "study", "also", "rule", "property", "also_property", "first", "second", "third", "where", "axis", "from", "to", "than_property", "than_axis",
-    "than_from", "than_to", "bound", "number", "packings", "not_evaluated"};
+    "says",    "study", "also",   "rule",     "property",     "also_property", "first",     "second",
+    "third",   "where", "axis",   "from",     "to",           "than_property", "than_axis", "than_from",
+    "than_to", "bound", "number", "packings", "not_evaluated"};
 
 /// Which keys a rule needs, beside study and property.
 struct Needs {
@@ -22,18 +23,25 @@ struct Needs {
 
 Needs needs_of(Rule rule) {
     switch (rule) {
-        case Rule::greater: return {.second = true};
+        case Rule::greater:
+            return {.second = true};
         case Rule::rises_with:
-        case Rule::falls_with: return {.axis = true};
+        case Rule::falls_with:
+            return {.axis = true};
         case Rule::negligible:
         case Rule::matters:
-        case Rule::linear_with: return {.axis = true, .bound = true};
-        case Rule::influence_greater: return {.axis = true, .may_second = true, .may_than = true};
+        case Rule::linear_with:
+            return {.axis = true, .bound = true};
+        case Rule::influence_greater:
+            return {.axis = true, .may_second = true, .may_than = true};
         case Rule::between:
-        case Rule::closer: return {.second = true, .third = true};
+        case Rule::closer:
+            return {.second = true, .third = true};
         case Rule::above:
-        case Rule::below: return {.number = true, .may_second = true};
-        case Rule::within: return {.bound = true, .may_second = true, .may_number = true};
+        case Rule::below:
+            return {.number = true, .may_second = true};
+        case Rule::within:
+            return {.bound = true, .may_second = true, .may_number = true};
     }
     return {};
 }
@@ -70,7 +78,8 @@ Selection read_selection(const TableReader& table, std::string_view key) {
             labels.push_back(label_of(table, value, key));
             continue;
         }
-        if (!lists || value.as_array()->empty()) table.fail_at(value, key, "a list of labels is not allowed here, or it is empty", allowed);
+        if (!lists || value.as_array()->empty())
+            table.fail_at(value, key, "a list of labels is not allowed here, or it is empty", allowed);
         for (const toml::node& label : *value.as_array()) labels.push_back(label_of(table, label, key));
     }
     return selection;
@@ -92,7 +101,9 @@ public:
         statement_.says = table_.text("says");
         if (table_.has("not_evaluated")) {
             statement_.not_evaluated = table_.text("not_evaluated");
-            table_.refuse({"study", "also", "rule", "property", "also_property", "first", "second", "third", "where", "axis", "bound", "number"}, "not_evaluated");
+            table_.refuse({"study", "also", "rule", "property", "also_property", "first", "second", "third", "where", "axis",
+                           "bound", "number"},
+                          "not_evaluated");
             return statement_;
         }
         table_.require({"study", "rule", "property"});
@@ -111,10 +122,18 @@ private:
     }
 
     void read_rule() {
-        statement_.rule = table_.choice<Rule>(
-            "rule", {{"greater", Rule::greater}, {"rises_with", Rule::rises_with}, {"falls_with", Rule::falls_with}, {"negligible", Rule::negligible},
-                     {"matters", Rule::matters}, {"influence_greater", Rule::influence_greater}, {"linear_with", Rule::linear_with},
-                     {"between", Rule::between}, {"closer", Rule::closer}, {"above", Rule::above}, {"below", Rule::below}, {"within", Rule::within}});
+        statement_.rule = table_.choice<Rule>("rule", {{"greater", Rule::greater},
+                                                       {"rises_with", Rule::rises_with},
+                                                       {"falls_with", Rule::falls_with},
+                                                       {"negligible", Rule::negligible},
+                                                       {"matters", Rule::matters},
+                                                       {"influence_greater", Rule::influence_greater},
+                                                       {"linear_with", Rule::linear_with},
+                                                       {"between", Rule::between},
+                                                       {"closer", Rule::closer},
+                                                       {"above", Rule::above},
+                                                       {"below", Rule::below},
+                                                       {"within", Rule::within}});
         const Needs needs = needs_of(statement_.rule);
         const std::string rule = fmt::format("rule = \"{}\"", name(statement_.rule));
         const auto need = [&](bool needed, bool may, std::string_view key) {
@@ -122,14 +141,15 @@ private:
             if (!needed && !may) table_.refuse({key}, rule);
         };
         need(needs.second, needs.may_second, "second");
-        need(needs.second, true, "first");   // it may choose points for every rule
+        need(needs.second, true, "first");  // it may choose points for every rule
         need(needs.third, false, "third");
         need(needs.axis, false, "axis");
         need(needs.bound, false, "bound");
         need(needs.number, needs.may_number, "number");
         if (table_.has("second")) table_.require({"first"});
         for (const std::string_view key : {"from", "to"}) need(false, needs.may_than || statement_.rule == Rule::matters, key);
-        for (const std::string_view key : {"than_property", "than_axis", "than_from", "than_to"}) need(false, needs.may_than, key);
+        for (const std::string_view key : {"than_property", "than_axis", "than_from", "than_to"})
+            need(false, needs.may_than, key);
     }
 
     void read_sides() {
@@ -144,7 +164,8 @@ private:
         statement_.second = statement_.first;
         statement_.has_second = table_.has("second");
         if (statement_.has_second) statement_.second.selection = read_selection(table_, "second");
-        if (table_.has("than_property")) statement_.second.quantity = quantity_of(table_, "than_property", table_.text("than_property"));
+        if (table_.has("than_property"))
+            statement_.second.quantity = quantity_of(table_, "than_property", table_.text("than_property"));
         if (table_.has("than_axis")) {
             statement_.second.axis = table_.text("than_axis");
             statement_.second.from = statement_.second.to = {};
@@ -153,9 +174,10 @@ private:
         if (table_.has("than_to")) statement_.second.to = read_label(table_, "than_to");
         statement_.third = read_selection(table_, "third");
         statement_.where = read_selection(table_, "where");
-        if (statement_.rule == Rule::influence_greater && !statement_.has_second && !table_.has("than_property") && !table_.has("than_axis") &&
-            !table_.has("than_to"))
-            table_.fail("rule", "says nothing that the influence is compared with", "second, than_property, than_axis or than_to");
+        if (statement_.rule == Rule::influence_greater && !statement_.has_second && !table_.has("than_property") &&
+            !table_.has("than_axis") && !table_.has("than_to"))
+            table_.fail("rule", "says nothing that the influence is compared with",
+                        "second, than_property, than_axis or than_to");
     }
 
     void read_numbers() {
@@ -168,7 +190,8 @@ private:
                 table_.fail("bound", "must be a share of the change over the axis", "text such as \"10 %\"");
         }
         if (!table_.has("number")) return;
-        const bool stress = statement_.first.quantity.property.ends_with("_Pa") && statement_.first.quantity.divisor.empty() && !statement_.has_second;
+        const bool stress = statement_.first.quantity.property.ends_with("_Pa") && statement_.first.quantity.divisor.empty() &&
+                            !statement_.has_second;
         statement_.number = stress ? table_.quantity("number", Dimension::stress, any_value) : table_.number("number", any_value);
         if (statement_.rule == Rule::within && statement_.bound.relative && !(statement_.number > 0.0))
             table_.fail("number", "a share of it cannot be the tolerance", "a number greater than zero");
@@ -181,7 +204,8 @@ private:
 Claim read_claim(const TableReader& table) {
     table.require({"id", "figure", "says", "statement"});
     Claim claim{table.text("id"), table.text("figure"), table.text("says"), {}};
-    for (const TableReader& statement : table.tables("statement", "a statement", statement_keys)) claim.statements.push_back(StatementReader(statement).read());
+    for (const TableReader& statement : table.tables("statement", "a statement", statement_keys))
+        claim.statements.push_back(StatementReader(statement).read());
     return claim;
 }
 
@@ -189,18 +213,30 @@ Claim read_claim(const TableReader& table) {
 
 const char* name(Rule rule) {
     switch (rule) {
-        case Rule::greater: return "greater";
-        case Rule::rises_with: return "rises_with";
-        case Rule::falls_with: return "falls_with";
-        case Rule::negligible: return "negligible";
-        case Rule::matters: return "matters";
-        case Rule::influence_greater: return "influence_greater";
-        case Rule::linear_with: return "linear_with";
-        case Rule::between: return "between";
-        case Rule::closer: return "closer";
-        case Rule::above: return "above";
-        case Rule::below: return "below";
-        case Rule::within: return "within";
+        case Rule::greater:
+            return "greater";
+        case Rule::rises_with:
+            return "rises_with";
+        case Rule::falls_with:
+            return "falls_with";
+        case Rule::negligible:
+            return "negligible";
+        case Rule::matters:
+            return "matters";
+        case Rule::influence_greater:
+            return "influence_greater";
+        case Rule::linear_with:
+            return "linear_with";
+        case Rule::between:
+            return "between";
+        case Rule::closer:
+            return "closer";
+        case Rule::above:
+            return "above";
+        case Rule::below:
+            return "below";
+        case Rule::within:
+            return "within";
     }
     return "";
 }
@@ -213,7 +249,8 @@ ClaimList parse_claims(const std::string& text, const std::filesystem::path& fil
     std::set<std::string> ids;
     for (const TableReader& table : root.tables("claim", "a claim", {"id", "figure", "says", "statement"})) {
         list.claims.push_back(read_claim(table));
-        if (!ids.insert(list.claims.back().id).second) table.fail("id", "'" + list.claims.back().id + "' is the id of another claim", "each claim its own");
+        if (!ids.insert(list.claims.back().id).second)
+            table.fail("id", "'" + list.claims.back().id + "' is the id of another claim", "each claim its own");
     }
     return list;
 }

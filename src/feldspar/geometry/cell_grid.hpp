@@ -27,8 +27,8 @@ public:
         if (!std::isfinite(size.x) || !std::isfinite(size.y) || !std::isfinite(cell_size))
             throw NumericalError("a position is not a finite number");
         const double most_cells = 4.0 * static_cast<double>(expected_count) + 64.0;
-        const double cell = std::max({cell_size, std::sqrt(std::max(0.0, size.x * size.y) / most_cells),
-                                      std::max(size.x, size.y) / most_cells});
+        const double cell =
+            std::max({cell_size, std::sqrt(std::max(0.0, size.x * size.y) / most_cells), std::max(size.x, size.y) / most_cells});
         inverse_ = 1.0 / cell;
         columns_ = static_cast<int>(size.x * inverse_) + 1;
         rows_ = static_cast<int>(size.y * inverse_) + 1;
@@ -82,7 +82,9 @@ private:
         if (!(position > 0.0)) return 0;
         return static_cast<int>(std::min(position, last));
     }
-    std::size_t index(int c, int r) const { return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c); }
+    std::size_t index(int c, int r) const {
+        return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
+    }
 
     Vec2 lower_;
     double inverse_ = 1.0;

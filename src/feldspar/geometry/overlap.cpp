@@ -24,6 +24,8 @@ std::vector<Vec2> clipped(std::span<const Vec2> polygon, std::span<const Vec2> c
     return left;
 }
 
-double overlap_area(std::span<const Vec2> polygon, std::span<const Vec2> convex) { return std::max(0.0, signed_area(clipped(polygon, convex))); }
+double overlap_area(std::span<const Vec2> polygon, std::span<const Vec2> convex) {
+    return std::max(0.0, signed_area(clipped(polygon, convex)));
+}
 
 }  // namespace feldspar

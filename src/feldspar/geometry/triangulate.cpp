@@ -1,9 +1,5 @@
 #include "feldspar/geometry/triangulate.hpp"
 
-#include <algorithm>
-#include <cassert>
-#include <utility>
-
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Partition_traits_2.h>
@@ -11,6 +7,10 @@
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
 #include <CGAL/partition_2.h>
 #include <CGAL/property_map.h>
+
+#include <algorithm>
+#include <cassert>
+#include <utility>
 
 #include "feldspar/geometry/polygon.hpp"
 
@@ -24,7 +24,8 @@ using RegularData = CGAL::Triangulation_data_structure_2<RegularVertex, CGAL::Re
 using Regular = CGAL::Regular_triangulation_2<Kernel, RegularData>;
 
 using ConstrainedVertex = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
-using ConstrainedData = CGAL::Triangulation_data_structure_2<ConstrainedVertex, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using ConstrainedData =
+    CGAL::Triangulation_data_structure_2<ConstrainedVertex, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
 using Constrained = CGAL::Constrained_Delaunay_triangulation_2<Kernel, ConstrainedData>;
 
 /// Turned so that the smallest number stands first, then sorted: the result does not depend on CGAL's own order.

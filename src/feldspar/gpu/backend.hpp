@@ -4,17 +4,18 @@
 #include <cstddef>
 #include <memory>
 
-#include "feldspar/gpu/device_arrays.hpp"
 #include "feldspar/gpu/device.hpp"
+#include "feldspar/gpu/device_arrays.hpp"
 
 namespace feldspar {
 
 /// How many threads a step takes.
 struct LaunchSizes {
-    int grain_threads = 128;      ///< of a block of the grains' stage: 128 or 256
+    int grain_threads = 128;  ///< of a block of the grains' stage: 128 or 256
     int grain_blocks = 0;
-    int other_threads = 128;      ///< of a block of the other stages; fewer for a small specimen, whose blocks are to reach the whole card
-    bool uneven = false;          ///< there are contacts with laws of their own
+    int other_threads =
+        128;  ///< of a block of the other stages; fewer for a small specimen, whose blocks are to reach the whole card
+    bool uneven = false;  ///< there are contacts with laws of their own
 
     friend bool operator==(const LaunchSizes&, const LaunchSizes&) = default;
 };

@@ -8,7 +8,7 @@
 namespace feldspar {
 namespace {
 
-constexpr int kMostThreads = 128;   // of a block of contacts, rigid bodies, plates
+constexpr int kMostThreads = 128;  // of a block of contacts, rigid bodies, plates
 
 __device__ __forceinline__ int thread_here() { return static_cast<int>(threadIdx.x); }
 __device__ __forceinline__ int thread_of_all() { return static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); }
@@ -33,13 +33,16 @@ __global__ void __launch_bounds__(kMostThreads) contacts_kernel(const __grid_con
     }
 }
 
-__global__ void __launch_bounds__(kMostThreads) loose_contacts_kernel(const __grid_constant__ DeviceArrays a, int k) { loose_contact_thread(a, step_number(a, k), thread_of_all()); }
+__global__ void __launch_bounds__(kMostThreads) loose_contacts_kernel(const __grid_constant__ DeviceArrays a, int k) {
+    loose_contact_thread(a, step_number(a, k), thread_of_all());
+}
 
 __global__ void __launch_bounds__(kMostThreads) reaction_kernel(const __grid_constant__ DeviceArrays a) { reaction_of_block(a); }
 
 // The threads of block `number` of the grains' stage.
 template <bool local>
-__device__ __forceinline__ void grains_of_block(const DeviceArrays& a, const KernelStep& step, const GrainBlock& block, int number) {
+__device__ __forceinline__ void grains_of_block(const DeviceArrays& a, const KernelStep& step, const GrainBlock& block,
+                                                int number) {
     EdgeWork w;
     w.at = a.edge_threads[number * block.threads + thread_here()];
     if (a.model.pressed) {
@@ -66,17 +69,18 @@ __global__ void __launch_bounds__(threads) grains_kernel(const __grid_constant__
     grains_of_block<local>(a, step_number(a, k), GrainBlock{shared, threads}, static_cast<int>(blockIdx.x));
 }
 
-// A block of steps in one kernel: all its blocks of threads are on the card together and wait for each other after each stage. For specimens that do not fill the card, whose steps are as short as
-// the way from one kernel to the next.
+// A block of steps in one kernel: all its blocks of threads are on the card together and wait for each other after each stage.
+// For specimens that do not fill the card, whose steps are as short as the way from one kernel to the next.
 constexpr int kStepsThreads = 128;
 template <bool local, bool rigid>
-__global__ void __launch_bounds__(kStepsThreads) steps_kernel(const __grid_constant__ DeviceArrays a, int grain_blocks, int count) {
+__global__ void __launch_bounds__(kStepsThreads)
+    steps_kernel(const __grid_constant__ DeviceArrays a, int grain_blocks, int count) {
     constexpr int threads = kStepsThreads;
     __shared__ double shared[kSharedQuantities * threads];
     const cooperative_groups::grid_group grid = cooperative_groups::this_grid();
     const GrainBlock block{shared, threads};
     const int blocks = static_cast<int>(gridDim.x), here = static_cast<int>(blockIdx.x), stride = blocks * threads;
-    const int first = ((thread_here() / 32) * blocks + here) * 32 + thread_here() % 32;   // warp by warp to all blocks in turn
+    const int first = ((thread_here() / 32) * blocks + here) * 32 + thread_here() % 32;  // warp by warp to all blocks in turn
     for (int k = 0; k < count; ++k) {
         const KernelStep step = step_number(a, k);
         for (int t = first; t < kMostLanes * a.contact_pack_count; t += stride) {
@@ -90,7 +94,7 @@ __global__ void __launch_bounds__(kStepsThreads) steps_kernel(const __grid_const
         }
         grid.sync();
         for (int number = here; number < grain_blocks; number += blocks) {
-            __syncthreads();   // the block before has read what it shared
+            __syncthreads();  // the block before has read what it shared
             grains_of_block<local>(a, step, block, number);
         }
         if constexpr (rigid)
@@ -117,11 +121,15 @@ __global__ void __launch_bounds__(threads) grain_lines_kernel(const __grid_const
 template <bool local>
 __global__ void __launch_bounds__(kMostThreads) rigid_kernel(const __grid_constant__ DeviceArrays a, int k, int rigid_blocks) {
     const KernelStep step = step_number(a, k);
-    if (static_cast<int>(blockIdx.x) < rigid_blocks) rigid_thread<local>(a, step, thread_of_all());
-    else plate_thread(a, step, thread_of_all() - rigid_blocks * static_cast<int>(blockDim.x));
+    if (static_cast<int>(blockIdx.x) < rigid_blocks)
+        rigid_thread<local>(a, step, thread_of_all());
+    else
+        plate_thread(a, step, thread_of_all() - rigid_blocks * static_cast<int>(blockDim.x));
 }
 
-__global__ void __launch_bounds__(kMostThreads) rigid_lines_kernel(const __grid_constant__ DeviceArrays a) { rigid_line_thread(a, thread_of_all()); }
+__global__ void __launch_bounds__(kMostThreads) rigid_lines_kernel(const __grid_constant__ DeviceArrays a) {
+    rigid_line_thread(a, thread_of_all());
+}
 
 }  // namespace
 }  // namespace feldspar

@@ -1,12 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/gpu/backend.hpp"
@@ -15,17 +15,24 @@
 namespace feldspar {
 
 std::string not_ported(const Assembly& assembly) {
-    const auto finely = std::count_if(assembly.packs.loose_bodies.begin(), assembly.packs.loose_bodies.end(), [&](int b) { return assembly.bodies[b].kind == BodyKind::flexible; });
-    if (finely > 0) return fmt::format("{} grains are meshed more finely than by the ring of each, or have more than {} corners, which the card's steps do not know", finely, kMostVertices);
+    const auto finely = std::count_if(assembly.packs.loose_bodies.begin(), assembly.packs.loose_bodies.end(),
+                                      [&](int b) { return assembly.bodies[b].kind == BodyKind::flexible; });
+    if (finely > 0)
+        return fmt::format(
+            "{} grains are meshed more finely than by the ring of each, or have more than {} corners, which the card's steps do "
+            "not know",
+            finely, kMostVertices);
     return {};
 }
 
 double card_bytes(const Assembly& a) {
     const auto bytes = [](const auto& array) { return static_cast<double>(array.size() * sizeof(array[0])); };
-    double sum = 6.0 * bytes(a.nodes.velocity) + bytes(a.nodes.mass) + 9.0 * bytes(a.bonds.un_m) + bytes(a.body_work) + bytes(a.slots) + bytes(a.bodies) + bytes(a.slots_of_bodies);
+    double sum = 6.0 * bytes(a.nodes.velocity) + bytes(a.nodes.mass) + 9.0 * bytes(a.bonds.un_m) + bytes(a.body_work) +
+                 bytes(a.slots) + bytes(a.bodies) + bytes(a.slots_of_bodies);
     const Packs& p = a.packs;
-    sum += bytes(p.grains) + bytes(p.scale) + 2.0 * bytes(p.volumetric) + bytes(p.lines) + bytes(p.inverse_cross) + bytes(p.contacts) + 3.0 * bytes(p.offset) + 2.0 * bytes(p.normal_x) +
-           2.0 * bytes(p.line_a) + 2.0 * bytes(p.along) + bytes(p.rigid_forces) + bytes(p.rigid) + sizeof(EdgeThread) * static_cast<double>(p.inverse_cross.size()) +
+    sum += bytes(p.grains) + bytes(p.scale) + 2.0 * bytes(p.volumetric) + bytes(p.lines) + bytes(p.inverse_cross) +
+           bytes(p.contacts) + 3.0 * bytes(p.offset) + 2.0 * bytes(p.normal_x) + 2.0 * bytes(p.line_a) + 2.0 * bytes(p.along) +
+           bytes(p.rigid_forces) + bytes(p.rigid) + sizeof(EdgeThread) * static_cast<double>(p.inverse_cross.size()) +
            sizeof(BrokenPoint) * static_cast<double>(a.points.size());
     return 1.1 * sum;
 }
@@ -39,7 +46,7 @@ struct Mirrored {
     std::size_t bytes = 0, room = 0;
 };
 
-constexpr std::size_t kPiece = 1 << 16;   // bytes that are compared, and go up, together
+constexpr std::size_t kPiece = 1 << 16;  // bytes that are compared, and go up, together
 constexpr int kMostStepsAtOnce = 50;
 
 class Device final : public StepDevice {
@@ -67,7 +74,7 @@ public:
         Mirrored* const of_block = &mirrored_[next_ - 1];
         backend_->write_lines(arrays, sizes_);
         for (int done = 0; done < count; done += kMostStepsAtOnce) {
-            if (done > 0) {   // the block's work stays where it is
+            if (done > 0) {  // the block's work stays where it is
                 block.first = done;
                 backend_->upload(&arrays.block->first, &block.first, sizeof block.first);
                 backend_->finish();
@@ -93,7 +100,7 @@ private:
         const char* now = reinterpret_cast<const char*>(from);
         const bool known = m.bytes == sizeof(T) * count;
         m.bytes = sizeof(T) * count;
-        for (std::size_t at = 0; at < m.bytes;) {   // changed pieces that follow each other go together
+        for (std::size_t at = 0; at < m.bytes;) {  // changed pieces that follow each other go together
             std::size_t end = at;
             while (end < m.bytes) {
                 const std::size_t piece = std::min(kPiece, m.bytes - end);
@@ -113,9 +120,13 @@ private:
         return put<T>(array.data(), array.size());
     }
     template <class A>
-    double* put_pairs(const A& array) { return reinterpret_cast<double*>(put(array)); }
+    double* put_pairs(const A& array) {
+        return reinterpret_cast<double*>(put(array));
+    }
     template <class A>
-    double* put_fixed_pairs(const A& array) { return reinterpret_cast<double*>(put_fixed(array)); }
+    double* put_fixed_pairs(const A& array) {
+        return reinterpret_cast<double*>(put_fixed(array));
+    }
     template <class A>
     auto list(const A& array) {
         using T = std::remove_cvref_t<decltype(array[0])>;
@@ -141,7 +152,9 @@ private:
 
     // Room on the device that the processor does not know. What it holds stays from one block to the next.
     template <class T>
-    T* room(std::size_t count) { return static_cast<T*>(room_for(sizeof(T) * count).device); }
+    T* room(std::size_t count) {
+        return static_cast<T*>(room_for(sizeof(T) * count).device);
+    }
 
     Mirrored& room_for(std::size_t bytes) {
         if (next_ == mirrored_.size()) mirrored_.emplace_back();
@@ -186,11 +199,11 @@ private:
     };
 
     std::unique_ptr<Backend> backend_;
-    std::vector<Mirrored> mirrored_;   // in the order in which bring() asks for them
+    std::vector<Mirrored> mirrored_;  // in the order in which bring() asks for them
     std::size_t next_ = 0;
     std::vector<Arriving> arriving_;
-    bool changed_ = false;   // something went up since this was false
-    bool fixed_ = false;     // contacts and packs are those of the block before
+    bool changed_ = false;  // something went up since this was false
+    bool fixed_ = false;    // contacts and packs are those of the block before
     alignas(DeviceArrays) std::byte arrays_[sizeof(DeviceArrays)]{};
     LaunchSizes sizes_;
     std::vector<EdgeThread> seats_;
@@ -202,14 +215,15 @@ private:
     std::vector<SharedEdge> shared_;
     std::vector<std::int32_t> plates_;
     std::vector<double> free_gaps_;
-    std::array<std::uint32_t, 2> broken_count_{};   // and whether any point is damaged
+    std::array<std::uint32_t, 2> broken_count_{};  // and whether any point is damaged
     struct SizesBefore {
         std::size_t contacts = 0, points = 0, bodies = 0, shared = 0;
         friend bool operator==(const SizesBefore&, const SizesBefore&) = default;
     } sizes_before_;
     RigidForces no_force_;
-    struct Places {   // in mirrored_, of what comes back
-        std::size_t displacement = 0, velocity = 0, force = 0, bonds = 0, work = 0, slots = 0, broken = 0, broken_count = 0, slip = 0;
+    struct Places {  // in mirrored_, of what comes back
+        std::size_t displacement = 0, velocity = 0, force = 0, bonds = 0, work = 0, slots = 0, broken = 0, broken_count = 0,
+                    slip = 0;
     } at_;
 };
 
@@ -222,29 +236,34 @@ void Device::seat_grains(const Packs& packs) {
     for (std::size_t p = 0; p < packs.grains.size(); ++p) {
         const GrainPack& pack = packs.grains[p];
         const std::size_t threads = static_cast<std::size_t>(sizes_.grain_threads), taken = seats_.size() % threads;
-        if (taken + static_cast<std::size_t>(pack.vertices * pack.lanes) > threads) seats_.resize(seats_.size() + threads - taken);
+        if (taken + static_cast<std::size_t>(pack.vertices * pack.lanes) > threads)
+            seats_.resize(seats_.size() + threads - taken);
         const auto first = static_cast<std::uint16_t>(seats_.size() % threads);
         for (int k = 0; k < pack.vertices; ++k)
             for (int lane = 0; lane < pack.lanes; ++lane)
-                seats_.push_back({static_cast<std::int32_t>(p), first, static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(lane)});
+                seats_.push_back(
+                    {static_cast<std::int32_t>(p), first, static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(lane)});
     }
     const std::size_t threads = static_cast<std::size_t>(sizes_.grain_threads);
     seats_.resize((seats_.size() + threads - 1) / threads * threads);
     sizes_.grain_blocks = static_cast<int>(seats_.size() / threads);
 }
 
-// Where the arrays stand on the device. They are made in the same place for every block, so that what lies between them stays as it is: whether they are the same is asked of all bytes.
+// Where the arrays stand on the device. They are made in the same place for every block, so that what lies between them stays as
+// it is: whether they are the same is asked of all bytes.
 DeviceArrays& Device::bring(Assembly& s) {
     Packs& packs = s.packs;
     DeviceArrays& a = *new (arrays_) DeviceArrays(s);
     a.assembly = nullptr;
     a.broke = nullptr;
-    if (seats_.empty()) seat_grains(packs);   // grains stay what they are
+    if (seats_.empty()) seat_grains(packs);  // grains stay what they are
     sizes_.uneven = !s.own_laws.empty();
     sizes_.other_threads = s.contacts.size() < 16'000 ? 32 : 128;
 
-    // Contacts come and go along the course of a test, and go back with it to a state that it came through; in between what joins which edges tells whether they are the same.
-    const bool same_sizes = sizes_before_ == SizesBefore{s.contacts.size(), s.points.size(), s.bodies.size(), packs.shared_edges.size()};
+    // Contacts come and go along the course of a test, and go back with it to a state that it came through; in between what joins
+    // which edges tells whether they are the same.
+    const bool same_sizes =
+        sizes_before_ == SizesBefore{s.contacts.size(), s.points.size(), s.bodies.size(), packs.shared_edges.size()};
     sizes_before_ = {s.contacts.size(), s.points.size(), s.bodies.size(), packs.shared_edges.size()};
     changed_ = fixed_ = false;
     a.line_a = put(packs.line_a);
@@ -262,7 +281,7 @@ DeviceArrays& Device::bring(Assembly& s) {
     a.fracture = put(s.bonds.fracture_J);
     a.friction = put(s.bonds.friction_J);
     const bool fixed = fixed_;
-    fixed_ = fixed && !changed_;   // a state in which no point has moved or been damaged is the same state
+    fixed_ = fixed && !changed_;  // a state in which no point has moved or been damaged is the same state
     a.Fn = put_fixed(s.bonds.Fn_N);
     a.Fs = put_fixed(s.bonds.Fs_N);
     a.max_un = put_fixed(s.bonds.max_un_m);
@@ -273,7 +292,7 @@ DeviceArrays& Device::bring(Assembly& s) {
     at_.displacement = next_ - 1;
     a.velocity = put_pairs(s.nodes.velocity);
     at_.velocity = next_ - 1;
-    a.force = reinterpret_cast<double*>(room<Vec2>(s.nodes.force.size()));   // of the last step alone, or made anew in each
+    a.force = reinterpret_cast<double*>(room<Vec2>(s.nodes.force.size()));  // of the last step alone, or made anew in each
     at_.force = next_ - 1;
     a.reference = put_fixed_pairs(s.nodes.reference);
     a.inverse_mass = put_pairs(s.nodes.inverse_mass);
@@ -283,7 +302,8 @@ DeviceArrays& Device::bring(Assembly& s) {
     a.weight = s.weight.empty() ? nullptr : weight;
     a.body_work = put(s.body_work);
     at_.work = next_ - 1;
-    const bool slots_used = !packs.loose_contacts.empty() || !packs.shared_edges.empty();   // and all that are read are written in the same step
+    const bool slots_used =
+        !packs.loose_contacts.empty() || !packs.shared_edges.empty();  // and all that are read are written in the same step
     a.slots = room<SlotForces>(slots_used ? s.slots.size() : 0);
     at_.slots = next_ - 1;
 
@@ -292,7 +312,8 @@ DeviceArrays& Device::bring(Assembly& s) {
     a.contact_packs = put(packs.contacts);
     a.laws = put(s.laws);
     const auto& own = s.own_laws.constants;
-    a.own = {put_fixed(own.Kn_Pa_m), put_fixed(own.Ks_Pa_m), put_fixed(own.x0_normal), put_fixed(own.x0_shear), put_fixed(own.x_fl_normal), put_fixed(own.x_fl_shear), put_fixed(own.mu)};
+    a.own = {put_fixed(own.Kn_Pa_m),     put_fixed(own.Ks_Pa_m),    put_fixed(own.x0_normal), put_fixed(own.x0_shear),
+             put_fixed(own.x_fl_normal), put_fixed(own.x_fl_shear), put_fixed(own.mu)};
     const double *volumetric = put_fixed(packs.volumetric), *deviatoric = put_fixed(packs.deviatoric);
     a.volumetric = packs.volumetric.empty() ? nullptr : volumetric;
     a.deviatoric = packs.deviatoric.empty() ? nullptr : deviatoric;
@@ -304,19 +325,22 @@ DeviceArrays& Device::bring(Assembly& s) {
     a.area = put_fixed(packs.area);
     a.scale = put_fixed(packs.scale);
     a.lines = room<SideLine>(packs.lines.size());
-    a.inverse_cross = nullptr;   // not kept
+    a.inverse_cross = nullptr;  // not kept
     a.rigid_bodies = put_fixed(packs.rigid);
     a.more_of_rigid = put_fixed(packs.more_of_rigid);
     a.rigid_forces = room<RigidForces>(packs.rigid_forces.size());
-    if (!packs.rigid_forces.empty()) backend_->upload(a.rigid_forces + packs.rigid_forces.size() - 1, &no_force_, sizeof no_force_);   // of no contact
+    if (!packs.rigid_forces.empty())
+        backend_->upload(a.rigid_forces + packs.rigid_forces.size() - 1, &no_force_, sizeof no_force_);  // of no contact
     a.rigid_count = packs.rigid_end;
     a.edge_threads = list_fixed(seats_);
     shared_ = packs.shared_edges;
     std::sort(shared_.begin(), shared_.end(), [](const SharedEdge& l, const SharedEdge& r) { return l.line < r.line; });
     a.shared_edges = list(shared_);
     a.shared_slots = put(packs.shared_slots);
-    a.has_flexible_contacts = std::any_of(packs.contacts.begin(), packs.contacts.end(), [](const ContactPack& pack) { return !pack.rigid; });
-    a.has_rigid_contacts = std::any_of(packs.contacts.begin(), packs.contacts.end(), [](const ContactPack& pack) { return pack.rigid; });
+    a.has_flexible_contacts =
+        std::any_of(packs.contacts.begin(), packs.contacts.end(), [](const ContactPack& pack) { return !pack.rigid; });
+    a.has_rigid_contacts =
+        std::any_of(packs.contacts.begin(), packs.contacts.end(), [](const ContactPack& pack) { return pack.rigid; });
 
     if (packs.rigid_end > 0 && !fixed_) {
         free_gaps_.assign(s.bonds.un_m.size(), 0.0);
@@ -347,7 +371,8 @@ DeviceArrays& Device::bring(Assembly& s) {
         loose.contact.first_point = static_cast<std::int32_t>(loose_points_.size()) - loose.contact.points;
         if (loose.contact.flexible) {
             if (packs.only_contact_on(loose.contact.a.edge)) loose.line_a = packs.line_of_edge[loose.contact.a.edge];
-            if (!loose.contact.plate && packs.only_contact_on(loose.contact.b.edge)) loose.line_b = packs.line_of_edge[loose.contact.b.edge];
+            if (!loose.contact.plate && packs.only_contact_on(loose.contact.b.edge))
+                loose.line_b = packs.line_of_edge[loose.contact.b.edge];
         }
         loose_.push_back(loose);
     }
@@ -357,10 +382,12 @@ DeviceArrays& Device::bring(Assembly& s) {
     loaded_.clear();
     for (const Fixture& fixture : s.fixtures)
         if (fixture.moves())
-            for (const int node : fixture.nodes) loaded_.push_back({node, 0, {fixture.imposed.x * fixture.motion.x, fixture.imposed.y * fixture.motion.y}});
+            for (const int node : fixture.nodes)
+                loaded_.push_back({node, 0, {fixture.imposed.x * fixture.motion.x, fixture.imposed.y * fixture.motion.y}});
     a.loaded_nodes = list(loaded_);
     loads_.clear();
-    for (const DeadLoad& load : s.dead_loads) loads_.push_back({load.pressure_Pa, load.stiffness_Pa_m, load.rest_m, load.outward, load.plate_node, load.springs});
+    for (const DeadLoad& load : s.dead_loads)
+        loads_.push_back({load.pressure_Pa, load.stiffness_Pa_m, load.rest_m, load.outward, load.plate_node, load.springs});
 
     DeviceModel& m = a.model;
     m.thickness_m = s.thickness_m;
@@ -370,7 +397,13 @@ DeviceArrays& Device::bring(Assembly& s) {
     m.own = a.own;
     const auto points = [](double* pairs) { return reinterpret_cast<Vec2*>(pairs); };
     const auto points_to_read = [](const double* pairs) { return reinterpret_cast<const Vec2*>(pairs); };
-    m.nodes = {points_to_read(a.reference), points(a.displacement), points(a.velocity), points(a.force), points_to_read(a.inverse_mass), points_to_read(a.loading_mode), a.mass};
+    m.nodes = {points_to_read(a.reference),
+               points(a.displacement),
+               points(a.velocity),
+               points(a.force),
+               points_to_read(a.inverse_mass),
+               points_to_read(a.loading_mode),
+               a.mass};
     m.points = list(loose_points_);
     m.initial_shapes = list(loose_shapes_);
     m.slots = {a.slots, static_cast<std::int32_t>(s.slots.size())};
@@ -383,7 +416,8 @@ DeviceArrays& Device::bring(Assembly& s) {
     const std::size_t none = 0;
     m.bodies = {put_fixed(s.bodies.data(), readable ? s.bodies.size() : none), static_cast<std::int32_t>(s.bodies.size())};
     m.edges = {put_fixed(s.edges.data(), readable ? s.edges.size() : none), static_cast<std::int32_t>(s.edges.size())};
-    m.slots_of_bodies = {put_fixed(s.slots_of_bodies.data(), plates_.empty() ? none : s.slots_of_bodies.size()), static_cast<std::int32_t>(s.slots_of_bodies.size())};
+    m.slots_of_bodies = {put_fixed(s.slots_of_bodies.data(), plates_.empty() ? none : s.slots_of_bodies.size()),
+                         static_cast<std::int32_t>(s.slots_of_bodies.size())};
     m.pressure_edges = list_fixed(s.pressure_edges);
     m.un = a.un;
     m.us = a.us;
@@ -402,17 +436,20 @@ void Device::fetch(Assembly& s, const DeviceArrays& arrays) {
     take(&mirrored_[at_.velocity], s.nodes.velocity.data(), s.nodes.velocity.size());
     take(&mirrored_[at_.force], s.nodes.force.data(), s.nodes.force.size());
     Bonds& b = s.bonds;
-    for (const auto& [place, array] : {std::pair{0, &b.un_m}, std::pair{1, &b.us_m}, std::pair{5, &b.Fn_N}, std::pair{6, &b.Fs_N}})
+    for (const auto& [place, array] :
+         {std::pair{0, &b.un_m}, std::pair{1, &b.us_m}, std::pair{5, &b.Fn_N}, std::pair{6, &b.Fs_N}})
         take(&mirrored_[at_.bonds + static_cast<std::size_t>(place)], array->data(), array->size());
     take(&mirrored_[at_.work], s.body_work.data(), s.body_work.size());
-    if (!arrays.loose_contacts.empty() || !arrays.shared_edges.empty()) take(&mirrored_[at_.slots], s.slots.data(), s.slots.size());
+    if (!arrays.loose_contacts.empty() || !arrays.shared_edges.empty())
+        take(&mirrored_[at_.slots], s.slots.data(), s.slots.size());
     take(&mirrored_[at_.broken_count], broken_count_.data(), broken_count_.size());
 }
 
 // What only damaged points change.
 void Device::fetch_damage(Assembly& s) {
     Bonds& b = s.bonds;
-    for (const auto& [place, array] : {std::pair{2, &b.damage}, std::pair{3, &b.fracture_J}, std::pair{4, &b.friction_J}, std::pair{7, &b.max_un_m}, std::pair{8, &b.max_us_m}})
+    for (const auto& [place, array] : {std::pair{2, &b.damage}, std::pair{3, &b.fracture_J}, std::pair{4, &b.friction_J},
+                                       std::pair{7, &b.max_un_m}, std::pair{8, &b.max_us_m}})
         take(&mirrored_[at_.bonds + static_cast<std::size_t>(place)], array->data(), array->size());
     take(&mirrored_[at_.slip], b.slip_m.data(), b.slip_m.size());
 }
@@ -422,8 +459,9 @@ void Device::note_broken(Assembly& s, const DeviceArrays&, long long first_step)
     take(&mirrored_[at_.broken], broken.data(), broken.size());
     arrive();
     std::vector<std::int32_t> point_at(s.bonds.un_m.size(), -1);
-    for (std::size_t p = 0; p < s.points.size(); ++p) point_at[static_cast<std::size_t>(s.points[p].state)] = static_cast<std::int32_t>(p);
-    for (const BrokenPoint& b : broken) {   // each point once, so their order is of no concern
+    for (std::size_t p = 0; p < s.points.size(); ++p)
+        point_at[static_cast<std::size_t>(s.points[p].state)] = static_cast<std::int32_t>(p);
+    for (const BrokenPoint& b : broken) {  // each point once, so their order is of no concern
         ContactPoint& point = s.points[static_cast<std::size_t>(point_at[static_cast<std::size_t>(b.state)])];
         const auto event = static_cast<BondEvent>(b.step % 4);
         point.broken_step = first_step + b.step / 4;

@@ -8,10 +8,11 @@
 
 namespace feldspar {
 
-/// A thread of the grains' stage: an edge of a grain, with the corner where it begins and the ring node behind it. All edges of a pack are in one block of threads.
+/// A thread of the grains' stage: an edge of a grain, with the corner where it begins and the ring node behind it. All edges of a
+/// pack are in one block of threads.
 struct EdgeThread {
-    std::int32_t pack = -1;         ///< -1: idle
-    std::uint16_t first = 0;        ///< thread of the block with which the pack begins
+    std::int32_t pack = -1;   ///< -1: idle
+    std::uint16_t first = 0;  ///< thread of the block with which the pack begins
     std::uint8_t edge = 0;
     std::uint8_t lane = 0;
 };
@@ -21,7 +22,7 @@ template <class T>
 struct DeviceList {
     T* data = nullptr;
     std::int32_t count = 0;
-    std::int32_t unused = 0;   // no bytes that nobody has written: lists of arrays are compared as they stand
+    std::int32_t unused = 0;  // no bytes that nobody has written: lists of arrays are compared as they stand
 
     FELDSPAR_HD T& operator[](int i) const { return data[i]; }
     FELDSPAR_HD bool empty() const { return count == 0; }
@@ -44,7 +45,8 @@ struct DeviceLoad {
     bool springs = false;
 };
 
-/// The members of an Assembly that the readable stages ask for (step/one_contact.hpp, step/one_body.hpp). Contact points are those of loose contacts alone.
+/// The members of an Assembly that the readable stages ask for (step/one_contact.hpp, step/one_body.hpp). Contact points are
+/// those of loose contacts alone.
 struct DeviceModel {
     double thickness_m = 0.0;
     bool pressed = false;
@@ -62,7 +64,8 @@ struct DeviceModel {
     DeviceList<const DeviceLoad> dead_loads;
     DeviceList<const Vec2> weight;
     DeviceList<const Dilation> dilations;
-    double *un = nullptr, *us = nullptr, *Fn = nullptr, *Fs = nullptr, *max_un = nullptr, *max_us = nullptr, *damage = nullptr, *fracture = nullptr, *friction = nullptr, *slip = nullptr;
+    double *un = nullptr, *us = nullptr, *Fn = nullptr, *Fs = nullptr, *max_un = nullptr, *max_us = nullptr, *damage = nullptr,
+           *fracture = nullptr, *friction = nullptr, *slip = nullptr;
 
     FELDSPAR_HD double& slip_m(int point) const { return slip[points[point].state]; }
     FELDSPAR_HD BondState bond(int point) const {
@@ -84,43 +87,48 @@ struct DeviceModel {
     FELDSPAR_HD BondLawOf<double> law_of(const Contact& contact) const {
         const int i = contact.own_law;
         if (i < 0) return laws[contact.material];
-        return bond_law<double>(own_form, {own.Kn_Pa_m[i], own.Ks_Pa_m[i], own.x0_normal[i], own.x0_shear[i], own.x_fl_normal[i], own.x_fl_shear[i], own.mu[i]});
+        return bond_law<double>(own_form, {own.Kn_Pa_m[i], own.Ks_Pa_m[i], own.x0_normal[i], own.x0_shear[i], own.x_fl_normal[i],
+                                           own.x_fl_shear[i], own.mu[i]});
     }
-    FELDSPAR_HD double rotation(int body) const { return nodes.displacement[bodies[body].centre_node + 1].x / bodies[body].radius_m; }
-    FELDSPAR_HD double pressure_Pa(const DeviceLoad& load, Vec2 back = {}) const { return pressure_of(load, load.springs ? nodes.displacement[load.plate_node] - back : Vec2{}); }
+    FELDSPAR_HD double rotation(int body) const {
+        return nodes.displacement[bodies[body].centre_node + 1].x / bodies[body].radius_m;
+    }
+    FELDSPAR_HD double pressure_Pa(const DeviceLoad& load, Vec2 back = {}) const {
+        return pressure_of(load, load.springs ? nodes.displacement[load.plate_node] - back : Vec2{});
+    }
 };
 
 /// A contact that goes through the readable stage, and where its forces go.
 struct LooseContact {
-    Contact contact;                              ///< its first point is one of DeviceModel::points
-    std::int32_t number = 0;                      ///< into Assembly::contacts
-    std::int32_t line_a = -1, line_b = -1;        ///< lines that take its forces; -1: none
+    Contact contact;                        ///< its first point is one of DeviceModel::points
+    std::int32_t number = 0;                ///< into Assembly::contacts
+    std::int32_t line_a = -1, line_b = -1;  ///< lines that take its forces; -1: none
 };
 
 /// A node whose force is a part of the loading's reaction, and its share.
 struct LoadedNode {
     std::int32_t node = 0;
     std::int32_t unused = 0;
-    Vec2 share;                                   ///< motion of its fixture where that is imposed
+    Vec2 share;  ///< motion of its fixture where that is imposed
 };
 
 /// What changes from one block of steps to the next.
 struct BlockOfSteps {
     KernelStep step;
-    double loading_J = 0.0;                       ///< work of the loading, so far
-    std::int32_t first = 0;                       ///< steps of the block that were made in calls before
-    std::int32_t last = 0;                        ///< of the block: forces are kept
+    double loading_J = 0.0;  ///< work of the loading, so far
+    std::int32_t first = 0;  ///< steps of the block that were made in calls before
+    std::int32_t last = 0;   ///< of the block: forces are kept
 };
 
 struct DeviceArrays : KernelArrays {
     explicit DeviceArrays(Assembly& of) : KernelArrays(of) {}
 
     DeviceModel model;
-    DeviceList<const EdgeThread> edge_threads;    ///< a multiple of the block
-    DeviceList<const SharedEdge> shared_edges;    ///< by line
+    DeviceList<const EdgeThread> edge_threads;  ///< a multiple of the block
+    DeviceList<const SharedEdge> shared_edges;  ///< by line
     const std::int32_t* shared_slots = nullptr;
     DeviceList<const LooseContact> loose_contacts;
-    DeviceList<const std::int32_t> plates;        ///< bodies
+    DeviceList<const std::int32_t> plates;  ///< bodies
     DeviceList<const LoadedNode> loaded_nodes;
     BlockOfSteps* block = nullptr;
     std::int32_t rigid_count = 0;

@@ -1,4 +1,5 @@
-// The steps of a device as loops on the processor. Compiled without contraction, for the plain instruction set (CMakeLists.txt), so that the bits are those of the card.
+// The steps of a device as loops on the processor. Compiled without contraction, for the plain instruction set (CMakeLists.txt),
+// so that the bits are those of the card.
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -21,7 +22,11 @@ void reaction(const DeviceArrays& a) {
 // The threads of one block of the grains' stage.
 class GrainThreads {
 public:
-    explicit GrainThreads(int threads) : works_(static_cast<std::size_t>(threads)), to_corner_(works_.size()), to_centre_(works_.size()), shared_(kSharedQuantities * works_.size()) {}
+    explicit GrainThreads(int threads)
+        : works_(static_cast<std::size_t>(threads)),
+          to_corner_(works_.size()),
+          to_centre_(works_.size()),
+          shared_(kSharedQuantities * works_.size()) {}
 
     template <bool local>
     void step(const DeviceArrays& a, const KernelStep& step, int number) {
@@ -77,10 +82,10 @@ void bodies(const DeviceArrays& a, const KernelStep& step, const LaunchSizes& si
 
 class Emulation final : public Backend {
 public:
-    void* allocate(std::size_t bytes) override {   // what nobody has written is no number
-        return std::memset(::operator new(bytes, std::align_val_t{64}), 0xFF, bytes);
+    void* allocate(std::size_t bytes) override {  // what nobody has written is no number
+        return std::memset(::operator new (bytes, std::align_val_t{64}), 0xFF, bytes);
     }
-    void free(void* memory) override { ::operator delete(memory, std::align_val_t{64}); }
+    void free(void* memory) override { ::operator delete (memory, std::align_val_t{64}); }
     void* allocate_beside(std::size_t bytes) override { return allocate(bytes); }
     void free_beside(void* memory) override { free(memory); }
     void upload(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }

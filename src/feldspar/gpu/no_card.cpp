@@ -7,7 +7,8 @@ namespace feldspar {
 bool built_for_cards() { return false; }
 
 std::unique_ptr<Backend> cuda_backend(DeviceProvenance&) {
-    throw InputError({.key = "--device"}, "this program was built without support for graphics cards", "cpu, or auto", "build it with -DFELDSPAR_CUDA=ON, which needs the CUDA toolkit");
+    throw InputError({.key = "--device"}, "this program was built without support for graphics cards", "cpu, or auto",
+                     "build it with -DFELDSPAR_CUDA=ON, which needs the CUDA toolkit");
 }
 
 }  // namespace feldspar

@@ -1,12 +1,14 @@
-// One step by the threads of a device. The same text is compiled for the card (cuda_backend.cu) and, as loops over the threads of a block, for the processor
-// (emulation.cpp), so that tests need no card, and a card's bits can be held against those of a processor. Included by these two alone.
+// One step by the threads of a device. The same text is compiled for the card (cuda_backend.cu) and, as loops over the threads of
+// a block, for the processor (emulation.cpp), so that tests need no card, and a card's bits can be held against those of a
+// processor. Included by these two alone.
 //
 //     contacts   a thread is a contact: a lane of its pack; or a loose contact, by the readable stage
-//     bodies     a thread is an edge of a grain, with the corner where it begins and the ring node behind it; or a rigid body; or a plate
-//     reaction   one block: the work of the loading in the step behind
+//     bodies     a thread is an edge of a grain, with the corner where it begins and the ring node behind it; or a rigid body; or
+//     a plate reaction   one block: the work of the loading in the step behind
 //
-// What is done in a lane is the text of fast/pack_kernels.hpp. The edges of a grain give each other what they need in the memory of their block, between phases: a block of threads finishes
-// a phase before any of it begins the next. Every sum is in a fixed order, whatever the size of the blocks.
+// What is done in a lane is the text of fast/pack_kernels.hpp. The edges of a grain give each other what they need in the memory
+// of their block, between phases: a block of threads finishes a phase before any of it begins the next. Every sum is in a fixed
+// order, whatever the size of the blocks.
 #pragma once
 
 #define FELDSPAR_LANES 1
@@ -19,7 +21,7 @@ namespace feldspar {
 namespace {
 
 constexpr int kReactionThreads = 256;
-constexpr int kSharedQuantities = 13;   // doubles that a thread of the grains' stage gives to its block
+constexpr int kSharedQuantities = 13;  // doubles that a thread of the grains' stage gives to its block
 
 FELDSPAR_INLINE KernelStep step_number(const DeviceArrays& a, int k) {
     const BlockOfSteps& block = *a.block;
@@ -36,13 +38,17 @@ FELDSPAR_INLINE void contact_of_pack(const DeviceArrays& a, const KernelStep& st
     const Chunk chunk{lane, 1};
     if constexpr (uneven) {
         if (pack.first_law >= 0) {
-            if (pack.plain) contacts_of_chunk<frame, central, true, true>(a, step, pack, index, chunk);
-            else contacts_of_chunk<frame, central, false, true>(a, step, pack, index, chunk);
+            if (pack.plain)
+                contacts_of_chunk<frame, central, true, true>(a, step, pack, index, chunk);
+            else
+                contacts_of_chunk<frame, central, false, true>(a, step, pack, index, chunk);
             return;
         }
     }
-    if (pack.plain) contacts_of_chunk<frame, central, true, false>(a, step, pack, index, chunk);
-    else contacts_of_chunk<frame, central, false, false>(a, step, pack, index, chunk);
+    if (pack.plain)
+        contacts_of_chunk<frame, central, true, false>(a, step, pack, index, chunk);
+    else
+        contacts_of_chunk<frame, central, false, false>(a, step, pack, index, chunk);
 }
 
 // @tparam rigid   whether the packs of rigid bodies are meant, or the others
@@ -74,11 +80,19 @@ FELDSPAR_HD void loose_contact_thread(const DeviceArrays& a, const KernelStep& s
         note_broken_point(a, step, point.state, event, bond.fracture_J);
     };
     if (loose.contact.plate) {
-        if (loose.contact.flexible) forces_of_contact<TriangleAttachment, PlateAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt, step.unlimited, broke);
-        else forces_of_contact<RigidAttachment, PlateAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt, step.unlimited, broke);
+        if (loose.contact.flexible)
+            forces_of_contact<TriangleAttachment, PlateAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt,
+                                                                   step.unlimited, broke);
+        else
+            forces_of_contact<RigidAttachment, PlateAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt, step.unlimited,
+                                                                broke);
     } else {
-        if (loose.contact.flexible) forces_of_contact<TriangleAttachment, TriangleAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt, step.unlimited, broke);
-        else forces_of_contact<RigidAttachment, RigidAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt, step.unlimited, broke);
+        if (loose.contact.flexible)
+            forces_of_contact<TriangleAttachment, TriangleAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt,
+                                                                      step.unlimited, broke);
+        else
+            forces_of_contact<RigidAttachment, RigidAttachment>(a.model, loose.contact, slot_a, slot_b, step.dt, step.unlimited,
+                                                                broke);
     }
     a.slots[2 * loose.number] = slot_a;
     a.slots[2 * loose.number + 1] = slot_b;
@@ -94,21 +108,23 @@ FELDSPAR_HD void loose_contact_thread(const DeviceArrays& a, const KernelStep& s
 
 // What a thread of the grains' stage has in hand.
 struct EdgeWork {
-    NodeLanes corner, ring, centre;   // the centre: of the thread of edge 0
-    Real2 to_ring;                    // what the ring node of another thread feels
+    NodeLanes corner, ring, centre;  // the centre: of the thread of edge 0
+    Real2 to_ring;                   // what the ring node of another thread feels
     Real work;
     EdgeThread at;
 };
 
 struct GrainBlock {
-    double* shared;   // quantity by quantity
+    double* shared;  // quantity by quantity
     int threads;
 
     FELDSPAR_INLINE void put(int quantity, int thread, Real2 v) const {
         shared[quantity * threads + thread] = v.x.v;
         shared[(quantity + 1) * threads + thread] = v.y.v;
     }
-    FELDSPAR_INLINE Real2 get(int quantity, int thread) const { return {shared[quantity * threads + thread], shared[(quantity + 1) * threads + thread]}; }
+    FELDSPAR_INLINE Real2 get(int quantity, int thread) const {
+        return {shared[quantity * threads + thread], shared[(quantity + 1) * threads + thread]};
+    }
 };
 
 // Threads of the same grain.
@@ -116,11 +132,18 @@ struct Fellows {
     int first, lanes, vertices, ring_nodes, edge, lane;
 
     FELDSPAR_INLINE Fellows(const GrainPack& pack, const EdgeThread& at)
-        : first(at.first), lanes(pack.lanes), vertices(pack.vertices), ring_nodes(pack.vertices - (pack.collapsed ? 1 : 0)), edge(at.edge), lane(at.lane) {}
+        : first(at.first),
+          lanes(pack.lanes),
+          vertices(pack.vertices),
+          ring_nodes(pack.vertices - (pack.collapsed ? 1 : 0)),
+          edge(at.edge),
+          lane(at.lane) {}
     FELDSPAR_INLINE int thread(int k) const { return first + k * lanes + lane; }
     FELDSPAR_INLINE int next() const { return edge + 1 < vertices ? edge + 1 : 0; }
     FELDSPAR_INLINE int before() const { return edge > 0 ? edge - 1 : vertices - 1; }
-    FELDSPAR_INLINE int ring_of(int k) const { return k < ring_nodes ? k : 0; }   // edge whose thread has the ring node behind edge k
+    FELDSPAR_INLINE int ring_of(int k) const {
+        return k < ring_nodes ? k : 0;
+    }  // edge whose thread has the ring node behind edge k
     FELDSPAR_INLINE bool has_ring() const { return edge < ring_nodes; }
 };
 
@@ -164,8 +187,10 @@ FELDSPAR_HD void sum_shared_edge(const DeviceArrays& a, int line) {
     int low = 0, high = a.shared_edges.count;
     while (low < high) {
         const int middle = (low + high) / 2;
-        if (a.shared_edges[middle].line < line) low = middle + 1;
-        else high = middle;
+        if (a.shared_edges[middle].line < line)
+            low = middle + 1;
+        else
+            high = middle;
     }
     const SharedEdge& edge = a.shared_edges[low];
     SlotForces sum;
@@ -173,7 +198,8 @@ FELDSPAR_HD void sum_shared_edge(const DeviceArrays& a, int line) {
     a.lines[line].forces = sum;
 }
 
-// Phase 2: contacts and triangles. What others feel goes to them in phase 3: to the next corner, to the next ring node, to the centre.
+// Phase 2: contacts and triangles. What others feel goes to them in phase 3: to the next corner, to the next ring node, to the
+// centre.
 FELDSPAR_INLINE void force_edge(const DeviceArrays& a, const GrainBlock& block, EdgeWork& w, Real2& to_corner, Real2& to_centre) {
     if (w.at.pack < 0) return;
     const GrainPack& pack = a.grain_packs[w.at.pack];
@@ -194,7 +220,8 @@ FELDSPAR_INLINE void force_edge(const DeviceArrays& a, const GrainBlock& block, 
     }
     Real2 fi = w.corner.f, fj{}, fr = r.f, fs{}, fc{};
     const Real2 xi = w.corner.position(), xj = j.position(), xr = r.position();
-    add_contact_forces(doubles(a.lines + line), 1, w.centre.position(), xi, xj, xr, inverse_of(cross(xj - xi, xr - xi)), fi, fj, fr);
+    add_contact_forces(doubles(a.lines + line), 1, w.centre.position(), xi, xj, xr, inverse_of(cross(xj - xi, xr - xi)), fi, fj,
+                       fr);
     const double* scale = a.scale + pack.first_triangle + 3 * fellows.edge * pack.lanes + fellows.lane;
     add_triangle(w.corner.X, j.X, r.X, w.corner.u, j.u, r.u, load(scale), D, fi, fj, fr);
     if (fellows.has_ring()) {
@@ -204,7 +231,7 @@ FELDSPAR_INLINE void force_edge(const DeviceArrays& a, const GrainBlock& block, 
         w.ring.f = fr;
         w.to_ring = fs;
     } else {
-        w.to_ring = fr;   // the ring node behind the collapsed edge is that behind the next one
+        w.to_ring = fr;  // the ring node behind the collapsed edge is that behind the next one
     }
     w.corner.f = fi;
     to_corner = fj;
@@ -234,7 +261,8 @@ FELDSPAR_INLINE void move_edge(const DeviceArrays& a, const KernelStep& step, co
     if (fellows.edge == 0)
         for (int k = 0; k < pack.vertices; ++k) w.centre.f = w.centre.f + block.get(4, fellows.thread(k));
 
-    const int corner = node_of(pack, fellows.edge, fellows.lane), ring = node_of(pack, nodes.ring(fellows.edge), fellows.lane), centre = node_of(pack, nodes.centre(), fellows.lane);
+    const int corner = node_of(pack, fellows.edge, fellows.lane), ring = node_of(pack, nodes.ring(fellows.edge), fellows.lane),
+              centre = node_of(pack, nodes.centre(), fellows.lane);
     if (a.pack_forces[w.at.pack] != PackForces::own || step.keep_forces) {
         store_points(a.force + 2 * corner, w.corner.f);
         if (fellows.has_ring()) store_points(a.force + 2 * ring, w.ring.f);
@@ -266,21 +294,24 @@ FELDSPAR_INLINE void show_edge(const DeviceArrays& a, const GrainBlock& block, i
 
 // Phase 6: the line of the edge; of edge 0 what the whole grain has done.
 template <bool after_step>
-FELDSPAR_INLINE void end_edge(const DeviceArrays& a, const KernelStep& step, const GrainBlock& block, int thread, const EdgeWork& w) {
+FELDSPAR_INLINE void end_edge(const DeviceArrays& a, const KernelStep& step, const GrainBlock& block, int thread,
+                              const EdgeWork& w) {
     if (w.at.pack < 0) return;
     const GrainPack& pack = a.grain_packs[w.at.pack];
     const Fellows fellows(pack, w.at);
-    const int next = fellows.thread(fellows.next()), ring = fellows.thread(fellows.ring_of(fellows.edge)), first = fellows.thread(0);
+    const int next = fellows.thread(fellows.next()), ring = fellows.thread(fellows.ring_of(fellows.edge)),
+              first = fellows.thread(0);
     const int line = pack.first_edge + fellows.edge * pack.lanes + fellows.lane;
-    if (!after_step && a.bare[line] != 0) a.lines[line].forces = SlotForces{};   // it may have had a contact
-    write_line(doubles(a.lines + line), nullptr, a.bare + line, 1, block.get(8, first), block.get(0, thread), block.get(0, next), block.get(4, ring), block.get(2, thread),
-               block.get(2, next), block.get(6, ring));
+    if (!after_step && a.bare[line] != 0) a.lines[line].forces = SlotForces{};  // it may have had a contact
+    write_line(doubles(a.lines + line), nullptr, a.bare + line, 1, block.get(8, first), block.get(0, thread), block.get(0, next),
+               block.get(4, ring), block.get(2, thread), block.get(2, next), block.get(6, ring));
     if (!after_step || fellows.edge != 0) return;
     double work = 0.0;
     for (int k = 0; k < pack.vertices; ++k) work += block.shared[12 * block.threads + fellows.thread(k)];
     const int number = pack.grain[fellows.lane];
     a.body_work[number].damping += work;
-    if (a.pack_forces[w.at.pack] == PackForces::on_top_of_others) finish_pressure_work_of(a.model, a.model.bodies[number], a.body_work[number], step.dt);
+    if (a.pack_forces[w.at.pack] == PackForces::on_top_of_others)
+        finish_pressure_work_of(a.model, a.model.bodies[number], a.body_work[number], step.dt);
 }
 
 // Before the first step: the motion of the own nodes as it is, in the places of phase 5.
@@ -294,9 +325,10 @@ FELDSPAR_INLINE void load_motion_of_edge(const DeviceArrays& a, EdgeWork& w) {
     if (fellows.edge == 0) load_node(a, a.velocity, node_of(pack, nodes.centre(), fellows.lane), w.centre);
 }
 
-// ---------------------------------------------------------------------------------------------------------------- rigid bodies, plates
+// ---------------------------------------------------------------------------------------------------------- rigid bodies, plates
 
-FELDSPAR_INLINE void write_line_of_rigid(const DeviceArrays& a, int number, const RigidBody& body, const double* u, const double* v) {
+FELDSPAR_INLINE void write_line_of_rigid(const DeviceArrays& a, int number, const RigidBody& body, const double* u,
+                                         const double* v) {
     double* line = doubles(a.lines + a.line_of_first_body + number);
     const double* X = a.reference + 2 * body.first_node;
     const double turning = v[2] * body.inverse_radius;
@@ -317,7 +349,9 @@ FELDSPAR_INLINE void rigid_thread(const DeviceArrays& a, const KernelStep& step,
         sum[2] += f.moment_a;
         sum[3] += f.moment_b;
     };
-    const auto at = [&](std::uint32_t bytes) -> const RigidForces& { return *reinterpret_cast<const RigidForces*>(reinterpret_cast<const char*>(a.rigid_forces) + bytes); };
+    const auto at = [&](std::uint32_t bytes) -> const RigidForces& {
+        return *reinterpret_cast<const RigidForces*>(reinterpret_cast<const char*>(a.rigid_forces) + bytes);
+    };
     for (int i = 0; i < kAtOnce; ++i) add(as_a, at(body.as_a[i]));
     for (int i = 0; i < kAtOnce; ++i) add(as_b, at(body.as_b[i]));
     for (int i = body.more_begin; i < body.more_end; ++i) {
@@ -326,13 +360,15 @@ FELDSPAR_INLINE void rigid_thread(const DeviceArrays& a, const KernelStep& step,
     }
     const int node = 2 * body.first_node;
     double F[4] = {as_b[0] - as_a[0], as_b[1] - as_a[1], (as_a[2] + as_b[3]) * body.inverse_radius, 0.0}, v[4], u[4], work[4];
-    const double mass[4] = {a.mass[body.first_node], a.mass[body.first_node], a.mass[body.first_node + 1], a.mass[body.first_node + 1]};
+    const double mass[4] = {a.mass[body.first_node], a.mass[body.first_node], a.mass[body.first_node + 1],
+                            a.mass[body.first_node + 1]};
     const ViscousDamping damping(step);
     for (int c = 0; c < 4; ++c) {
         if (a.weight != nullptr) F[c] += a.weight[node + c];
         const double V = a.velocity[node + c], inverse_mass = a.inverse_mass[node + c];
         if constexpr (local) {
-            const double drag = inverse_mass == 0.0 ? 0.0 : local_drag(V, step.speed * a.loading_mode[node + c], F[c], step.alpha);
+            const double drag =
+                inverse_mass == 0.0 ? 0.0 : local_drag(V, step.speed * a.loading_mode[node + c], F[c], step.alpha);
             v[c] = V + step.dt * inverse_mass * (F[c] - drag);
             work[c] = 0.5 * step.dt * drag * (V + v[c]);
         } else {
@@ -363,8 +399,10 @@ FELDSPAR_HD void plate_thread(const DeviceArrays& a, const KernelStep& step, int
     BodyWork& work = a.body_work[number];
     gather_at_centre(a.model, plate);
     if (a.model.pressed) add_pressure_of(a.model, plate, work, step.dt);
-    if (step.local_damping) move_body<true>(a.model, plate, step.dt, step.alpha, step.viscous, step.speed, work);
-    else move_body<false>(a.model, plate, step.dt, step.alpha, step.viscous, step.speed, work);
+    if (step.local_damping)
+        move_body<true>(a.model, plate, step.dt, step.alpha, step.viscous, step.speed, work);
+    else
+        move_body<false>(a.model, plate, step.dt, step.alpha, step.viscous, step.speed, work);
     if (a.model.pressed) finish_pressure_work_of(a.model, plate, work, step.dt);
 }
 
@@ -380,7 +418,9 @@ FELDSPAR_INLINE double reaction_thread(const DeviceArrays& a, int thread) {
     return sum;
 }
 
-FELDSPAR_INLINE void add_work(const DeviceArrays& a, double force) { a.block->loading_J -= force * (a.block->step.dt * a.block->step.speed); }
+FELDSPAR_INLINE void add_work(const DeviceArrays& a, double force) {
+    a.block->loading_J -= force * (a.block->step.dt * a.block->step.speed);
+}
 
 }  // namespace
 }  // namespace feldspar

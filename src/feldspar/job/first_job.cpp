@@ -63,16 +63,21 @@ double read_quantity(std::string_view name, const std::string& text, Dimension d
     return value;
 }
 
-void refuse(std::string_view name, const std::string& text, const std::string& why, const std::string& allowed) { throw InputError({.key = option_of(name)}, "'" + text + "' " + why, allowed); }
+void refuse(std::string_view name, const std::string& text, const std::string& why, const std::string& allowed) {
+    throw InputError({.key = option_of(name)}, "'" + text + "' " + why, allowed);
+}
 
-double positive_quantity(std::string_view name, const std::string& text, Dimension dimension, double low, double high, const char* allowed) {
+double positive_quantity(std::string_view name, const std::string& text, Dimension dimension, double low, double high,
+                         const char* allowed) {
     const double value = read_quantity(name, text, dimension);
     if (!(value > 0.0)) refuse(name, text, "is not above zero", allowed);
     if (value < low || value > high) refuse(name, text, "is nothing that rocks have", allowed);
     return value;
 }
 
-std::string four(double value, std::string_view unit) { return fmt::format("\"{:.4g}{}{}\"", value, unit.empty() ? "" : " ", unit); }
+std::string four(double value, std::string_view unit) {
+    return fmt::format("\"{:.4g}{}{}\"", value, unit.empty() ? "" : " ", unit);
+}
 
 // A comment of lines of about 140 characters.
 std::string comment(const std::string& text) {
@@ -88,34 +93,45 @@ std::string comment(const std::string& text) {
 }
 
 std::string numbers_in_words(const RockNumbers& n) {
-    return fmt::format("E {:.3g} GPa, nu {:.2g}, UCS {:.3g} MPa, DTS {:.3g} MPa, BTS {:.3g} MPa, friction angle {:.2g} deg", 1e-9 * n.E_Pa, n.nu, 1e-6 * n.UCS_Pa, 1e-6 * n.DTS_Pa, 1e-6 * n.BTS_Pa,
-                       n.friction_angle_deg);
+    return fmt::format("E {:.3g} GPa, nu {:.2g}, UCS {:.3g} MPa, DTS {:.3g} MPa, BTS {:.3g} MPa, friction angle {:.2g} deg",
+                       1e-9 * n.E_Pa, n.nu, 1e-6 * n.UCS_Pa, 1e-6 * n.DTS_Pa, 1e-6 * n.BTS_Pa, n.friction_angle_deg);
 }
 
 // What the model cannot show, and what then helps.
 std::string out_of_reach(const ReadRock& rock, const FirstParameters& first) {
     const char* ratio = first.of_DTS ? "UCS/DTS" : "UCS/BTS";
-    std::string text = fmt::format("{} of {:.3g} is out of reach of an even rock of such contacts: the rules reach {:.3g} to {:.3g}. These parameters meet the UCS, and leave a {} of about {:.3g} MPa.", ratio, first.wanted_ratio,
-                                   first.lowest_ratio, first.highest_ratio, first.of_DTS ? "DTS" : "BTS", 1e-6 * (first.of_DTS ? first.expected.DTS_Pa : first.expected.BTS_Pa));
-    if (first.wanted_ratio < first.lowest_ratio) return text + " A lower ratio wants tougher contacts (a larger Gfn), which a calibration may try.";
+    std::string text = fmt::format(
+        "{} of {:.3g} is out of reach of an even rock of such contacts: the rules reach {:.3g} to {:.3g}. These parameters meet "
+        "the UCS, and leave a {} of about {:.3g} MPa.",
+        ratio, first.wanted_ratio, first.lowest_ratio, first.highest_ratio, first.of_DTS ? "DTS" : "BTS",
+        1e-6 * (first.of_DTS ? first.expected.DTS_Pa : first.expected.BTS_Pa));
+    if (first.wanted_ratio < first.lowest_ratio)
+        return text + " A lower ratio wants tougher contacts (a larger Gfn), which a calibration may try.";
     const auto scatter = scatter_for(rock.targets, rock.grain_m);
-    if (!scatter) return text + " Scatter of the strengths brings it nearer, and so do contacts that are broken before the test ([material.scatter], [material.initial_cracks]; docs/theory/heterogeneity.md).";
+    if (!scatter)
+        return text +
+               " Scatter of the strengths brings it nearer, and so do contacts that are broken before the test "
+               "([material.scatter], [material.initial_cracks]; docs/theory/heterogeneity.md).";
     const FirstParameters uneven = first_parameters(rock.targets, rock.grain_m, *scatter);
     const ContactMaterial& c = uneven.contact;
-    return text + fmt::format(" Strengths that scatter reach it (docs/theory/heterogeneity.md): by the rules [material.scatter] strength = {{ modulus = {:.2g}, lowest = 0.1 }} with sigma_nt = \"{:.3g} MPa\", tau = \"{:.4g} MPa\", "
-                              "mu = {:.2g}, Gfn = \"{:.3g} N/m\", Gfs = \"{:.4g} N/m\".",
-                              1.0 / *scatter, 1e-6 * c.sigma_nt_Pa, 1e-6 * c.tau_Pa, c.mu, c.Gfn_J_m2, c.Gfs_J_m2);
+    return text + fmt::format(
+                      " Strengths that scatter reach it (docs/theory/heterogeneity.md): by the rules [material.scatter] strength "
+                      "= {{ modulus = {:.2g}, lowest = 0.1 }} with sigma_nt = \"{:.3g} MPa\", tau = \"{:.4g} MPa\", "
+                      "mu = {:.2g}, Gfn = \"{:.3g} N/m\", Gfs = \"{:.4g} N/m\".",
+                      1.0 / *scatter, 1e-6 * c.sigma_nt_Pa, 1e-6 * c.tau_Pa, c.mu, c.Gfn_J_m2, c.Gfs_J_m2);
 }
 
 void take_rock(const LiteratureRock& rock, const GivenRock& given, ReadRock& read) {
     RockTargets& t = read.targets;
     const auto known = [](double value) { return std::isfinite(value); };
-    if (given.values.empty() || (given.values.size() == 1 && given.values.contains("grain-size"))) {   // all that is known of it
+    if (given.values.empty() || (given.values.size() == 1 && given.values.contains("grain-size"))) {  // all that is known of it
         read.source = rock.source;
-        const auto take = [&](std::string_view key, double value, double unit, std::string_view unit_name, std::optional<double>& target) {
+        const auto take = [&](std::string_view key, double value, double unit, std::string_view unit_name,
+                              std::optional<double>& target) {
             if (!known(value)) return;
             target = value * unit;
-            read.laboratory.emplace_back(key, unit_name.empty() ? fmt::format("{:g}", value) : fmt::format("\"{:g} {}\"", value, unit_name));
+            read.laboratory.emplace_back(
+                key, unit_name.empty() ? fmt::format("{:g}", value) : fmt::format("\"{:g} {}\"", value, unit_name));
         };
         take("E", rock.E_GPa, 1e9, "GPa", t.E_Pa);
         take("nu", rock.nu, 1.0, "", t.nu);
@@ -132,17 +148,20 @@ void take_rock(const LiteratureRock& rock, const GivenRock& given, ReadRock& rea
     };
     assume(t.E_Pa, 1e9 * rock.E_GPa, fmt::format("E = {:g} GPa", rock.E_GPa));
     assume(t.nu, rock.nu, fmt::format("Poisson's ratio of {:g}", rock.nu));
-    if (!t.cohesion_Pa) assume(t.friction_angle_deg, rock.friction_angle_deg, fmt::format("friction angle of {:g} deg", rock.friction_angle_deg));
+    if (!t.cohesion_Pa)
+        assume(t.friction_angle_deg, rock.friction_angle_deg, fmt::format("friction angle of {:g} deg", rock.friction_angle_deg));
     const double ratio = rock.UCS_MPa / rock.BTS_MPa;
     if (t.UCS_Pa && !t.DTS_Pa) assume(t.BTS_Pa, *t.UCS_Pa / ratio, fmt::format("UCS over BTS of {:.3g}", ratio));
-    if (!t.UCS_Pa && t.BTS_Pa && !t.cohesion_Pa) assume(t.UCS_Pa, *t.BTS_Pa * ratio, fmt::format("UCS over BTS of {:.3g}", ratio));
+    if (!t.UCS_Pa && t.BTS_Pa && !t.cohesion_Pa)
+        assume(t.UCS_Pa, *t.BTS_Pa * ratio, fmt::format("UCS over BTS of {:.3g}", ratio));
 }
 
 // The head of the template tells whose numbers it has.
 std::string with_head(std::string text, const std::string& head) {
     const std::size_t from = text.find("# The numbers are those of the Augig granite"), end = text.find("\n\n", from);
     if (from == std::string::npos) return head + text;
-    return text.replace(from, end - from, head + "# A line that begins with '#' and a key shows a key that may be left out, with its default.");
+    return text.replace(from, end - from,
+                        head + "# A line that begins with '#' and a key shows a key that may be left out, with its default.");
 }
 
 }  // namespace
@@ -157,8 +176,10 @@ ReadRock read_rock_numbers(const GivenRock& given) {
         if (found == given.values.end()) return;
         take(found->second);
     };
-    const auto stress_of = [&](std::string_view name, std::optional<double>& target, double low, double high, const char* allowed) {
-        with(name, [&](const std::string& text) { target = positive_quantity(name, text, Dimension::stress, low, high, allowed); });
+    const auto stress_of = [&](std::string_view name, std::optional<double>& target, double low, double high,
+                               const char* allowed) {
+        with(name,
+             [&](const std::string& text) { target = positive_quantity(name, text, Dimension::stress, low, high, allowed); });
     };
     stress_of("E", t.E_Pa, 1e7, 1e12, "a modulus from 0.01 to 1000 GPa, such as \"30 GPa\"");
     stress_of("UCS", t.UCS_Pa, 1e4, 2e9, "a strength from 0.01 to 2000 MPa, such as \"120 MPa\"");
@@ -171,13 +192,19 @@ ReadRock read_rock_numbers(const GivenRock& given) {
     });
     with("friction-angle", [&](const std::string& text) {
         t.friction_angle_deg = read_quantity("friction-angle", text, Dimension::angle) / kDegrees;
-        if (!(*t.friction_angle_deg > 0.0 && *t.friction_angle_deg < 90.0)) refuse("friction-angle", text, "is no friction angle", "an angle above 0 and below 90 deg, such as \"50 deg\"");
+        if (!(*t.friction_angle_deg > 0.0 && *t.friction_angle_deg < 90.0))
+            refuse("friction-angle", text, "is no friction angle", "an angle above 0 and below 90 deg, such as \"50 deg\"");
     });
     std::optional<double> sigma_ci;
     stress_of("sigma-ci", sigma_ci, 1e3, 2e9, "a stress from 0.001 to 2000 MPa, such as \"55 MPa\"");
-    with("grain-size", [&](const std::string& text) { read.grain_m = positive_quantity("grain-size", text, Dimension::length, 1e-5, 16e-3, "a length from 0.01 to 16 mm: the specimen is 80 mm wide and wants five grains across at least"); });
+    with("grain-size", [&](const std::string& text) {
+        read.grain_m =
+            positive_quantity("grain-size", text, Dimension::length, 1e-5, 16e-3,
+                              "a length from 0.01 to 16 mm: the specimen is 80 mm wide and wants five grains across at least");
+    });
     for (const auto& [key, text] : given.values)
-        if (std::none_of(names.begin(), names.end(), [&, &option = key](const GivenName& name) { return name.option == option; })) throw InputError({.key = option_of(key)}, "is no number of a rock");
+        if (std::none_of(names.begin(), names.end(), [&, &option = key](const GivenName& name) { return name.option == option; }))
+            throw InputError({.key = option_of(key)}, "is no number of a rock");
 
     for (const GivenName& name : names) {
         const auto found = given.values.find(std::string(name.option));
@@ -188,27 +215,43 @@ ReadRock read_rock_numbers(const GivenRock& given) {
 
     for (const auto& [name, tension] : {std::pair("BTS", t.BTS_Pa), std::pair("DTS", t.DTS_Pa)})
         if (tension && t.UCS_Pa && *tension >= *t.UCS_Pa)
-            throw InputError({.key = option_of("UCS")}, fmt::format("a UCS of {:.4g} MPa is not above the {} of {:.4g} MPa", 1e-6 * *t.UCS_Pa, name, 1e-6 * *tension), "rocks are 4 to 60 times as strong in compression as in tension", "are the two exchanged?");
-    if (sigma_ci && t.UCS_Pa && *sigma_ci > *t.UCS_Pa) throw InputError({.key = "--sigma-ci"}, "is above the UCS", "a share of the UCS: most rocks have 0.3 to 0.6");
+            throw InputError(
+                {.key = option_of("UCS")},
+                fmt::format("a UCS of {:.4g} MPa is not above the {} of {:.4g} MPa", 1e-6 * *t.UCS_Pa, name, 1e-6 * *tension),
+                "rocks are 4 to 60 times as strong in compression as in tension", "are the two exchanged?");
+    if (sigma_ci && t.UCS_Pa && *sigma_ci > *t.UCS_Pa)
+        throw InputError({.key = "--sigma-ci"}, "is above the UCS", "a share of the UCS: most rocks have 0.3 to 0.6");
     if (!t.UCS_Pa && !t.BTS_Pa && !t.DTS_Pa && !(t.cohesion_Pa && t.friction_angle_deg))
-        throw InputError({.key = "--UCS"}, "no strength is given", "--UCS, --BTS or --DTS, or both --cohesion and --friction-angle; or --rock with a rock of the list (feldspar new --presets)");
+        throw InputError({.key = "--UCS"}, "no strength is given",
+                         "--UCS, --BTS or --DTS, or both --cohesion and --friction-angle; or --rock with a rock of the list "
+                         "(feldspar new --presets)");
     if (t.UCS_Pa && t.cohesion_Pa && t.friction_angle_deg) {
         const double line = 2.0 * *t.cohesion_Pa * std::tan((45.0 + 0.5 * *t.friction_angle_deg) * kDegrees);
         if (std::abs(line / *t.UCS_Pa - 1.0) > 0.25)
-            read.warnings.push_back(fmt::format("cohesion and friction angle mean a UCS of {:.3g} MPa (2 c tan(45 deg + phi / 2)), and {:.3g} MPa is given: no rock shows both; the UCS is met", 1e-6 * line, 1e-6 * *t.UCS_Pa));
+            read.warnings.push_back(
+                fmt::format("cohesion and friction angle mean a UCS of {:.3g} MPa (2 c tan(45 deg + phi / 2)), and {:.3g} MPa is "
+                            "given: no rock shows both; the UCS is met",
+                            1e-6 * line, 1e-6 * *t.UCS_Pa));
     }
     if (sigma_ci && t.UCS_Pa && *sigma_ci < 0.38 * *t.UCS_Pa)
-        read.warnings.push_back(fmt::format("crack initiation at {:.2g} of the UCS: even rocks of this model begin to crack later; strengths that scatter bring it down (docs/theory/heterogeneity.md)", *sigma_ci / *t.UCS_Pa));
-    if (read.grain_m > 8e-3) read.warnings.push_back("grains of more than 8 mm: the specimen of 80 mm has less than ten across, and strengths scatter from packing to packing");
+        read.warnings.push_back(
+            fmt::format("crack initiation at {:.2g} of the UCS: even rocks of this model begin to crack later; strengths that "
+                        "scatter bring it down (docs/theory/heterogeneity.md)",
+                        *sigma_ci / *t.UCS_Pa));
+    if (read.grain_m > 8e-3)
+        read.warnings.push_back(
+            "grains of more than 8 mm: the specimen of 80 mm has less than ten across, and strengths scatter from packing to "
+            "packing");
     return read;
 }
 
-std::string with_values(std::string text, std::string_view table, const std::vector<std::pair<std::string, std::string>>& values, std::span<const std::string_view> optional) {
+std::string with_values(std::string text, std::string_view table, const std::vector<std::pair<std::string, std::string>>& values,
+                        std::span<const std::string_view> optional) {
     std::istringstream lines(text);
     std::string written;
     bool inside = false;
     std::vector<std::string> seen;
-    const auto add_missing = [&] {   // those that the template does not show
+    const auto add_missing = [&] {  // those that the template does not show
         for (const auto& [key, value] : values)
             if (std::find(seen.begin(), seen.end(), key) == seen.end()) written += fmt::format("{} = {}\n", key, value);
     };
@@ -244,9 +287,13 @@ FirstJob first_job(std::string_view kind, const GivenRock& given) {
     job.warnings = rock.warnings;
     const FirstParameters& first = job.first;
 
-    std::string head = comment("The contact parameters are first ones, by scaling rules that were measured on small specimens (docs/validation/first-parameters.md); they are no calibration. The rules expect of them " +
-                               numbers_in_words(first.expected) +
-                               fmt::format("; their own errors are {:.0f} % of UCS and {:.0f} % of BTS. Better ones: feldspar new calibration, with the same options.", 100.0 * rule_errors.UCS, 100.0 * rule_errors.BTS));
+    std::string head = comment(
+        "The contact parameters are first ones, by scaling rules that were measured on small specimens "
+        "(docs/validation/first-parameters.md); they are no calibration. The rules expect of them " +
+        numbers_in_words(first.expected) +
+        fmt::format("; their own errors are {:.0f} % of UCS and {:.0f} % of BTS. Better ones: feldspar new calibration, with the "
+                    "same options.",
+                    100.0 * rule_errors.UCS, 100.0 * rule_errors.BTS));
     if (!rock.source.empty()) head += comment("Laboratory: " + rock.source + ".");
     std::vector<std::string> assumed = rock.assumed;
     assumed.insert(assumed.end(), first.assumed.begin(), first.assumed.end());
@@ -257,13 +304,18 @@ FirstJob first_job(std::string_view kind, const GivenRock& given) {
         job.warnings.push_back(why);
     }
     if (!first.friction_reached) {
-        const std::string why = fmt::format("a friction angle of {:.3g} deg is out of reach: these contacts have about {:.3g} deg", rock.targets.friction_angle_deg.value_or(first.expected.friction_angle_deg), first.expected.friction_angle_deg);
+        const std::string why = fmt::format(
+            "a friction angle of {:.3g} deg is out of reach: these contacts have about {:.3g} deg",
+            rock.targets.friction_angle_deg.value_or(first.expected.friction_angle_deg), first.expected.friction_angle_deg);
         head += comment("NOTE: " + why + ".");
         job.warnings.push_back(why);
     }
-    constexpr double kLeastStrain = 8e-5;   // sigma_nt / E, the end of the experiment
+    constexpr double kLeastStrain = 8e-5;  // sigma_nt / E, the end of the experiment
     if (const double strain = first.contact.sigma_nt_Pa / first.grain.E_Pa; strain < kLeastStrain) {
-        const std::string why = fmt::format("sigma_nt / E of {:.1e} is below what the rules were measured at ({:.0e} to 5e-04): so stiff and weak a rock came out 10 to 90 % too strong in compression, with tests of grade C", strain, kLeastStrain);
+        const std::string why = fmt::format(
+            "sigma_nt / E of {:.1e} is below what the rules were measured at ({:.0e} to 5e-04): so stiff and weak a rock came "
+            "out 10 to 90 % too strong in compression, with tests of grade C",
+            strain, kLeastStrain);
         head += comment("NOTE: " + why + ".");
         job.warnings.push_back(why);
     }
@@ -274,12 +326,21 @@ FirstJob first_job(std::string_view kind, const GivenRock& given) {
     const ContactMaterial& c = first.contact;
     const double d_mm = 1e3 * rock.grain_m;
     if (given.values.contains("grain-size"))
-        text = with_values(std::move(text), "specimen.grains", {{"diameter", fmt::format("{{ distribution = \"uniform\", minimum = {}, maximum = {} }}", four(d_mm * 2.0 / 3.0, "mm"), four(d_mm * 4.0 / 3.0, "mm"))}});
-    text = with_values(std::move(text), "material.grain", {{"E", four(1e-9 * grain.E_Pa, "GPa")}, {"nu", fmt::format("{:.3g}", grain.nu)}});
+        text = with_values(std::move(text), "specimen.grains",
+                           {{"diameter", fmt::format("{{ distribution = \"uniform\", minimum = {}, maximum = {} }}",
+                                                     four(d_mm * 2.0 / 3.0, "mm"), four(d_mm * 4.0 / 3.0, "mm"))}});
+    text = with_values(std::move(text), "material.grain",
+                       {{"E", four(1e-9 * grain.E_Pa, "GPa")}, {"nu", fmt::format("{:.3g}", grain.nu)}});
     text = with_values(std::move(text), "material.contact",
-                       {{"Kn", four(1e-9 * c.Kn_Pa_m, "GPa/m")}, {"eta", fmt::format("{:.3g}", c.eta)}, {"sigma_nt", four(1e-6 * c.sigma_nt_Pa, "MPa")}, {"tau", four(1e-6 * c.tau_Pa, "MPa")},
-                        {"mu", fmt::format("{:.3g}", c.mu)}, {"Gfn", four(c.Gfn_J_m2, "N/m")}, {"Gfs", four(c.Gfs_J_m2, "N/m")}});
-    constexpr std::array<std::string_view, 8> shown{"E", "nu", "UCS", "DTS", "BTS", "cohesion", "friction_angle", "hoek_brown_mi"};
+                       {{"Kn", four(1e-9 * c.Kn_Pa_m, "GPa/m")},
+                        {"eta", fmt::format("{:.3g}", c.eta)},
+                        {"sigma_nt", four(1e-6 * c.sigma_nt_Pa, "MPa")},
+                        {"tau", four(1e-6 * c.tau_Pa, "MPa")},
+                        {"mu", fmt::format("{:.3g}", c.mu)},
+                        {"Gfn", four(c.Gfn_J_m2, "N/m")},
+                        {"Gfs", four(c.Gfs_J_m2, "N/m")}});
+    constexpr std::array<std::string_view, 8> shown{
+        "E", "nu", "UCS", "DTS", "BTS", "cohesion", "friction_angle", "hoek_brown_mi"};
     text = with_values(std::move(text), "laboratory", rock.laboratory, shown);
     job.text = std::move(text);
     return job;

@@ -10,8 +10,11 @@
 namespace feldspar {
 namespace {
 
-constexpr std::array dimensions{Dimension::length, Dimension::stress, Dimension::density, Dimension::stiffness_gradient, Dimension::fracture_energy, Dimension::speed, Dimension::speed_per_step,
-                                Dimension::time, Dimension::angle, Dimension::force, Dimension::energy, Dimension::acceleration, Dimension::toughness};
+constexpr std::array dimensions{
+    Dimension::length,          Dimension::stress, Dimension::density,        Dimension::stiffness_gradient,
+    Dimension::fracture_energy, Dimension::speed,  Dimension::speed_per_step, Dimension::time,
+    Dimension::angle,           Dimension::force,  Dimension::energy,         Dimension::acceleration,
+    Dimension::toughness};
 
 std::optional<double> read(const std::string& text, Dimension dimension) {
     try {
@@ -35,7 +38,8 @@ void collect(const toml::node& node, const std::string& key, std::vector<Written
         for (const toml::node& value : *list) collect(value, key, texts);
     } else if (const auto* text = node.as_string()) {
         const std::string& given = text->get();
-        if (given.find_first_of("\"\\\n") == std::string::npos && given.find_first_of("0123456789") != std::string::npos) texts.push_back({key, given});
+        if (given.find_first_of("\"\\\n") == std::string::npos && given.find_first_of("0123456789") != std::string::npos)
+            texts.push_back({key, given});
     }
 }
 

@@ -14,7 +14,7 @@
 namespace feldspar {
 namespace {
 
-constexpr std::string_view kFurtherSigns = "-_.";   // of a file's name, beside letters and digits
+constexpr std::string_view kFurtherSigns = "-_.";  // of a file's name, beside letters and digits
 
 // A name for the run's directory: letters, digits, '-', '_' and '.', not beginning with '.'.
 std::string name_from_stem(const std::filesystem::path& file) {
@@ -49,7 +49,9 @@ void check_one_packing(const JobTable& root, const Job& job) {
     for (const TestSpec& test : job.tests)
         several = several || test.seeds.size() > 1 || (test.seeds.size() == 1 && test.seeds.front() != job.seeds.front());
     if (!several) return;
-    root.check({}, [&] { root.table("specimen").fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing"); });
+    root.check({}, [&] {
+        root.table("specimen").fail("packing", "is one packing, but several seeds are asked for", "one seed beside a packing");
+    });
 }
 
 // The parts of a job in the order in which one asks for another.
@@ -65,7 +67,7 @@ public:
     Job read() {
         const JobTable root(root_, job_table(""));
         job_.name = read_name(root, job_.file);
-        (void)root.integer("format");   // only that it is one that we read
+        (void)root.integer("format");  // only that it is one that we read
         if (root.has("variant"))
             root.require({"specimen", "test"});
         else
@@ -110,7 +112,9 @@ private:
 SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double flat_angle_rad) {
     SpecimenSpec disc = specimen;
     if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m) disc.packing_file.clear();
-    if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m || flat_angle_rad != 0.0 || specimen.given_cells.cut) disc.given_cells.cut = true;
+    if (specimen.outline.shape != Shape::disc || specimen.outline.diameter_m != diameter_m || flat_angle_rad != 0.0 ||
+        specimen.given_cells.cut)
+        disc.given_cells.cut = true;
     disc.outline = OutlineSpec{};
     disc.outline.shape = Shape::disc;
     disc.outline.diameter_m = diameter_m;
@@ -118,9 +122,13 @@ SpecimenSpec disc_of(const SpecimenSpec& specimen, double diameter_m, double fla
     return disc;
 }
 
-Job read_tree(toml::table tree, const std::string& text, const std::string& name) { return JobReader(std::move(tree), text, name).read(); }
+Job read_tree(toml::table tree, const std::string& text, const std::string& name) {
+    return JobReader(std::move(tree), text, name).read();
+}
 
-SpecimenSpec parse_specimen(const std::string& text, const std::string& name) { return JobReader(parse_toml(text, name), text, name).read_specimen_alone(); }
+SpecimenSpec parse_specimen(const std::string& text, const std::string& name) {
+    return JobReader(parse_toml(text, name), text, name).read_specimen_alone();
+}
 
 Job parse_job(const std::string& text, const std::string& name, std::span<const std::string> settings) {
     toml::table tree = parse_toml(text, name);
@@ -135,7 +143,8 @@ Job parse_job(const std::string& text, const std::string& name, std::span<const 
 }
 
 Job read_job(const std::filesystem::path& file, std::span<const std::string> settings) {
-    return parse_job(read_toml_file(file, "job", "'feldspar new uniaxial-compression' prints a job to start from"), file.string(), settings);
+    return parse_job(read_toml_file(file, "job", "'feldspar new uniaxial-compression' prints a job to start from"), file.string(),
+                     settings);
 }
 
 }  // namespace feldspar

@@ -1,16 +1,16 @@
-// The sections of a job file, each read by one function. For this room and for study files, which lay pieces over a job: others call
-// read_job().
+// The sections of a job file, each read by one function. For this room and for study files, which lay pieces over a job: others
+// call read_job().
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <vector>
 
+#include "feldspar/job/job.hpp"
+#include "feldspar/job/job_table.hpp"
 #include "feldspar/methods/test_spec.hpp"
 #include "feldspar/model/heterogeneity_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
-#include "feldspar/job/job.hpp"
-#include "feldspar/job/job_table.hpp"
 
 namespace feldspar {
 
@@ -21,8 +21,10 @@ std::vector<WrittenText> texts_of(const toml::table& tree);
 Job read_tree(toml::table tree, const std::string& text, const std::string& name);
 
 /// [specimen]. A relative path of a packing counts from `folder`; `filled`: some grains are made of inner particles; nothing if a
-/// mistake in the models leaves that open. @param phases  minerals, some of which have sizes of their own; empty: none has. The others take those of [specimen.grains]
-SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled, const std::vector<Mineral>& phases);
+/// mistake in the models leaves that open. @param phases  minerals, some of which have sizes of their own; empty: none has. The
+/// others take those of [specimen.grains]
+SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled,
+                           const std::vector<Mineral>& phases);
 
 /// `diameter` or `crystals`: how grains' diameters are distributed.
 GrainSizeSpec read_grain_sizes(const JobTable& table, std::string_view key);
@@ -45,7 +47,8 @@ std::optional<double> read_friction(const JobTable& table);
 
 /// What makes grains and contacts of [material] differ. @param model_decided_at  level of the table that chose the kind of grains
 /// @param grain, contact  of [material.grain] and [material.contact], for what minerals, pairs and joints do not give
-Heterogeneity read_rock(const JobTable& material, const ModelSpec& model, bool model_known, int model_decided_at, const GrainMaterial& grain, const ContactMaterial& contact);
+Heterogeneity read_rock(const JobTable& material, const ModelSpec& model, bool model_known, int model_decided_at,
+                        const GrainMaterial& grain, const ContactMaterial& contact);
 
 Physics read_physics(const JobTable& root, const JobTable* variant);
 
@@ -55,7 +58,8 @@ bool kinds_known(const TableReader& root, const std::vector<Variant>& variants);
 /// [[variant]]: always one at least; a job without the list has one without a name.
 std::vector<Variant> read_variants(const JobTable& root);
 
-/// The minerals of the job, if some have sizes of their own; else none. A mistake where variants do not agree in them: they share packings.
+/// The minerals of the job, if some have sizes of their own; else none. A mistake where variants do not agree in them: they share
+/// packings.
 std::vector<Mineral> minerals_with_sizes(const JobTable& root, const std::vector<Variant>& variants);
 
 /// A mistake for each variant whose seeds or tests are not the job's, or which would run nothing.
@@ -69,13 +73,15 @@ inline constexpr int job_level = 2;
 SpecimenSpec read_own_specimen(const JobTable& test, const SpecimenSpec& of_job, bool grains_known);
 
 /// Keys on which an outline rests.
-inline constexpr std::array<std::string_view, 10> outline_keys{"shape", "width", "height", "diameter", "hole_diameter", "vertices", "edge_labels", "arcs", "holes", "notches"};
+inline constexpr std::array<std::string_view, 10> outline_keys{"shape",    "width",       "height", "diameter", "hole_diameter",
+                                                               "vertices", "edge_labels", "arcs",   "holes",    "notches"};
 
 /// [[test]], lists of sigma3 expanded.
 std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                                  const std::vector<std::uint64_t>& run_seeds);
 
-/// What a method has of its own among the keys of a test: span and rollers of a beam, fixtures and gauges of a custom test, a gauge that ends it.
+/// What a method has of its own among the keys of a test: span and rollers of a beam, fixtures and gauges of a custom test, a
+/// gauge that ends it.
 void read_own_keys(const JobTable& table, TestSpec& test);
 
 /// `stages` of a test, with whether they can end one after the other.

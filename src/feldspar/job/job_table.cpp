@@ -8,7 +8,8 @@ namespace feldspar {
 
 std::pair<long long, long long> whole_numbers(const JobKey& key) {
     const Range& range = key.value.element.range;
-    return {static_cast<long long>(range.low), std::isinf(range.high) ? std::numeric_limits<long long>::max() : static_cast<long long>(range.high)};
+    return {static_cast<long long>(range.low),
+            std::isinf(range.high) ? std::numeric_limits<long long>::max() : static_cast<long long>(range.high)};
 }
 
 JobTable JobTable::table(std::string_view key) const {
@@ -28,7 +29,8 @@ void JobTable::suit(std::string_view key, std::string_view word, int decided_at)
     const std::string setting = std::string(key.substr(key.rfind('.') + 1)) + " = \"" + std::string(word) + "\"";
     for (const JobKey& one : rows_->keys) {
         if (one.when.key == key && !one.when.holds(word)) {
-            if (!word.empty()) refuse({one.name}, setting + std::string(one.elsewhere), "only with " + condition_text(one), decided_at);
+            if (!word.empty())
+                refuse({one.name}, setting + std::string(one.elsewhere), "only with " + condition_text(one), decided_at);
         } else if (one.usual.need != KeyNeed::none) {
             needed.push_back(one.name);
         }
@@ -38,17 +40,22 @@ void JobTable::suit(std::string_view key, std::string_view word, int decided_at)
 
 double JobTable::quantity(std::string_view key, std::optional<double> otherwise) const {
     const JobKey& known = row(key);
-    return TableReader::quantity(key, known.value.element.dimension, known.value.element.range, otherwise ? otherwise : known.usual.value);
+    return TableReader::quantity(key, known.value.element.dimension, known.value.element.range,
+                                 otherwise ? otherwise : known.usual.value);
 }
 
-double JobTable::quantity_as(std::string_view key, Dimension dimension) const { return TableReader::quantity(key, dimension, row(key).value.element.range); }
+double JobTable::quantity_as(std::string_view key, Dimension dimension) const {
+    return TableReader::quantity(key, dimension, row(key).value.element.range);
+}
 
 double JobTable::number(std::string_view key, std::optional<double> otherwise) const {
     const JobKey& known = row(key);
     return TableReader::number(key, known.value.element.range, otherwise ? otherwise : known.usual.value);
 }
 
-double JobTable::fraction(std::string_view key) const { return TableReader::fraction(key, row(key).value.element.range, row(key).usual.value); }
+double JobTable::fraction(std::string_view key) const {
+    return TableReader::fraction(key, row(key).value.element.range, row(key).usual.value);
+}
 
 long long JobTable::integer(std::string_view key) const {
     const JobKey& known = row(key);
@@ -69,11 +76,14 @@ Vec2 JobTable::point(std::string_view key) const {
 
 Vec2 JobTable::point_of(const toml::node& node, std::string_view key) const {
     const toml::array* pair = node.as_array();
-    if (pair == nullptr || pair->size() != 2) fail_at(node, key, shown(node) + " is not a point", "a point such as [\"40 mm\", \"80 mm\"]");
+    if (pair == nullptr || pair->size() != 2)
+        fail_at(node, key, shown(node) + " is not a point", "a point such as [\"40 mm\", \"80 mm\"]");
     return {quantity_of(*pair->get(0), key), quantity_of(*pair->get(1), key)};
 }
 
-double JobTable::quantity_of(const toml::node& node, std::string_view key) const { return element_of(node, key, row(key).value.element); }
+double JobTable::quantity_of(const toml::node& node, std::string_view key) const {
+    return element_of(node, key, row(key).value.element);
+}
 
 double JobTable::element_of(const toml::node& node, std::string_view key, const KeyElement& element) const {
     if (element.form == ValueForm::fraction) return TableReader::fraction_of(node, key, element.range);

@@ -12,8 +12,9 @@
 
 namespace feldspar {
 
-/// Everything that a TableReader does, for tables that have rows. The readings without a range take that of the row; a key that is not there has the
-/// row's default, or must be given if there is none. A default that depends on other keys is given as `otherwise`.
+/// Everything that a TableReader does, for tables that have rows. The readings without a range take that of the row; a key that
+/// is not there has the row's default, or must be given if there is none. A default that depends on other keys is given as
+/// `otherwise`.
 class JobTable : public TableReader {
 public:
     /// @param table  read with the names of `rows` as known keys
@@ -47,14 +48,16 @@ public:
 
     /// Values in a list. @throws InputError also if mistakes are collected (see check())
     double quantity_of(const toml::node& node, std::string_view key) const;
-    /// A list of pairs. Calls `take(first, second)` with the nodes of each, as check() does. @param what  one of them in words, "a point"
+    /// A list of pairs. Calls `take(first, second)` with the nodes of each, as check() does. @param what  one of them in words,
+    /// "a point"
     /// @param allowed  what pairs look like
     template <class Take>
     void pairs(std::string_view key, std::string_view what, const std::string& allowed, Take&& take) const {
         for (const toml::node& node : array(key))
             check({}, [&] {
                 const toml::array* pair = node.as_array();
-                if (pair == nullptr || pair->size() != 2) fail_at(node, key, shown(node) + " is not " + std::string(what), allowed);
+                if (pair == nullptr || pair->size() != 2)
+                    fail_at(node, key, shown(node) + " is not " + std::string(what), allowed);
                 take(*pair->get(0), *pair->get(1));
             });
     }
@@ -62,8 +65,9 @@ public:
     double first_of(const toml::node& node, std::string_view key) const { return element_of(node, key, row(key).value.element); }
     double second_of(const toml::node& node, std::string_view key) const { return element_of(node, key, *row(key).value.second); }
 
-    /// Where `key` has `word`: refuses keys that only apply under its other words, and requires those that must be given now. An empty word stands for
-    /// one that is not known: then only what applies everywhere is required. @param decided_at  level of the table that gave the word (see refuse())
+    /// Where `key` has `word`: refuses keys that only apply under its other words, and requires those that must be given now. An
+    /// empty word stands for one that is not known: then only what applies everywhere is required. @param decided_at  level of
+    /// the table that gave the word (see refuse())
     void suit(std::string_view key, std::string_view word, int decided_at = not_given) const;
 
     /// What the key may be, in words.

@@ -16,7 +16,7 @@
 namespace feldspar {
 namespace {
 
-constexpr std::string_view whole_laboratory = "laboratory";   // what the tests of one rock are called together
+constexpr std::string_view whole_laboratory = "laboratory";  // what the tests of one rock are called together
 constexpr std::size_t comment_column = 36;
 
 // A line "#= key" shows a key that may be left out, with the default and the sentence of its row (keys.hpp).
@@ -108,7 +108,9 @@ friction_angle = "53.0 deg"
 std::string test_of(const TestMethod& method) {
     std::string kind = fmt::format("kind = \"{}\"", method.name);
     kind.resize(std::max(kind.size() + 1, comment_column), ' ');
-    const char* control = method.build.gauges != nullptr ? "" : method.loading.widens ? compression_control : other_control;   // else among its own keys
+    const char* control = method.build.gauges != nullptr ? ""
+                          : method.loading.widens        ? compression_control
+                                                         : other_control;  // else among its own keys
     return "\n[[test]]\n" + kind + "# " + method.job.gives + "\n" + method.job.keys + control + common_test + method.job.tables;
 }
 
@@ -149,11 +151,13 @@ std::string unfinished_template(std::string_view kind) {
     if (kind == whole_laboratory) {
         std::string tests;
         for (const std::string_view strength : {"UCS", "DTS", "BTS"}) tests += test_of(method_of_strength(strength).definition());
-        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" + std::string(common_head) + tests +
-               test_of(method_of_confined_strength().definition()) + common_end;
+        return "# A whole laboratory: compression, tension, Brazilian and biaxial tests of one rock.\n" +
+               std::string(common_head) + tests + test_of(method_of_confined_strength().definition()) + common_end;
     }
     const auto id = find_method(kind);
-    if (!id) throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(job_template_kinds()), did_you_mean(kind, job_template_kinds()));
+    if (!id)
+        throw InputError({}, "'" + std::string(kind) + "' is not a kind of job", listed(job_template_kinds()),
+                         did_you_mean(kind, job_template_kinds()));
     const TestMethod& method = id->definition();
     const std::string before = method.job.behind != nullptr ? test_of(*method.job.behind) : "";
     return fmt::format("# {}\n", method.job.title) + head_for(method) + before + test_of(method) + common_end;

@@ -27,12 +27,13 @@ std::string allowed_cell(const JobKey& key) {
 }  // namespace
 
 std::string key_reference(const KeyTable& table) {
-    std::string text =
-        table.path.empty() ? "| key | meaning | allowed | default |\n" : fmt::format("| key of `{}` | meaning | allowed | default |\n", table.head);
+    std::string text = table.path.empty() ? "| key | meaning | allowed | default |\n"
+                                          : fmt::format("| key of `{}` | meaning | allowed | default |\n", table.head);
     text += "|---|---|---|---|\n";
     for (const JobKey& key : table.keys) {
         const std::string applies = applies_text(key), usual = usual_text(key);
-        text += fmt::format("| `{}` | {}{} | {} | {} |\n", key.name, key.meaning, applies.empty() ? "" : fmt::format(". Only {}", applies), allowed_cell(key),
+        text += fmt::format("| `{}` | {}{} | {} | {} |\n", key.name, key.meaning,
+                            applies.empty() ? "" : fmt::format(". Only {}", applies), allowed_cell(key),
                             is_value(key) ? fmt::format("`{}`", usual) : usual);
     }
     return text;
@@ -41,7 +42,8 @@ std::string key_reference(const KeyTable& table) {
 std::string key_reference() {
     std::string text = "# Keys of job files\n";
     for (const KeyTable& table : job_tables())
-        text += fmt::format("\n## {}\n\n{}", table.path.empty() ? "The file" : fmt::format("{}: {}", table.head, without_markup(table.meaning)),
+        text += fmt::format("\n## {}\n\n{}",
+                            table.path.empty() ? "The file" : fmt::format("{}: {}", table.head, without_markup(table.meaning)),
                             key_reference(table));
     return text;
 }
@@ -51,8 +53,10 @@ std::string with_key_reference(std::string_view text) {
     for (std::size_t at = 0;;) {
         const std::size_t begin = text.find(begin_mark, at);
         if (begin == std::string_view::npos) return written + std::string(text.substr(at));
-        const std::size_t path = begin + begin_mark.size(), path_end = text.find(begin_end, path), end = text.find(end_mark, path);
-        if (path_end == std::string_view::npos || end == std::string_view::npos || end < path_end) throw InputError({}, "a mark of keys has no end");
+        const std::size_t path = begin + begin_mark.size(), path_end = text.find(begin_end, path),
+                          end = text.find(end_mark, path);
+        if (path_end == std::string_view::npos || end == std::string_view::npos || end < path_end)
+            throw InputError({}, "a mark of keys has no end");
         const std::string_view name = text.substr(path, path_end - path);
         written += text.substr(at, path_end + begin_end.size() - at);
         bool found = false;

@@ -34,20 +34,34 @@ std::string bounded(std::string_view what, const Range& range) {
 std::string_view unit_of(const KeyValue& value) {
     if (!value.unit.empty() || value.element.form != ValueForm::quantity) return value.unit;
     switch (value.element.dimension) {
-        case length: return "mm";
-        case stress: return "MPa";
-        case density: return "kg/m3";
-        case stiffness_gradient: return "GPa/m";
-        case fracture_energy: return "N/m";
-        case speed: return "m/s";
-        case speed_per_step: return "m/step";
-        case Dimension::time: return "s";
-        case angle: return "deg";
-        case force: return "kN";
-        case energy: return "J";
-        case acceleration: return "m/s2";
-        case toughness: return "MPa m^0.5";
-        case fraction: break;
+        case length:
+            return "mm";
+        case stress:
+            return "MPa";
+        case density:
+            return "kg/m3";
+        case stiffness_gradient:
+            return "GPa/m";
+        case fracture_energy:
+            return "N/m";
+        case speed:
+            return "m/s";
+        case speed_per_step:
+            return "m/step";
+        case Dimension::time:
+            return "s";
+        case angle:
+            return "deg";
+        case force:
+            return "kN";
+        case energy:
+            return "J";
+        case acceleration:
+            return "m/s2";
+        case toughness:
+            return "MPa m^0.5";
+        case fraction:
+            break;
     }
     return "";
 }
@@ -55,16 +69,24 @@ std::string_view unit_of(const KeyValue& value) {
 std::string element_text(const KeyElement& element) {
     const std::string others = element.words.empty() ? "" : quoted(element.words) + ", or ";
     switch (element.form) {
-        case ValueForm::quantity: return others + bounded(describe(element.dimension), element.range);
-        case ValueForm::number: return others + bounded("a number", element.range);
-        case ValueForm::fraction: return others + bounded("a fraction", element.range);
+        case ValueForm::quantity:
+            return others + bounded(describe(element.dimension), element.range);
+        case ValueForm::number:
+            return others + bounded("a number", element.range);
+        case ValueForm::fraction:
+            return others + bounded("a fraction", element.range);
         case ValueForm::integer:
-            return others + (std::isinf(element.range.high) ? fmt::format("a whole number, {:g} or greater", element.range.low)
-                                                            : fmt::format("a whole number from {:g} to {:g}", element.range.low, element.range.high));
-        case ValueForm::flag: return "true, false";
-        case ValueForm::text: return std::string(element.range.words);
-        case ValueForm::choice: return quoted(element.words);
-        case ValueForm::table: break;
+            return others + (std::isinf(element.range.high)
+                                 ? fmt::format("a whole number, {:g} or greater", element.range.low)
+                                 : fmt::format("a whole number from {:g} to {:g}", element.range.low, element.range.high));
+        case ValueForm::flag:
+            return "true, false";
+        case ValueForm::text:
+            return std::string(element.range.words);
+        case ValueForm::choice:
+            return quoted(element.words);
+        case ValueForm::table:
+            break;
     }
     return "a table";
 }
@@ -82,11 +104,16 @@ std::string allowed(const JobKey& key) {
     const KeyValue& value = key.value;
     const std::string one = element_text(value.element);
     switch (value.shape) {
-        case ValueShape::one: return one;
-        case ValueShape::list: return (value.element.form == ValueForm::choice ? "a list, each one of " : "a list, each ") + one;
-        case ValueShape::one_or_list: return one + "; or a list of them";
-        case ValueShape::pairs: return fmt::format("a list of pairs: {}; {}", one, element_text(*value.second));
-        case ValueShape::tables: break;
+        case ValueShape::one:
+            return one;
+        case ValueShape::list:
+            return (value.element.form == ValueForm::choice ? "a list, each one of " : "a list, each ") + one;
+        case ValueShape::one_or_list:
+            return one + "; or a list of them";
+        case ValueShape::pairs:
+            return fmt::format("a list of pairs: {}; {}", one, element_text(*value.second));
+        case ValueShape::tables:
+            break;
     }
     return "a list of tables";
 }
@@ -99,7 +126,8 @@ std::string usual_text(const JobKey& key) {
 std::string condition_text(const JobKey& key) {
     if (key.when.key.empty()) return {};
     const std::size_t dot = key.when.key.rfind('.');
-    return fmt::format("{} = {}", dot == std::string_view::npos ? key.when.key : key.when.key.substr(dot + 1), quoted(key.when.words));
+    return fmt::format("{} = {}", dot == std::string_view::npos ? key.when.key : key.when.key.substr(dot + 1),
+                       quoted(key.when.words));
 }
 
 std::string applies_text(const JobKey& key) {

@@ -1,7 +1,8 @@
 // The keys of a job file, each once: its table, what stands behind it, default, meaning, and where it applies.
 //
-// What speaks of keys comes out of these rows: readers take names, ranges and defaults from them (job_table.hpp), job-resolved.toml its units,
-// templates their commented defaults, docs/job.md its tables (key_reference.hpp), and editors a schema (schema.hpp).
+// What speaks of keys comes out of these rows: readers take names, ranges and defaults from them (job_table.hpp),
+// job-resolved.toml its units, templates their commented defaults, docs/job.md its tables (key_reference.hpp), and editors a
+// schema (schema.hpp).
 #pragma once
 
 #include <optional>
@@ -10,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "feldspar/base/units.hpp"
 #include "feldspar/base/range.hpp"
+#include "feldspar/base/units.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -33,8 +34,8 @@ struct KeyElement {
     ValueForm form = ValueForm::text;
     Dimension dimension = Dimension::fraction;  ///< of a quantity
     Range range = any_value;                    ///< of numbers; of text the words alone
-    std::vector<std::string> words{};           ///< of a choice: all; of others: words that may stand in place of a value, such as "auto"
-    std::string_view table{};                   ///< of a table: its path among job_tables()
+    std::vector<std::string> words{};  ///< of a choice: all; of others: words that may stand in place of a value, such as "auto"
+    std::string_view table{};          ///< of a table: its path among job_tables()
 };
 
 enum class ValueShape { one, list, one_or_list, pairs, tables };

@@ -19,7 +19,9 @@ InputErrors::InputErrors(std::vector<InputError> all) : InputError(all.front()),
         if (i > 0) text_ += "\n";
         text_ += all_[i].what();
     }
-    if (all_.size() > most_told) text_ += std::string("\nand ") + (all_.size() >= most_kept ? "at least " : "") + std::to_string(all_.size() - most_told) + " more";
+    if (all_.size() > most_told)
+        text_ += std::string("\nand ") + (all_.size() >= most_kept ? "at least " : "") + std::to_string(all_.size() - most_told) +
+                 " more";
 }
 
 std::vector<InputError> each_mistake(const InputError& error) {
@@ -30,21 +32,25 @@ std::vector<InputError> each_mistake(const InputError& error) {
 void Mistakes::add(const InputError& error, const std::string& spoils) {
     if (!spoils.empty()) spoil(spoils);
     for (const InputError& one : each_mistake(error)) {
-        const bool known = std::any_of(found_.begin(), found_.end(), [&](const InputError& other) { return std::string_view(other.what()) == one.what(); });
+        const bool known = std::any_of(found_.begin(), found_.end(),
+                                       [&](const InputError& other) { return std::string_view(other.what()) == one.what(); });
         if (!known) found_.push_back(one);
     }
     if (found_.size() >= InputErrors::most_kept) throw_if_any();
 }
 
 bool Mistakes::sound(std::string_view key) const {
-    return std::none_of(spoilt_.begin(), spoilt_.end(), [&](const std::string& spoilt) { return is_inside(key, spoilt) || is_inside(spoilt, key); });
+    return std::none_of(spoilt_.begin(), spoilt_.end(),
+                        [&](const std::string& spoilt) { return is_inside(key, spoilt) || is_inside(spoilt, key); });
 }
 
 void Mistakes::throw_if_any() const {
     if (found_.empty()) return;
     if (found_.size() == 1) throw found_.front();
-    std::vector<std::string> files{file_};   // and then as they came
-    const auto rank = [&](const InputError& error) { return std::find(files.begin(), files.end(), error.place().file) - files.begin(); };
+    std::vector<std::string> files{file_};  // and then as they came
+    const auto rank = [&](const InputError& error) {
+        return std::find(files.begin(), files.end(), error.place().file) - files.begin();
+    };
     for (const InputError& error : found_)
         if (rank(error) == static_cast<std::ptrdiff_t>(files.size())) files.push_back(error.place().file);
     std::vector<InputError> sorted = found_;

@@ -11,7 +11,8 @@
 
 namespace feldspar {
 
-/// Several mistakes. As an InputError it is the first of them; what() tells of all, one after the other, or of the first 20 and how many more.
+/// Several mistakes. As an InputError it is the first of them; what() tells of all, one after the other, or of the first 20 and
+/// how many more.
 class InputErrors : public InputError {
 public:
     /// @param all  two or more, in the order in which they are told
@@ -21,7 +22,7 @@ public:
     const char* what() const noexcept override { return text_.c_str(); }
 
     static constexpr std::size_t most_told = 20;
-    static constexpr std::size_t most_kept = 1000;   ///< with so many reading ends: a file of another kind has one in every line
+    static constexpr std::size_t most_kept = 1000;  ///< with so many reading ends: a file of another kind has one in every line
 
 private:
     std::vector<InputError> all_;

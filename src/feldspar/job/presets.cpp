@@ -1,10 +1,10 @@
 #include "feldspar/job/presets.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "feldspar/job/rocks.hpp"
 
@@ -52,25 +52,35 @@ constexpr auto strength = std::to_array<Preset>({
      "contact = { law = \"bilinear\", sigma_nt = \"8.5 MPa\", tau = \"29.75 MPa\", mu = 0.40, Gfn = \"20.0 N/m\", Gfs = \"800.0 "
      "N/m\" }"},
     {"lac-du-bonnet-granite", "first guess by scaling rules, UCS alone: UCS/BTS is out of reach", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"9.233 MPa\", tau = \"55.4 MPa\", mu = 0.64, Gfn = \"0.8681 N/m\", Gfs = \"173.6 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"9.233 MPa\", tau = \"55.4 MPa\", mu = 0.64, Gfn = \"0.8681 N/m\", Gfs = "
+     "\"173.6 N/m\" }"},
     {"nevada-granite", "first guess by scaling rules", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"8.325 MPa\", tau = \"30.36 MPa\", mu = 0.514, Gfn = \"2.728 N/m\", Gfs = \"245.7 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"8.325 MPa\", tau = \"30.36 MPa\", mu = 0.514, Gfn = \"2.728 N/m\", Gfs = "
+     "\"245.7 N/m\" }"},
     {"cedar-city-tonalite", "first guess by scaling rules", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"4.521 MPa\", tau = \"20.85 MPa\", mu = 0.651, Gfn = \"1.583 N/m\", Gfs = \"316.7 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"4.521 MPa\", tau = \"20.85 MPa\", mu = 0.651, Gfn = \"1.583 N/m\", Gfs = "
+     "\"316.7 N/m\" }"},
     {"basalt", "first guess by scaling rules", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"10.75 MPa\", tau = \"56.58 MPa\", mu = 0.744, Gfn = \"1.513 N/m\", Gfs = \"302.6 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"10.75 MPa\", tau = \"56.58 MPa\", mu = 0.744, Gfn = \"1.513 N/m\", Gfs = "
+     "\"302.6 N/m\" }"},
     {"nevada-basalt", "first guess by scaling rules", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"9.437 MPa\", tau = \"32.51 MPa\", mu = 0.485, Gfn = \"8.724 N/m\", Gfs = \"595.8 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"9.437 MPa\", tau = \"32.51 MPa\", mu = 0.485, Gfn = \"8.724 N/m\", Gfs = "
+     "\"595.8 N/m\" }"},
     {"transjurane-sandstone", "first guess by scaling rules, UCS alone: UCS/BTS is out of reach", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"2.527 MPa\", tau = \"15.16 MPa\", mu = 0.391, Gfn = \"0.359 N/m\", Gfs = \"71.79 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"2.527 MPa\", tau = \"15.16 MPa\", mu = 0.391, Gfn = \"0.359 N/m\", Gfs = "
+     "\"71.79 N/m\" }"},
     {"oneota-dolomite", "first guess by scaling rules", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"3.356 MPa\", tau = \"18.71 MPa\", mu = 0.789, Gfn = \"0.2223 N/m\", Gfs = \"44.46 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"3.356 MPa\", tau = \"18.71 MPa\", mu = 0.789, Gfn = \"0.2223 N/m\", Gfs = "
+     "\"44.46 N/m\" }"},
     {"tavernalle-limestone", "first guess by scaling rules", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"3.559 MPa\", tau = \"21.35 MPa\", mu = 0.85, Gfn = \"0.1595 N/m\", Gfs = \"31.9 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"3.559 MPa\", tau = \"21.35 MPa\", mu = 0.85, Gfn = \"0.1595 N/m\", Gfs = "
+     "\"31.9 N/m\" }"},
     {"cherokee-marble", "first guess by scaling rules, UCS alone: UCS/BTS is out of reach", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"2.432 MPa\", tau = \"14.59 MPa\", mu = 0.85, Gfn = \"0.07447 N/m\", Gfs = \"14.89 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"2.432 MPa\", tau = \"14.59 MPa\", mu = 0.85, Gfn = \"0.07447 N/m\", Gfs = "
+     "\"14.89 N/m\" }"},
     {"micaceous-shale", "first guess by scaling rules, UCS alone: UCS/BTS is out of reach", GrainKind::flexible,
-     "contact = { law = \"bilinear\", sigma_nt = \"2.734 MPa\", tau = \"16.4 MPa\", mu = 0.85, Gfn = \"0.4731 N/m\", Gfs = \"94.61 N/m\" }"},
+     "contact = { law = \"bilinear\", sigma_nt = \"2.734 MPa\", tau = \"16.4 MPa\", mu = 0.85, Gfn = \"0.4731 N/m\", Gfs = "
+     "\"94.61 N/m\" }"},
 });
 
 std::string overview_of(std::string_view key, std::span<const Preset> presets) {
@@ -90,7 +100,9 @@ std::string overview_of(std::string_view key, std::span<const Preset> presets) {
 
 // What `feldspar new KIND --rock NAME` begins from.
 std::string overview_of_rocks() {
-    std::string text = "# Rocks of the literature, for feldspar new KIND --rock NAME: a job with first contact parameters by scaling rules (docs/validation/first-parameters.md).\n\n";
+    std::string text =
+        "# Rocks of the literature, for feldspar new KIND --rock NAME: a job with first contact parameters by scaling rules "
+        "(docs/validation/first-parameters.md).\n\n";
     for (const LiteratureRock& rock : literature_rocks()) {
         const auto add = [&](const char* name, double value, const char* unit) {
             if (std::isfinite(value)) text += fmt::format(" {} {:g}{}", name, value, unit);
@@ -120,11 +132,12 @@ const toml::table& preset_table(const Preset& preset) {
         for (const Preset& one : strength) parsed.emplace(one.keys, parse_toml(std::string(one.keys), std::string(one.name)));
         return parsed;
     }();
-    return tables.at(preset.keys);   // a rock has an elastic and a strength preset of one name
+    return tables.at(preset.keys);  // a rock has an elastic and a strength preset of one name
 }
 
 std::string preset_overview() {
-    return "# Presets of [material]: augig-... after Monteiro Azevedo, Farinha, Oliveira 2022, Geotechnics 2, 523-548; others first guesses by scaling rules.\n"
+    return "# Presets of [material]: augig-... after Monteiro Azevedo, Farinha, Oliveira 2022, Geotechnics 2, 523-548; others "
+           "first guesses by scaling rules.\n"
            "# A key in [material.grain] or [material.contact] goes before the same key of a preset.\n\n" +
            overview_of("elastic_preset", elastic) + "\n" + overview_of("strength_preset", strength) + "\n" + overview_of_rocks();
 }

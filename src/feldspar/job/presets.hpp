@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "feldspar/model/spec.hpp"
 #include "feldspar/job/toml_reader.hpp"
+#include "feldspar/model/spec.hpp"
 
 namespace feldspar {
 

@@ -1,10 +1,10 @@
 // Keys of [[test]] that belong to some methods only: beams, and fixtures and gauges of a custom test.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/words.hpp"
@@ -19,12 +19,15 @@ Vec2 read_direction(const JobTable& table, std::string_view key, bool unit) {
     table.check({key}, [&] {
         const auto number = [&](std::size_t i) {
             const auto value = pair.size() == 2 ? pair.get(i)->value<double>() : std::nullopt;
-            if (!value || !std::isfinite(*value)) table.fail(key, "is not a direction", "x and y as plain numbers, such as [0, -1] for downwards");
+            if (!value || !std::isfinite(*value))
+                table.fail(key, "is not a direction", "x and y as plain numbers, such as [0, -1] for downwards");
             return *value;
         };
         direction = {number(0), number(1)};
         const double length = norm(direction);
-        if (!(length > 0.0)) table.fail(key, "has no direction: both numbers are 0", unit ? "x and y, one of them not 0" : "leave it out for a fixture at rest");
+        if (!(length > 0.0))
+            table.fail(key, "has no direction: both numbers are 0",
+                       unit ? "x and y, one of them not 0" : "leave it out for a fixture at rest");
         if (unit) direction = (1.0 / length) * direction;
     });
     return direction;
@@ -38,16 +41,22 @@ void read_pressing(const JobTable& table, FixtureSpec& fixture) {
     if (table.has("spring")) fixture.spring_Pa_m = table.quantity("spring");
     table.check({"pressure", "force", "spring"}, [&] {
         if (table.has("pressure") && table.has("force")) table.fail("force", "given beside pressure", "one of them");
-        if (table.has("spring") && !fixture.pressed) table.fail("spring", "presses a plate that has no pressure and no force", "pressure or force beside it");
+        if (table.has("spring") && !fixture.pressed)
+            table.fail("spring", "presses a plate that has no pressure and no force", "pressure or force beside it");
     });
     if (!fixture.pressed) return;
     table.check({"normal"}, [&] {
-        if (std::abs(fixture.normal.x) > 1e-9 && std::abs(fixture.normal.y) > 1e-9) table.fail("normal", "a plate under a pressure gives way along its normal, which must be along x or y", "[0, 1], [0, -1], [1, 0] or [-1, 0]");
+        if (std::abs(fixture.normal.x) > 1e-9 && std::abs(fixture.normal.y) > 1e-9)
+            table.fail("normal", "a plate under a pressure gives way along its normal, which must be along x or y",
+                       "[0, 1], [0, -1], [1, 0] or [-1, 0]");
     });
     table.check({"motion", "normal"}, [&] {
-        if (std::abs(dot(fixture.motion, fixture.normal)) > 1e-9) table.fail("motion", "moves a plate along its normal, where its pressure decides how it moves", "a motion along the plate, or no pressure");
+        if (std::abs(dot(fixture.motion, fixture.normal)) > 1e-9)
+            table.fail("motion", "moves a plate along its normal, where its pressure decides how it moves",
+                       "a motion along the plate, or no pressure");
     });
-    if (fixture.contact.glued) table.check({"glued"}, [&] { table.fail("glued", "a plate under a pressure is not glued", "leave it out"); });
+    if (fixture.contact.glued)
+        table.check({"glued"}, [&] { table.fail("glued", "a plate under a pressure is not glued", "leave it out"); });
 }
 
 FixtureSpec read_fixture(const JobTable& table) {
@@ -65,7 +74,8 @@ FixtureSpec read_fixture(const JobTable& table) {
         fixture.part.at = table.point("at");
         fixture.axis = fixture.part.at;
     }
-    if (!table.has("on") && !table.has("at")) table.check({}, [&] { table.fail("on", "the fixture has no place", "on = the label of an edge, or at = a point"); });
+    if (!table.has("on") && !table.has("at"))
+        table.check({}, [&] { table.fail("on", "the fixture has no place", "on = the label of an edge, or at = a point"); });
     if (table.has("motion")) fixture.motion = read_direction(table, "motion", false);
     if (form == FixtureForm::pressure) {
         fixture.kind = FixtureKind::pressure;
@@ -86,7 +96,7 @@ FixtureSpec read_fixture(const JobTable& table) {
     fixture.kind = FixtureKind::plate;
     fixture.normal = read_direction(table, "normal", true);
     fixture.part.facing = fixture.normal;
-    fixture.contact.Kn_Pa_m = table.has("Kn") ? table.quantity("Kn") : 0.0;   // that of the test
+    fixture.contact.Kn_Pa_m = table.has("Kn") ? table.quantity("Kn") : 0.0;  // that of the test
     fixture.contact.mu = table.number("mu");
     fixture.contact.glued = table.flag("glued");
     if (form == FixtureForm::plate) {
@@ -108,7 +118,8 @@ GaugeRegion read_region(const JobTable& table) {
     if (table.has("box") == (table.has("centre") || table.has("radius"))) {
         table.check({"box", "centre", "radius"}, [&] {
             if (table.has("box")) table.fail("box", "given beside centre and radius", "one region: box, or centre and radius");
-            table.fail("box", "missing key: box (or centre and radius: the region)", "box = [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]], or centre and radius");
+            table.fail("box", "missing key: box (or centre and radius: the region)",
+                       "box = [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]], or centre and radius");
         });
         return region;
     }
@@ -119,9 +130,13 @@ GaugeRegion read_region(const JobTable& table) {
         return region;
     }
     std::vector<Vec2> corners;
-    table.pairs("box", "a corner", "two opposite corners: [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]]", [&](const toml::node& x, const toml::node& y) { corners.push_back({table.first_of(x, "box"), table.second_of(y, "box")}); });
+    table.pairs("box", "a corner", "two opposite corners: [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]]",
+                [&](const toml::node& x, const toml::node& y) {
+                    corners.push_back({table.first_of(x, "box"), table.second_of(y, "box")});
+                });
     table.check({"box"}, [&] {
-        if (corners.size() != 2 || corners[0].x == corners[1].x || corners[0].y == corners[1].y) table.fail("box", "is no box", "two opposite corners, such as [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]]");
+        if (corners.size() != 2 || corners[0].x == corners[1].x || corners[0].y == corners[1].y)
+            table.fail("box", "is no box", "two opposite corners, such as [[\"10 mm\", \"20 mm\"], [\"30 mm\", \"40 mm\"]]");
         region.a = corners[0];
         region.b = corners[1];
     });
@@ -134,7 +149,8 @@ void read_fixture_of(const JobTable& table, const TestSpec& test, GaugeSpec& gau
         std::vector<std::string_view> known;
         for (const FixtureSpec& fixture : test.custom.fixtures) known.push_back(fixture.name);
         if (std::ranges::find(known, gauge.fixture) == known.end())
-            table.fail("fixture", fmt::format("'{}' is not a fixture of the test", gauge.fixture), listed(known), did_you_mean(gauge.fixture, known));
+            table.fail("fixture", fmt::format("'{}' is not a fixture of the test", gauge.fixture), listed(known),
+                       did_you_mean(gauge.fixture, known));
     });
 }
 
@@ -160,7 +176,8 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
             const Vec2 weight = length > 0.0 ? (1.0 / (strain ? length * length : length)) * line : Vec2{};
             gauge.kind = strain ? GaugeKind::strain : GaugeKind::displacement;
             gauge.points = {{to, weight}, {from, -weight}};
-            gauge.meaning = strain ? "extension between two points over their distance" : "by how much two points have moved apart";
+            gauge.meaning =
+                strain ? "extension between two points over their distance" : "by how much two points have moved apart";
             break;
         }
         case GaugeForm::mean_stress:
@@ -170,7 +187,8 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
             gauge.region = read_region(table);
             gauge.direction = read_direction(table, "direction", true);
             if (table.has("normal")) gauge.normal = read_direction(table, "normal", true);
-            gauge.meaning = stress ? "mean stress in a region, compression positive" : "mean strain in a region, compression positive";
+            gauge.meaning =
+                stress ? "mean stress in a region, compression positive" : "mean strain in a region, compression positive";
             break;
         }
         case GaugeForm::hole_stress: {
@@ -194,12 +212,14 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
             break;
         }
         case GaugeForm::displacement:
-            gauge.meaning = table.has("fixture") ? "displacement of a fixture along a direction" : "displacement of a point along a direction";
+            gauge.meaning = table.has("fixture") ? "displacement of a fixture along a direction"
+                                                 : "displacement of a point along a direction";
             gauge.direction = read_direction(table, "direction", true);
             if (table.has("at") == table.has("fixture"))
                 table.check({"at", "fixture"}, [&] {
                     if (table.has("at")) table.fail("fixture", "given beside at", "one of them");
-                    table.fail("at", "missing key: at (or fixture: what the gauge reads)", "at = a point, or fixture = the name of a plate");
+                    table.fail("at", "missing key: at (or fixture: what the gauge reads)",
+                               "at = a point, or fixture = the name of a plate");
                 });
             if (!table.has("fixture")) {
                 gauge.points = {{table.has("at") ? table.point("at") : Vec2{}, gauge.direction}};
@@ -221,21 +241,27 @@ GaugeSpec read_gauge(const JobTable& table, const TestSpec& test) {
 }
 
 // Names of tests and gauges become those of files and columns.
-void check_name(const JobTable& table, const std::string& given, std::set<std::string>& taken, const char* what, bool blanks = false) {
+void check_name(const JobTable& table, const std::string& given, std::set<std::string>& taken, const char* what,
+                bool blanks = false) {
     table.check({"name"}, [&] {
         const auto fits = [&](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || (blanks && c == ' '); };
         const bool plain = !given.empty() && given.size() <= 40 && std::all_of(given.begin(), given.end(), fits);
         if (!plain) table.fail("name", fmt::format("'{}' cannot name {}", given, what), table.allowed("name"));
-        if (!taken.insert(given).second) table.fail("name", fmt::format("'{}' is taken by another one", given), "a name of its own for each");
+        if (!taken.insert(given).second)
+            table.fail("name", fmt::format("'{}' is taken by another one", given), "a name of its own for each");
     });
 }
 
 double read_value(const JobTable& table, const MethodKey& key) {
     switch (key.form) {
-        case MethodKeyForm::quantity: return table.quantity(key.name);
-        case MethodKeyForm::number: return table.number(key.name);
-        case MethodKeyForm::share: return table.fraction(key.name);
-        case MethodKeyForm::whole: break;
+        case MethodKeyForm::quantity:
+            return table.quantity(key.name);
+        case MethodKeyForm::number:
+            return table.number(key.name);
+        case MethodKeyForm::share:
+            return table.fraction(key.name);
+        case MethodKeyForm::whole:
+            break;
     }
     return static_cast<double>(table.integer(key.name));
 }
@@ -244,7 +270,8 @@ void read_method_key(const JobTable& table, const MethodKey& key, TestSpec& test
     if (!table.has(key.name)) return;
     std::vector<double>& values = test.own[std::string(key.name)];
     const toml::array* list = key.list ? table.find(key.name)->as_array() : nullptr;
-    if (list == nullptr) values.push_back(read_value(table, key));
+    if (list == nullptr)
+        values.push_back(read_value(table, key));
     else
         for (const toml::node& node : *list) table.check({}, [&] { values.push_back(table.quantity_of(node, key.name)); });
     if (!key.in_place_of.empty()) table.refuse({key.in_place_of}, std::string(key.name), "one of them");
@@ -258,7 +285,8 @@ void read_method_keys(const JobTable& table, TestSpec& test) {
     const std::span<const MethodKey> keys = method_of(test).keys;
     for (const MethodKey& key : keys) read_method_key(table, key, test);
     for (const MethodKey& key : keys) {
-        const bool replaced = std::ranges::any_of(keys, [&](const MethodKey& other) { return other.in_place_of == key.name && test.own.contains(other.name); });
+        const bool replaced = std::ranges::any_of(
+            keys, [&](const MethodKey& other) { return other.in_place_of == key.name && test.own.contains(other.name); });
         if (key.value && !replaced) test.own.try_emplace(std::string(key.name), 1, *key.value);
     }
 }
@@ -269,12 +297,17 @@ void read_custom(const JobTable& table, TestSpec& test) {
     test.custom.name = table.text("name");
     check_name(table, test.custom.name, tests, "a test");
     table.check({"name"}, [&] {
-        if (find_method(test.custom.name)) table.fail("name", fmt::format("'{}' is a test method", test.custom.name), "another name");
+        if (find_method(test.custom.name))
+            table.fail("name", fmt::format("'{}' is a test method", test.custom.name), "another name");
     });
     if (table.has("length")) test.custom.length_m = table.quantity("length");
     if (table.has("width")) test.custom.width_m = table.quantity("width");
-    if (table.has("gravity")) test.custom.gravity_m_s2 = table.quantity("gravity") * (table.has("gravity_direction") ? read_direction(table, "gravity_direction", true) : Vec2{0.0, -1.0});
-    else table.refuse({"gravity_direction"}, "no gravity", "gravity = \"9.81 m/s2\" beside it");
+    if (table.has("gravity"))
+        test.custom.gravity_m_s2 =
+            table.quantity("gravity") *
+            (table.has("gravity_direction") ? read_direction(table, "gravity_direction", true) : Vec2{0.0, -1.0});
+    else
+        table.refuse({"gravity_direction"}, "no gravity", "gravity = \"9.81 m/s2\" beside it");
     if (table.has("fixture"))
         for (const JobTable& one : table.tables("fixture", "a fixture")) {
             test.custom.fixtures.push_back(read_fixture(one));
@@ -295,7 +328,8 @@ void read_until(const JobTable& table, TestSpec& test) {
     until.check({"gauge"}, [&] {
         const std::vector<std::string_view> known = gauge_names(test);
         if (!has_gauge(test, stop.gauge))
-            until.fail("gauge", fmt::format("the test has no gauge called '{}'", stop.gauge), known.empty() ? "a test with gauges" : listed(known), did_you_mean(stop.gauge, known));
+            until.fail("gauge", fmt::format("the test has no gauge called '{}'", stop.gauge),
+                       known.empty() ? "a test with gauges" : listed(known), did_you_mean(stop.gauge, known));
     });
     if (until.sound({"gauge"})) stop.value = until.quantity_as("at", dimension_of_gauge(test, stop.gauge));
     test.stop_gauge = stop;
@@ -307,16 +341,22 @@ Dimension dimension_of_gauge(const TestSpec& test, std::string_view gauge) {
     for (const GaugeSpec& spec : test.custom.gauges) {
         if (spec.name != gauge) continue;
         switch (spec.kind) {
-            case GaugeKind::displacement: return Dimension::length;
-            case GaugeKind::force: return Dimension::force;
+            case GaugeKind::displacement:
+                return Dimension::length;
+            case GaugeKind::force:
+                return Dimension::force;
             case GaugeKind::mean_stress:
-            case GaugeKind::hole_stress: return Dimension::stress;
-            case GaugeKind::energy: return Dimension::energy;
+            case GaugeKind::hole_stress:
+                return Dimension::stress;
+            case GaugeKind::energy:
+                return Dimension::energy;
             case GaugeKind::strain:
-            case GaugeKind::mean_strain: return Dimension::fraction;
+            case GaugeKind::mean_strain:
+                return Dimension::fraction;
         }
     }
-    return method_of(test).reading == Reading::hole ? Dimension::stress : Dimension::length;   // of other methods all are displacements
+    return method_of(test).reading == Reading::hole ? Dimension::stress
+                                                    : Dimension::length;  // of other methods all are displacements
 }
 
 std::vector<std::string_view> gauge_names(const TestSpec& test) {
@@ -325,10 +365,12 @@ std::vector<std::string_view> gauge_names(const TestSpec& test) {
     return names;
 }
 
-bool has_gauge(const TestSpec& test, std::string_view gauge) { return [&] {
-    const std::vector<std::string_view> names = gauge_names(test);
-    return std::ranges::find(names, gauge) != names.end();
-}(); }
+bool has_gauge(const TestSpec& test, std::string_view gauge) {
+    return [&] {
+        const std::vector<std::string_view> names = gauge_names(test);
+        return std::ranges::find(names, gauge) != names.end();
+    }();
+}
 
 void read_own_keys(const JobTable& table, TestSpec& test) {
     read_method_keys(table, test);

@@ -23,8 +23,7 @@ Layers tables_of(const Layers& holders, std::string_view key) {
 
 // One table that looks through all layers, or nothing.
 std::optional<JobTable> laid_over(Layers layers) {
-    std::stable_sort(layers.begin(), layers.end(),
-                     [](const JobTable& a, const JobTable& b) { return a.level() > b.level(); });
+    std::stable_sort(layers.begin(), layers.end(), [](const JobTable& a, const JobTable& b) { return a.level() > b.level(); });
     std::optional<JobTable> whole;
     for (const JobTable& layer : layers) whole = whole ? layer.over(*whole) : layer;
     return whole;
@@ -36,13 +35,15 @@ std::string kind_setting(GrainKind kind) { return std::string("kind = \"") + nam
 struct ReadModel {
     ModelSpec model;
     int decided_at = not_given;
-    bool known = true;   // false: its kind could not be read, so nothing is held against it
+    bool known = true;  // false: its kind could not be read, so nothing is held against it
 };
 
 void refuse_value(const JobTable& table, std::string_view key, const ReadModel& read, const std::string& why,
                   const std::string& allowed) {
     if (table.level_of(key) > read.decided_at || !table.has(key)) return;
-    table.check({key}, [&] { table.fail(key, shown(*table.find(key)) + " does not apply to " + kind_setting(read.model.kind) + why, allowed); });
+    table.check({key}, [&] {
+        table.fail(key, shown(*table.find(key)) + " does not apply to " + kind_setting(read.model.kind) + why, allowed);
+    });
 }
 
 void suit_contact(const JobTable& table, ReadModel& read) {
@@ -93,7 +94,8 @@ const Preset* preset_of(const JobTable& material, std::string_view key, std::spa
         if (preset.name == given) return &preset;
         names.push_back(preset.name);
     }
-    material.check({key}, [&] { material.fail(key, "'" + given + "' is not a preset", listed(names), did_you_mean(given, names)); });
+    material.check({key},
+                   [&] { material.fail(key, "'" + given + "' is not a preset", listed(names), did_you_mean(given, names)); });
     return nullptr;
 }
 
@@ -122,12 +124,13 @@ bool all_sound(const Layers& holders, const std::string& key) {
 
 MaterialTables material_tables(const Layers& holders, const ReadModel& model) {
     Layers materials = tables_of(holders, "material");
-    if (materials.empty()) materials.push_back((holders.back().sound({"material"}) ? holders.front() : holders.back()).table("material"));
+    if (materials.empty())
+        materials.push_back((holders.back().sound({"material"}) ? holders.front() : holders.back()).table("material"));
     MaterialTables result{*laid_over(materials), {}, {}};
     Layers grains = tables_of(materials, "grain"), contacts = tables_of(materials, "contact");
     bool presets_known = true;
     const auto add_preset = [&](std::string_view key, std::span<const Preset> presets) {
-        const bool known = all_sound(holders, "material." + std::string(key));   // else a table above may name another one
+        const bool known = all_sound(holders, "material." + std::string(key));  // else a table above may name another one
         presets_known = presets_known && known;
         if (!result.all.has(key) || !known) return;
         const Preset* preset = preset_of(result.all, key, presets);
@@ -136,7 +139,8 @@ MaterialTables material_tables(const Layers& holders, const ReadModel& model) {
             presets_known = false;
             return;
         }
-        const TableReader keys(preset_table(*preset), "material", result.all.file(), result.all.rows().names(), result.all.level_of(key) + 1, result.all.mistakes());
+        const TableReader keys(preset_table(*preset), "material", result.all.file(), result.all.rows().names(),
+                               result.all.level_of(key) + 1, result.all.mistakes());
         const JobTable table(keys.placed_at(*result.all.find(key)), result.all.rows());
         if (table.has("grain")) grains.push_back(table.table("grain"));
         if (table.has("contact")) contacts.push_back(table.table("contact"));
@@ -160,20 +164,23 @@ MaterialTables material_tables(const Layers& holders, const ReadModel& model) {
 GrainMaterial read_grain(const MaterialTables& material, const ReadModel& read) {
     GrainMaterial grain;
     const bool flexible = read.model.kind == GrainKind::flexible || !read.known;
-    const bool minerals = material.all.has("phase");   // which may give it all
+    const bool minerals = material.all.has("phase");  // which may give it all
     if (minerals) grain.nu = std::numeric_limits<double>::quiet_NaN();
     if (flexible && read.known && !material.grain && !minerals) material.all.require({"grain"});
     if (!material.grain) return grain;
     const JobTable& table = *material.grain;
     grain.density_kg_m3 = table.quantity("density");
-    if (!read.known || minerals) table.do_not_miss({"E", "nu"});
-    else table.suit("model.kind", name(read.model.kind), read.decided_at);
+    if (!read.known || minerals)
+        table.do_not_miss({"E", "nu"});
+    else
+        table.suit("model.kind", name(read.model.kind), read.decided_at);
     if (!flexible) return grain;
     if (minerals && !table.has("E")) return grain;
     grain.E_Pa = table.quantity("E");
     if (minerals && !table.has("nu")) return grain;
     Range range = table.rows().key("nu").value.element.range;
-    if (read.model.plane == PlaneState::strain) range.words = "greater than -1 and less than 0.5 (at 0.5 the stiffness in plane strain is infinite)";
+    if (read.model.plane == PlaneState::strain)
+        range.words = "greater than -1 and less than 0.5 (at 0.5 the stiffness in plane strain is infinite)";
     grain.nu = table.TableReader::number("nu", range);
     return grain;
 }
@@ -185,7 +192,7 @@ double read_eta(const JobTable& table) {
         if (table.has("eta") && table.level_of("eta") == table.level_of("kratio"))
             table.fail("kratio", "given beside eta, of which it is the inverse", "either eta = ks/kn or kratio = kn/ks");
     });
-    if (!table.has("eta") && !table.has("kratio")) return 1.0;   // a mistake that is noted
+    if (!table.has("eta") && !table.has("kratio")) return 1.0;  // a mistake that is noted
     const bool inverse = table.level_of("kratio") < table.level_of("eta");
     return inverse ? 1.0 / table.number("kratio") : table.number("eta");
 }
@@ -194,7 +201,8 @@ double read_eta(const JobTable& table) {
 
 std::optional<double> read_friction(const JobTable& table) {
     table.check({"mu", "phi"}, [&] {
-        if (table.has("mu") && table.level_of("mu") == table.level_of("phi")) table.fail("phi", "given beside mu, of which it is the angle", "either mu or phi = arctan mu");
+        if (table.has("mu") && table.level_of("mu") == table.level_of("phi"))
+            table.fail("phi", "given beside mu, of which it is the angle", "either mu or phi = arctan mu");
     });
     if (!table.has("mu") && !table.has("phi")) return std::nullopt;
     return table.level_of("phi") < table.level_of("mu") ? std::tan(table.quantity("phi")) : table.number("mu");
@@ -236,7 +244,8 @@ ContactMaterial read_contact(const MaterialTables& material) {
 void read_accuracy(const JobTable& table, NumericsSpec& numerics) {
     const bool target = table.has("residual_target");
     if (target && table.level_of("accuracy") == table.level_of("residual_target"))
-        table.check({}, [&] { table.fail("residual_target", "given beside accuracy, which it would override", "one of the two"); });
+        table.check({},
+                    [&] { table.fail("residual_target", "given beside accuracy, which it would override", "one of the two"); });
     if (target && table.level_of("residual_target") < table.level_of("accuracy")) {
         numerics.residual_target = table.number("residual_target");
         return;
@@ -291,10 +300,13 @@ std::map<std::string, double> read_laboratory(const JobTable& root) {
         if (!table.has(key.name) || key.value.shape != ValueShape::one) continue;
         const std::string_view property = key.same_as.empty() ? key.name : key.same_as;
         if (property != key.name && table.has(property)) {
-            table.check({}, [&] { table.fail(key.name, "given beside " + std::string(property) + ", which is the same", "one of the two"); });
+            table.check({}, [&] {
+                table.fail(key.name, "given beside " + std::string(property) + ", which is the same", "one of the two");
+            });
             continue;
         }
-        values[std::string(property)] = key.value.element.form == ValueForm::quantity ? table.quantity(key.name) : table.number(key.name);
+        values[std::string(property)] =
+            key.value.element.form == ValueForm::quantity ? table.quantity(key.name) : table.number(key.name);
     }
     return values;
 }
@@ -304,11 +316,13 @@ std::vector<ConfinedStrength> read_laboratory_confined(const JobTable& root) {
     if (!root.has("laboratory")) return strengths;
     const JobTable table = root.table("laboratory");
     if (!table.has("confined")) return strengths;
-    table.pairs("confined", "a strength under confinement", "pairs of sigma_3 and sigma_1: [[\"4 MPa\", \"150 MPa\"], ...]", [&](const toml::node& sigma3, const toml::node& sigma1) {
-        const ConfinedStrength strength{table.first_of(sigma3, "confined"), table.second_of(sigma1, "confined")};
-        if (strength.sigma1_Pa <= strength.sigma3_Pa) table.fail_at(sigma1, "confined", "sigma_1 is not larger than sigma_3", "sigma_3 first, then sigma_1");
-        strengths.push_back(strength);
-    });
+    table.pairs("confined", "a strength under confinement", "pairs of sigma_3 and sigma_1: [[\"4 MPa\", \"150 MPa\"], ...]",
+                [&](const toml::node& sigma3, const toml::node& sigma1) {
+                    const ConfinedStrength strength{table.first_of(sigma3, "confined"), table.second_of(sigma1, "confined")};
+                    if (strength.sigma1_Pa <= strength.sigma3_Pa)
+                        table.fail_at(sigma1, "confined", "sigma_1 is not larger than sigma_3", "sigma_3 first, then sigma_1");
+                    strengths.push_back(strength);
+                });
     return strengths;
 }
 

@@ -1,9 +1,9 @@
+#include <fmt/format.h>
+#include <xxhash.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <fmt/format.h>
-#include <xxhash.h>
 
 #include "feldspar/base/units.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -26,16 +26,15 @@ void read_rectangle(const JobTable& table, OutlineSpec& outline) {
     outline.height_m = table.quantity("height");
 }
 
-void read_disc(const JobTable& table, OutlineSpec& outline) {
-    outline.diameter_m = table.quantity("diameter");
-}
+void read_disc(const JobTable& table, OutlineSpec& outline) { outline.diameter_m = table.quantity("diameter"); }
 
 void read_ring(const JobTable& table, OutlineSpec& outline) {
     outline.diameter_m = table.quantity("diameter");
     outline.hole_diameter_m = table.quantity("hole_diameter");
     table.check({"diameter", "hole_diameter"}, [&] {
         if (outline.hole_diameter_m >= outline.diameter_m)
-            table.fail("hole_diameter", shown(*table.find("hole_diameter")) + " is not less than the diameter, " + shown(*table.find("diameter")));
+            table.fail("hole_diameter",
+                       shown(*table.find("hole_diameter")) + " is not less than the diameter, " + shown(*table.find("diameter")));
     });
 }
 
@@ -47,7 +46,8 @@ void read_polygon(const JobTable& table, OutlineSpec& outline) {
         if (outline.vertices_m.size() > largest_vertex_count) table.fail("vertices", "the outline has more than 10000 vertices");
         if (outline.vertices_m.size() < 3) table.fail("vertices", "an outline needs at least three vertices");
         if (!is_simple_polygon(outline.vertices_m))
-            table.fail("vertices", "the outline crosses or touches itself", "a simple polygon: its edges meet at their ends only");
+            table.fail("vertices", "the outline crosses or touches itself",
+                       "a simple polygon: its edges meet at their ends only");
     });
 
     if (table.has("arcs"))
@@ -60,12 +60,13 @@ void read_polygon(const JobTable& table, OutlineSpec& outline) {
         table.check({}, [&] { outline.edge_labels.push_back(table.text_of(label, "edge_labels")); });
     table.check({"vertices", "edge_labels"}, [&] {
         if (outline.edge_labels.size() != outline.vertices_m.size())
-            table.fail(
-                "edge_labels",
-                std::to_string(outline.edge_labels.size()) + " labels for " + std::to_string(outline.vertices_m.size()) + " edges",
-                "one label an edge; edge i runs from vertex i to vertex i + 1");
+            table.fail("edge_labels",
+                       std::to_string(outline.edge_labels.size()) + " labels for " + std::to_string(outline.vertices_m.size()) +
+                           " edges",
+                       "one label an edge; edge i runs from vertex i to vertex i + 1");
         if (const auto fault = end_fault(outline))
-            table.fail_at(*table.array("edge_labels").get(static_cast<std::size_t>(fault->edge)), "edge_labels", fault->problem, fault->allowed, fault->suggestion);
+            table.fail_at(*table.array("edge_labels").get(static_cast<std::size_t>(fault->edge)), "edge_labels", fault->problem,
+                          fault->allowed, fault->suggestion);
     });
 }
 
@@ -81,16 +82,21 @@ OutlineSpec read_outline(const JobTable& table, const GivenCellsSpec* cells) {
     if (is_from_file(table)) {
         table.suit("shape", shape_from_file);
         if (cells == nullptr) {
-            table.check({"shape"}, [&] { table.fail("shape", "a test's own specimen has no file", "a shape with its lengths: it is cut out of the cells of the job's file"); });
+            table.check({"shape"}, [&] {
+                table.fail("shape", "a test's own specimen has no file",
+                           "a shape with its lengths: it is cut out of the cells of the job's file");
+            });
         } else if (cells->file.empty()) {
-            table.check({"shape", "grains"}, [&] { table.fail("shape", "no file says what the outline is", "file = \"cells.tess\" in [specimen.grains]"); });
+            table.check({"shape", "grains"}, [&] {
+                table.fail("shape", "no file says what the outline is", "file = \"cells.tess\" in [specimen.grains]");
+            });
         } else if (cells->given()) {
             outline = outline_of_cells(*cells->cells, cells->tolerance);
         }
         return outline;
     }
     outline.shape = table.choice("shape", shapes);
-    if (!table.sound({"shape"})) {   // what is there can be looked at nevertheless
+    if (!table.sound({"shape"})) {  // what is there can be looked at nevertheless
         for (const char* key : {"width", "height", "diameter", "hole_diameter"}) table.quantity(key, 0.0);
         return outline;
     }
@@ -116,7 +122,8 @@ OutlineSpec read_outline(const JobTable& table, const GivenCellsSpec* cells) {
 }
 
 void read_sieve(const JobTable& table, GrainSizeSpec& sizes) {
-    const std::string allowed = "points such as [\"2 mm\", \"0 %\"], diameters increasing, shares from 0 % to 100 % that never fall";
+    const std::string allowed =
+        "points such as [\"2 mm\", \"0 %\"], diameters increasing, shares from 0 % to 100 % that never fall";
     table.pairs("curve", "a point of a sieve curve", allowed, [&](const toml::node& diameter, const toml::node& passing) {
         const SievePoint point{table.first_of(diameter, "curve"), table.second_of(passing, "curve")};
         if (!sizes.sieve.empty() && point.diameter_m <= sizes.sieve.back().diameter_m)
@@ -139,7 +146,7 @@ double rough_area_m2(const OutlineSpec& outline) {
     if (!outline.arcs.empty()) {
         try {
             return make_outline(outline).area_m2;
-        } catch (const InputError&) {   // told with the arcs
+        } catch (const InputError&) {  // told with the arcs
             return 0.0;
         }
     }
@@ -192,7 +199,8 @@ double smallest_extent_m(const OutlineSpec& outline) {
     if (outline.shape == Shape::rectangle) return std::min(outline.width_m, outline.height_m);
     if (outline.shape == Shape::disc) return outline.diameter_m;
     if (outline.shape == Shape::ring) return 0.5 * (outline.diameter_m - outline.hole_diameter_m);
-    const Box box = outline.arcs.empty() ? bounding_box(outline) : bounding_box(outline.vertices_m);   // arcs may be wrong, which is told with them
+    const Box box = outline.arcs.empty() ? bounding_box(outline)
+                                         : bounding_box(outline.vertices_m);  // arcs may be wrong, which is told with them
     return std::min(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
 }
 
@@ -201,19 +209,24 @@ namespace {
 // The length of a unit of the file: "mm", or "80 mm".
 double read_unit(const JobTable& grains, double of_file_m) {
     if (!grains.has("unit")) {
-        if (of_file_m == 0.0) grains.fail("unit", "missing key: unit (the file has no unit of length)", grains.allowed("unit"), "Neper's domain is a square of side 1 unless it was told otherwise: unit = \"80 mm\" makes it 80 mm wide");
+        if (of_file_m == 0.0)
+            grains.fail(
+                "unit", "missing key: unit (the file has no unit of length)", grains.allowed("unit"),
+                "Neper's domain is a square of side 1 unless it was told otherwise: unit = \"80 mm\" makes it 80 mm wide");
         return of_file_m;
     }
     const std::string given = grains.text("unit");
     if (of_file_m != 0.0) grains.fail("unit", "is given, but the head of the file says the unit too", "one of them");
     double unit_m = 0.0;
     try {
-        const bool number = !given.empty() && (std::isdigit(static_cast<unsigned char>(given.front())) != 0 || given.front() == '.');
+        const bool number =
+            !given.empty() && (std::isdigit(static_cast<unsigned char>(given.front())) != 0 || given.front() == '.');
         unit_m = parse_quantity(number ? given : "1 " + given, Dimension::length);
     } catch (const std::exception&) {
         unit_m = 0.0;
     }
-    if (!(unit_m > 0.0) || !std::isfinite(unit_m)) grains.fail("unit", shown(*grains.find("unit")) + " is no length", grains.allowed("unit"));
+    if (!(unit_m > 0.0) || !std::isfinite(unit_m))
+        grains.fail("unit", shown(*grains.find("unit")) + " is no length", grains.allowed("unit"));
     return unit_m;
 }
 
@@ -225,21 +238,22 @@ void read_given_cells(const JobTable& grains, const std::filesystem::path& folde
         grains.refuse({"unit", "tolerance"}, "grains that are packed", "only beside file");
         return;
     }
-    cells.file = "cells";   // until it is known
+    cells.file = "cells";  // until it is known
     grains.refuse({"diameter", "porosity"}, "file, whose cells say it");
     grains.check({"file", "unit", "tolerance"}, [&] {
         const std::filesystem::path given = grains.text("file");
         if (given.empty()) return;
         cells.file = std::filesystem::absolute(given.is_absolute() ? given : folder / given).lexically_normal();
         std::error_code ignored;
-        if (!std::filesystem::is_regular_file(cells.file, ignored)) grains.fail("file", "there is no file " + shown(*grains.find("file")), grains.allowed("file"));
+        if (!std::filesystem::is_regular_file(cells.file, ignored))
+            grains.fail("file", "there is no file " + shown(*grains.find("file")), grains.allowed("file"));
         cell_format_of(cells.file);
         const std::string contents = read_cell_file(cells.file);
         const CellsOfFile read = read_cells(contents, cells.file);
         cells.unit_m = read_unit(grains, read.unit_m);
         cells.hash = fmt::format("{:016x}", XXH3_64bits(contents.data(), contents.size()));
         cells.cells = std::make_shared<const GivenCells>(weld_cells(read, cells.unit_m, cells.tolerance, cells.file));
-        GrainSizeSpec& sizes = spec.grain_sizes;   // by which the job is judged; nothing is drawn from them
+        GrainSizeSpec& sizes = spec.grain_sizes;  // by which the job is judged; nothing is drawn from them
         sizes.kind = GrainSizeKind::log_normal;
         sizes.minimum_m = cells.cells->smallest_diameter_m;
         sizes.median_m = cells.cells->mean_diameter_m;
@@ -302,13 +316,17 @@ SpecimenSpec read_own_specimen(const JobTable& test, const SpecimenSpec& of_job,
         spec.given_cells.cut = true;
         table.check({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}, [&] {
             const Outline outline = make_outline(spec);
-            if (!outline.is_disc && !is_convex_polygon(outline.vertices)) table.fail("shape", "is cut out of the cells of a file, which is done with convex outlines only", "a rectangle, a disc, a half disc, a ring, or a convex polygon");
+            if (!outline.is_disc && !is_convex_polygon(outline.vertices))
+                table.fail("shape", "is cut out of the cells of a file, which is done with convex outlines only",
+                           "a rectangle, a disc, a half disc, a ring, or a convex polygon");
         });
     }
     table.check({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}, [&] {
         const double largest = largest_diameter_m(spec.grain_sizes), extent = smallest_extent_m(spec.outline);
         if (largest > 0.5 * extent)
-            table.fail("shape", fmt::format("grains of up to {} mm do not fit: the specimen is {} mm across", format_exact(1e3 * largest), format_exact(1e3 * extent)),
+            table.fail("shape",
+                       fmt::format("grains of up to {} mm do not fit: the specimen is {} mm across", format_exact(1e3 * largest),
+                                   format_exact(1e3 * extent)),
                        "a specimen at least twice as wide as its largest grain");
     });
     check_cutouts(table, spec);
@@ -321,21 +339,30 @@ namespace {
 void read_phase_sizes(const JobTable& grains, const std::vector<Mineral>& phases, SpecimenSpec& spec) {
     const bool all = std::all_of(phases.begin(), phases.end(), [](const Mineral& phase) { return phase.sizes.has_value(); });
     grains.check({"file"}, [&] {
-        if (!spec.given_cells.file.empty()) grains.fail("file", "brings its grains, but minerals have sizes of their own (diameter of [[material.phase]])", "one of them", "`list` of [material.minerals] says the mineral of each cell of a file");
+        if (!spec.given_cells.file.empty())
+            grains.fail("file", "brings its grains, but minerals have sizes of their own (diameter of [[material.phase]])",
+                        "one of them", "`list` of [material.minerals] says the mineral of each cell of a file");
     });
     grains.check({"crystals"}, [&] {
-        if (grains.has("crystals")) grains.fail("crystals", "have sizes, but minerals have sizes of their own too (diameter of [[material.phase]])", "one of them");
+        if (grains.has("crystals"))
+            grains.fail("crystals", "have sizes, but minerals have sizes of their own too (diameter of [[material.phase]])",
+                        "one of them");
     });
     GrainSizeSpec others;
-    if (!all) others = read_grain_sizes(grains, "diameter");
+    if (!all)
+        others = read_grain_sizes(grains, "diameter");
     else if (grains.has("diameter"))
-        grains.check({}, [&] { grains.fail("diameter", "is of no grain: each mineral has sizes of its own", "diameter here for minerals without sizes of their own", "leave it out") ; });
+        grains.check({}, [&] {
+            grains.fail("diameter", "is of no grain: each mineral has sizes of its own",
+                        "diameter here for minerals without sizes of their own", "leave it out");
+        });
     if (!spec.given_cells.file.empty()) return;
     for (const Mineral& phase : phases) spec.phase_sizes.push_back({phase.name, phase.share, phase.sizes.value_or(others)});
     try {
-        grains_of_phases(spec.phase_sizes, 1e3 * rough_area_m2(spec.outline), spec.porosity);   // of a larger specimen: that a mineral has less than a grain is told apart
+        grains_of_phases(spec.phase_sizes, 1e3 * rough_area_m2(spec.outline),
+                         spec.porosity);  // of a larger specimen: that a mineral has less than a grain is told apart
         spec.grain_sizes = mixture_of(spec.phase_sizes, spec.porosity);
-    } catch (const InputError&) {   // told where the sizes stand; here what fits in any case
+    } catch (const InputError&) {  // told where the sizes stand; here what fits in any case
         spec.phase_sizes.clear();
         spec.grain_sizes = GrainSizeSpec{};
         spec.grain_sizes.minimum_m = spec.grain_sizes.maximum_m = std::max(1e-6, smallest_extent_m(spec.outline) / 30.0);
@@ -344,7 +371,8 @@ void read_phase_sizes(const JobTable& grains, const std::vector<Mineral>& phases
 
 }  // namespace
 
-SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled, const std::vector<Mineral>& phases) {
+SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& folder, std::optional<bool> filled,
+                           const std::vector<Mineral>& phases) {
     const JobTable table = root.table("specimen");
     table.require({"shape", "grains"});
     SpecimenSpec spec;
@@ -359,7 +387,8 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     if (grains.has("crystals")) spec.crystal_sizes = read_grain_sizes(grains, "crystals");
     spec.porosity = grains.number("porosity");
     if (!phases.empty()) read_phase_sizes(grains, phases, spec);
-    if (!spec.phase_sizes.empty() && table.sound({"shape", "width", "height", "diameter", "vertices"}) && grains.sound({"porosity"}))
+    if (!spec.phase_sizes.empty() && table.sound({"shape", "width", "height", "diameter", "vertices"}) &&
+        grains.sound({"porosity"}))
         root.check({}, [&] {
             try {
                 grains_of_phases(spec.phase_sizes, rough_area_m2(spec.outline), spec.porosity);
@@ -373,25 +402,28 @@ SpecimenSpec read_specimen(const JobTable& root, const std::filesystem::path& fo
     else if (*filled)
         spec.particles_per_grain = grains.number("particles_per_grain");
     else
-        grains.refuse({"particles_per_grain"}, "grains that are not filled", "only with " + condition_text(grains.rows().key("particles_per_grain")));
+        grains.refuse({"particles_per_grain"}, "grains that are not filled",
+                      "only with " + condition_text(grains.rows().key("particles_per_grain")));
     const std::string_view sizes = of_file ? "file" : "diameter";
-    if (table.sound({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}) && !of_file) grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
+    if (table.sound({"shape", "width", "height", "diameter", "hole_diameter", "vertices"}) && !of_file)
+        grains.check({"diameter"}, [&] { check_sizes(grains, spec); });
     grains.check({sizes, "crystals"}, [&] {
         if (spec.crystal_sizes && typical_diameter_m(*spec.crystal_sizes) < 1.5 * typical_diameter_m(spec.grain_sizes))
-            grains.fail("crystals", "crystals are hardly larger than the grains that they consist of", "a mean diameter of at least 1.5 times that of the grains; 3 times makes about ten grains a crystal");
+            grains.fail("crystals", "crystals are hardly larger than the grains that they consist of",
+                        "a mean diameter of at least 1.5 times that of the grains; 3 times makes about ten grains a crystal");
     });
     if (!of_file || spec.given_cells.given()) check_cutouts(table, spec);
     read_merge_length(grains, spec);
 
-    if (of_file) table.refuse({"packing"}, "file in [specimen.grains]", "one of them");
+    if (of_file)
+        table.refuse({"packing"}, "file in [specimen.grains]", "one of them");
     else if (table.has("packing")) {
         const std::filesystem::path given = table.text("packing");
         spec.packing_file = given.is_absolute() ? given : folder / given;
         table.check({"packing"}, [&] {
             std::error_code ignored;
             if (!std::filesystem::is_regular_file(spec.packing_file, ignored))
-                table.fail("packing", "there is no file " + shown(*table.find("packing")),
-                           table.allowed("packing"));
+                table.fail("packing", "there is no file " + shown(*table.find("packing")), table.allowed("packing"));
         });
     }
     return spec;

@@ -1,8 +1,8 @@
 // Stages of a test: read one by one, then held against each other, for a stage that cannot end would never let the test go on.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/words.hpp"
@@ -12,10 +12,14 @@ namespace {
 
 Dimension dimension_of(const TestSpec& test, const StageSpec& stage) {
     switch (stage.end) {
-        case StageEnd::stress: return Dimension::stress;
-        case StageEnd::load: return Dimension::force;
-        case StageEnd::gauge: return dimension_of_gauge(test, stage.gauge);
-        default: return Dimension::fraction;
+        case StageEnd::stress:
+            return Dimension::stress;
+        case StageEnd::load:
+            return Dimension::force;
+        case StageEnd::gauge:
+            return dimension_of_gauge(test, stage.gauge);
+        default:
+            return Dimension::fraction;
     }
 }
 
@@ -31,31 +35,42 @@ void read_until(const JobTable& table, const TestSpec& test, StageSpec& stage) {
         std::vector<std::string_view> known;
         for (const StageEnd end : stage_ends) known.push_back(name(end));
         for (const std::string_view gauge : gauge_names(test)) known.push_back(gauge);
-        table.fail("until", fmt::format("'{}' is neither an end of a stage nor a gauge of the test", given), listed(known), did_you_mean(given, known));
+        table.fail("until", fmt::format("'{}' is neither an end of a stage nor a gauge of the test", given), listed(known),
+                   did_you_mean(given, known));
     });
 }
 
 void read_value(const JobTable& table, const TestSpec& test, StageSpec& stage) {
-    constexpr std::pair<const char*, StageValue> keys[]{{"at", StageValue::reached}, {"by", StageValue::changed}, {"beyond", StageValue::beyond}};
+    constexpr std::pair<const char*, StageValue> keys[]{
+        {"at", StageValue::reached}, {"by", StageValue::changed}, {"beyond", StageValue::beyond}};
     const char* given = nullptr;
     for (const auto& [key, counts] : keys) {
         if (!table.has(key)) continue;
-        if (given != nullptr) table.check({}, [&, &second = key] { table.fail(second, fmt::format("given beside {}", given), "one of at, by and beyond"); });
+        if (given != nullptr)
+            table.check({}, [&, &second = key] {
+                table.fail(second, fmt::format("given beside {}", given), "one of at, by and beyond");
+            });
         given = key;
         stage.counts = counts;
     }
     if (stage.end == StageEnd::reversal) return table.refuse({"at", "by", "beyond"}, "until = \"reversal\"", "leave it out");
-    if (given == nullptr) return table.check({"until", "kind"}, [&] { table.fail("until", fmt::format("until = \"{}\" of what value is missing", table.text("until")), "at, by or beyond"); });
+    if (given == nullptr)
+        return table.check({"until", "kind"}, [&] {
+            table.fail("until", fmt::format("until = \"{}\" of what value is missing", table.text("until")), "at, by or beyond");
+        });
     stage.value = table.quantity_as(given, dimension_of(test, stage));
     table.check({given}, [&] {
         const bool share = stage.end == StageEnd::share_of_peak;
-        if (share && stage.counts != StageValue::reached) table.fail(given, "a share of the peak is a value itself", "at = \"80 %\"");
-        if (share && !(stage.value > 0.0 && stage.value < 1.0)) table.fail(given, "is no share to which the load can fall", "greater than 0 and less than 100 %");
+        if (share && stage.counts != StageValue::reached)
+            table.fail(given, "a share of the peak is a value itself", "at = \"80 %\"");
+        if (share && !(stage.value > 0.0 && stage.value < 1.0))
+            table.fail(given, "is no share to which the load can fall", "greater than 0 and less than 100 %");
         if (stage.counts != StageValue::reached && !(stage.value > 0.0)) table.fail(given, "is no change", "greater than 0");
         const bool of_load = stage.end == StageEnd::stress || stage.end == StageEnd::load;
         if (of_load && stage.counts == StageValue::reached && !(stage.value >= 0.0))
             table.fail(given, "is beyond the unloaded specimen, which hangs on nothing", "0 or more");
-        if (stage.kind == StageKind::unload && stage.counts == StageValue::beyond) table.fail(given, "counts from where the last loading ended, and this stage unloads", "at or by");
+        if (stage.kind == StageKind::unload && stage.counts == StageValue::beyond)
+            table.fail(given, "counts from where the last loading ended, and this stage unloads", "at or by");
     });
 }
 
@@ -67,17 +82,19 @@ StageSpec read_moving(const JobTable& table, const TestSpec& test, StageKind kin
         return stage;
     }
     table.refuse({"at", "by", "beyond"}, "no until", "until = \"stress\" and the like beside it");
-    if (kind == StageKind::unload) stage.end = StageEnd::stress;   // to nothing
+    if (kind == StageKind::unload) stage.end = StageEnd::stress;  // to nothing
     return stage;
 }
 
 StageSpec read_stage(const JobTable& table, const TestSpec& test, StageForm form) {
     switch (form) {
-        case StageForm::load: return read_moving(table, test, StageKind::load);
+        case StageForm::load:
+            return read_moving(table, test, StageKind::load);
         case StageForm::unload: {
             const StageSpec stage = read_moving(table, test, StageKind::unload);
             table.check({"until"}, [&] {
-                if (stage.end == StageEnd::reversal) table.fail("until", "the volumetric strain turns while a specimen is loaded", "kind = \"load\"");
+                if (stage.end == StageEnd::reversal)
+                    table.fail("until", "the volumetric strain turns while a specimen is loaded", "kind = \"load\"");
             });
             return stage;
         }
@@ -94,23 +111,31 @@ StageSpec read_stage(const JobTable& table, const TestSpec& test, StageForm form
             for (const FixtureSpec& f : test.custom.fixtures)
                 if (f.kind == FixtureKind::pressure || f.kind == FixtureKind::membrane || f.pressed) pressing.push_back(f.name);
             table.check({"kind", "fixture"}, [&] {
-                if (pressing.empty()) table.fail("kind", "no fixture of this test presses with a pressure that could change", "a fixture with a pressure; or \"load\", \"unload\", \"hold\" and \"cycle\"");
+                if (pressing.empty())
+                    table.fail("kind", "no fixture of this test presses with a pressure that could change",
+                               "a fixture with a pressure; or \"load\", \"unload\", \"hold\" and \"cycle\"");
                 if (!stage.fixture.empty() && std::ranges::find(pressing, stage.fixture) == pressing.end())
-                    table.fail("fixture", fmt::format("'{}' is no fixture with a pressure", stage.fixture), listed(pressing), did_you_mean(stage.fixture, pressing));
+                    table.fail("fixture", fmt::format("'{}' is no fixture with a pressure", stage.fixture), listed(pressing),
+                               did_you_mean(stage.fixture, pressing));
             });
             return stage;
         }
-        case StageForm::cycle: break;
+        case StageForm::cycle:
+            break;
     }
     return {};
 }
 
-// What is known of the specimen before a stage: which stresses, loads and strains it has. Nothing is known of what a stage does to other quantities.
+// What is known of the specimen before a stage: which stresses, loads and strains it has. Nothing is known of what a stage does
+// to other quantities.
 struct Before {
     std::optional<double> stress_Pa = 0.0, load_N = 0.0, strain = 0.0;
 
     std::optional<double>* of(StageEnd end) {
-        return end == StageEnd::stress ? &stress_Pa : end == StageEnd::load ? &load_N : end == StageEnd::axial_strain ? &strain : nullptr;
+        return end == StageEnd::stress         ? &stress_Pa
+               : end == StageEnd::load         ? &load_N
+               : end == StageEnd::axial_strain ? &strain
+                                               : nullptr;
     }
 };
 
@@ -133,23 +158,31 @@ void hold_against(const Placed& placed, const TestSpec& test, Before& before) {
         if (known == nullptr || !reached) return;
         const bool loads = stage.kind == StageKind::load;
         if (known->has_value() && (loads ? stage.value <= **known : stage.value >= **known))
-            table.fail(table.has("at") ? "at" : "kind", fmt::format("cannot be reached: the specimen is {} already when this stage begins to {} it", loads ? "there or beyond" : "there or below", name(stage.kind)),
-                       loads ? "more than where the stage before ends, or kind = \"unload\"" : "less than where the stage before ends, or kind = \"load\"");
+            table.fail(table.has("at") ? "at" : "kind",
+                       fmt::format("cannot be reached: the specimen is {} already when this stage begins to {} it",
+                                   loads ? "there or beyond" : "there or below", name(stage.kind)),
+                       loads ? "more than where the stage before ends, or kind = \"unload\""
+                             : "less than where the stage before ends, or kind = \"load\"");
         if (loads && stage.end == StageEnd::axial_strain && stage.value >= test.maximum_strain)
-            table.fail("at", fmt::format("cannot be reached: the test ends at an axial strain of {:.3g}", test.maximum_strain), "less, or a larger maximum_strain of the test");
+            table.fail("at", fmt::format("cannot be reached: the test ends at an axial strain of {:.3g}", test.maximum_strain),
+                       "less, or a larger maximum_strain of the test");
         if (loads && stage.end == StageEnd::stress && test.maximum_stress_Pa && stage.value > *test.maximum_stress_Pa)
-            table.fail("at", fmt::format("cannot be reached: the test ends at {:.4g} MPa", *test.maximum_stress_Pa / 1e6), "less, or a larger maximum_stress of the test");
+            table.fail("at", fmt::format("cannot be reached: the test ends at {:.4g} MPa", *test.maximum_stress_Pa / 1e6),
+                       "less, or a larger maximum_stress of the test");
     });
     const double value = stage.value;
     before = {std::nullopt, std::nullopt, std::nullopt};
     if (known != nullptr && reached) *before.of(stage.end) = value;
-    if (stage.kind == StageKind::unload && (stage.end == StageEnd::stress || stage.end == StageEnd::load) && value == 0.0 && reached) before.stress_Pa = before.load_N = 0.0;
+    if (stage.kind == StageKind::unload && (stage.end == StageEnd::stress || stage.end == StageEnd::load) && value == 0.0 &&
+        reached)
+        before.stress_Pa = before.load_N = 0.0;
 }
 
 // Whether what is repeated changes the specimen: loading each time to the same place may go on for ever.
 bool goes_on(const StageGroup& group) {
     return std::ranges::any_of(group.stages, [](const StageSpec& stage) {
-        return stage.kind == StageKind::load && (stage.counts != StageValue::reached || stage.end == StageEnd::reversal || stage.end == StageEnd::share_of_peak || stage.end == StageEnd::test);
+        return stage.kind == StageKind::load && (stage.counts != StageValue::reached || stage.end == StageEnd::reversal ||
+                                                 stage.end == StageEnd::share_of_peak || stage.end == StageEnd::test);
     });
 }
 
@@ -177,7 +210,9 @@ std::vector<StageGroup> read_stages(const JobTable& table, const TestSpec& test,
                     const StageForm inside = inner.choice("kind", stage_forms);
                     if (!inner.sound({"kind"})) continue;
                     inner.suit("kind", name(inside));
-                    inner.check({}, [&] { if (inside == StageForm::cycle) inner.fail("kind", "a cycle in a cycle", "stages"); });
+                    inner.check({}, [&] {
+                        if (inside == StageForm::cycle) inner.fail("kind", "a cycle in a cycle", "stages");
+                    });
                     placed.push_back({inner, read_stage(inner, test, inside)});
                 }
         } else {
@@ -186,24 +221,29 @@ std::vector<StageGroup> read_stages(const JobTable& table, const TestSpec& test,
         if (i == 0 && !placed.empty())
             placed.front().table.check({"kind"}, [&] {
                 const StageKind kind = placed.front().stage.kind;
-                if (kind == StageKind::unload || kind == StageKind::hold) placed.front().table.fail("kind", "the specimen is not loaded yet", "\"load\" or \"confine\" first");
+                if (kind == StageKind::unload || kind == StageKind::hold)
+                    placed.front().table.fail("kind", "the specimen is not loaded yet", "\"load\" or \"confine\" first");
             });
         for (const Placed& p : placed) group.stages.push_back(p.stage);
-        const int passes = form == StageForm::cycle && group.times != 1 ? 2 : 1;   // the second one begins where the first ended
+        const int passes = form == StageForm::cycle && group.times != 1 ? 2 : 1;  // the second one begins where the first ended
         for (int pass = 0; pass < passes; ++pass)
             for (std::size_t k = 0; k < placed.size(); ++k) {
                 hold_against(placed[k], test, before);
                 const bool end_of_all = last && k + 1 == placed.size() && group.times == 1;
                 placed[k].table.check({"kind", "until"}, [&] {
                     if (placed[k].stage.kind == StageKind::load && placed[k].stage.end == StageEnd::test && !end_of_all)
-                        placed[k].table.fail(placed[k].table.has("until") ? "until" : "kind", "loads until the test ends, and stages stand behind it", "until = \"stress\" and the like, or no stages behind");
+                        placed[k].table.fail(placed[k].table.has("until") ? "until" : "kind",
+                                             "loads until the test ends, and stages stand behind it",
+                                             "until = \"stress\" and the like, or no stages behind");
                 });
             }
         one.check({"times", "stages"}, [&] {
             if (group.times != 0) return;
-            if (!last) one.fail("kind", "is repeated until the test ends, and stages stand behind it", "times = 5, or no stages behind");
+            if (!last)
+                one.fail("kind", "is repeated until the test ends, and stages stand behind it", "times = 5, or no stages behind");
             if (!goes_on(group) && !limited_steps)
-                one.fail("kind", "may go on for ever: every loading of it goes to the same value", "times = 5, or a loading with by, beyond or until = \"reversal\", or maximum_steps in [numerics]");
+                one.fail("kind", "may go on for ever: every loading of it goes to the same value",
+                         "times = 5, or a loading with by, beyond or until = \"reversal\", or maximum_steps in [numerics]");
         });
         if (!group.stages.empty()) groups.push_back(std::move(group));
     }

@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/words.hpp"
@@ -12,8 +12,8 @@
 namespace feldspar {
 namespace {
 
-// Of a confined specimen's width, as a share of the narrowest: the pressure on sloping sides then adds at most this share of sigma3 to the
-// axial stress.
+// Of a confined specimen's width, as a share of the narrowest: the pressure on sloping sides then adds at most this share of
+// sigma3 to the axial stress.
 constexpr double most_confined_taper = 0.1;
 
 bool has_label(const OutlineSpec& outline, std::string_view label) {
@@ -24,29 +24,38 @@ bool has_label(const OutlineSpec& outline, std::string_view label) {
 struct Known {
     bool outline = true;
     bool grain_sizes = true;
-    bool kinds = true;   // of the grains of all variants
+    bool kinds = true;  // of the grains of all variants
 };
 
 // Platens need a flat top and bottom.
 void check_outline(const JobTable& table, MethodId kind, const OutlineSpec& outline) {
     if (method_of(kind).specimen.own_disc) {
         if ((outline.shape == Shape::disc || outline.shape == Shape::ring) && outline.is_cut())
-            table.fail("kind", "'" + std::string(name(kind)) + "' cuts its own whole disc: the holes and notches of the specimen would not be in it", "a disc without holes and notches");
+            table.fail("kind",
+                       "'" + std::string(name(kind)) +
+                           "' cuts its own whole disc: the holes and notches of the specimen would not be in it",
+                       "a disc without holes and notches");
         return;
     }
     if (method_of(kind).specimen.confined && outline.is_cut())
-        table.fail("kind", "'" + std::string(name(kind)) + "' presses on every side, those of holes and notches too", "a specimen without holes and notches");
+        table.fail("kind", "'" + std::string(name(kind)) + "' presses on every side, those of holes and notches too",
+                   "a specimen without holes and notches");
     if (outline.shape == Shape::rectangle) return;
     if (outline.shape == Shape::polygon && has_label(outline, "top") && has_label(outline, "bottom")) {
         const SectionWidths widths = section_widths(make_outline(outline));
         if (method_of(kind).specimen.confined && widths.widest > (1.0 + most_confined_taper) * widths.narrowest)
             table.fail("kind",
-                       fmt::format("'{}' presses on the sides too, which would load a specimen whose width varies from {:.4g} to {:.4g} mm along "
-                                   "its axis as well", name(kind), 1000.0 * widths.narrowest, 1000.0 * widths.widest),
+                       fmt::format("'{}' presses on the sides too, which would load a specimen whose width varies from {:.4g} to "
+                                   "{:.4g} mm along "
+                                   "its axis as well",
+                                   name(kind), 1000.0 * widths.narrowest, 1000.0 * widths.widest),
                        "a rectangle, or a polygon whose width varies by a tenth at most");
         return;
     }
-    const std::string shape = outline.shape == Shape::disc ? "a disc" : outline.shape == Shape::half_disc ? "a half disc" : outline.shape == Shape::ring ? "a ring" : "a polygon without edges labelled \"top\" and \"bottom\"";
+    const std::string shape = outline.shape == Shape::disc        ? "a disc"
+                              : outline.shape == Shape::half_disc ? "a half disc"
+                              : outline.shape == Shape::ring      ? "a ring"
+                                                                  : "a polygon without edges labelled \"top\" and \"bottom\"";
     table.fail("kind", "'" + std::string(name(kind)) + "' presses on flat ends, which " + shape + " has not",
                "shape = \"rectangle\", or a polygon with edges labelled \"top\" and \"bottom\"");
 }
@@ -55,7 +64,9 @@ void check_outline(const JobTable& table, MethodId kind, const OutlineSpec& outl
 double brazilian_diameter(const JobTable& table, const SpecimenSpec& specimen, const Known& known) {
     if (!known.outline) table.do_not_miss({"diameter"});
     if (!table.has("diameter") && specimen.outline.shape == Shape::polygon)
-        table.check({"diameter"}, [&] { table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)"); });
+        table.check({"diameter"}, [&] {
+            table.fail("diameter", "missing key: diameter (a polygon does not say how large the disc is to be)");
+        });
     const double usual = specimen.outline.shape == Shape::rectangle ? specimen.outline.width_m : specimen.outline.diameter_m;
     const double diameter = table.quantity("diameter", usual);
     if (!known.grain_sizes) return diameter;
@@ -71,25 +82,27 @@ double brazilian_diameter(const JobTable& table, const SpecimenSpec& specimen, c
 }
 
 // The disc may be whole, or have two flats, on which flat plates press.
-bool is_flattened(const JobTable& table) {
-    return table.choice("disc", disc_forms) == DiscForm::flattened;
-}
+bool is_flattened(const JobTable& table) { return table.choice("disc", disc_forms) == DiscForm::flattened; }
 
 // Angle over which a flat is seen from the centre; 0: of a whole disc.
-double read_flats(const JobTable& table, bool flattened, const SpecimenSpec& specimen, double diameter_m, const Known& known, const TestSpec& test) {
+double read_flats(const JobTable& table, bool flattened, const SpecimenSpec& specimen, double diameter_m, const Known& known,
+                  const TestSpec& test) {
     if (!flattened) {
         if (table.sound({"disc"})) table.refuse({"flat_angle"}, "a whole disc", "disc = \"flattened\"");
         return 0.0;
     }
     table.check({"plates", "disc"}, [&] {
-        if (test.plates == PlateShape::curved) table.fail("plates", "curved jaws do not fit the flats of a flattened disc", "plates = \"flat\", or disc = \"whole\"");
+        if (test.plates == PlateShape::curved)
+            table.fail("plates", "curved jaws do not fit the flats of a flattened disc",
+                       "plates = \"flat\", or disc = \"whole\"");
     });
     const double angle_rad = table.quantity("flat_angle");
     const double width_m = diameter_m * std::sin(0.5 * angle_rad), largest_m = largest_diameter_m(specimen.grain_sizes);
     table.check({"flat_angle", "disc", "diameter"}, [&] {
         if (known.outline && known.grain_sizes && width_m < largest_m)
             table.fail(table.has("flat_angle") ? "flat_angle" : "disc",
-                       fmt::format("the flats would be {:.3g} mm wide, less than the largest grain of {:.3g} mm", 1e3 * width_m, 1e3 * largest_m),
+                       fmt::format("the flats would be {:.3g} mm wide, less than the largest grain of {:.3g} mm", 1e3 * width_m,
+                                   1e3 * largest_m),
                        "flats wider than the largest grain: a larger angle, a larger disc, or smaller grains");
     });
     return angle_rad;
@@ -120,7 +133,8 @@ void read_control(const JobTable& table, const std::vector<Variant>& variants, T
     test.control = usual_control(kind, adaptive);
     if (!table.has("control")) return;
     const std::string given = table.text("control");
-    const auto word = std::find_if(load_controls.begin(), load_controls.end(), [&](LoadControl control) { return given == name(control); });
+    const auto word =
+        std::find_if(load_controls.begin(), load_controls.end(), [&](LoadControl control) { return given == name(control); });
     const LoadControl control = word != load_controls.end() ? *word : LoadControl::gauge;
     test.control = control;
     if (control == LoadControl::gauge) test.control_gauge = given;
@@ -129,11 +143,16 @@ void read_control(const JobTable& table, const std::vector<Variant>& variants, T
             std::vector<std::string_view> known;
             for (const LoadControl one : load_controls) known.push_back(name(one));
             for (const std::string_view gauge : gauge_names(test)) known.push_back(gauge);
-            table.fail("control", fmt::format("'{}' is neither a control nor a gauge of the test", given), listed(known), did_you_mean(given, known));
+            table.fail("control", fmt::format("'{}' is neither a control nor a gauge of the test", given), listed(known),
+                       did_you_mean(given, known));
         }
         if (control == LoadControl::lateral_strain && !method_of(kind).loading.widens)
-            table.fail("control", fmt::format("'lateral-strain' is meant for specimens that widen as they fail, which kind = \"{}\" does not measure", name(kind)),
-                       "control = \"displacement\" or \"dissipation\"");
+            table.fail(
+                "control",
+                fmt::format(
+                    "'lateral-strain' is meant for specimens that widen as they fail, which kind = \"{}\" does not measure",
+                    name(kind)),
+                "control = \"displacement\" or \"dissipation\"");
         if (control != LoadControl::displacement && !adaptive)
             table.fail("control", fmt::format("'{}' changes the platen speed, which only adaptive numerics do", given),
                        "[numerics] kind = \"adaptive\", or control = \"displacement\"");
@@ -161,14 +180,19 @@ void check_by_method(const JobTable& table, const TestSpec& test, const Specimen
     });
 }
 
-// Keys of plates where none load the specimen. Those that are another method's are refused already. The ends of flexible grains are pressed by plates
-// where these have friction, which makes plates of what otherwise are rows of nodes.
+// Keys of plates where none load the specimen. Those that are another method's are refused already. The ends of flexible grains
+// are pressed by plates where these have friction, which makes plates of what otherwise are rows of nodes.
 void refuse_plates(const JobTable& table, const TestMethod& method) {
     const bool rubs = !method.specimen.glued && table.has("plate_mu");
     for (const JobKey& key : table.rows().keys) {
-        if (!key.of_plates || (!key.when.key.empty() && !key.when.holds(method.name)) || (rubs && key.when.key.empty()) || key.name == "plate_mu") continue;
-        table.refuse({key.name}, "kind = \"" + std::string(method.name) + "\" of flexible grains" + (method.specimen.glued || key.name == "membrane_plates" ? "" : " without plate_mu"),
-                     "with plate_mu, the friction of the end plates, beside it; with " + plated_methods() + ", or with rigid grains or inner particles, which are loaded by plates");
+        if (!key.of_plates || (!key.when.key.empty() && !key.when.holds(method.name)) || (rubs && key.when.key.empty()) ||
+            key.name == "plate_mu")
+            continue;
+        table.refuse({key.name},
+                     "kind = \"" + std::string(method.name) + "\" of flexible grains" +
+                         (method.specimen.glued || key.name == "membrane_plates" ? "" : " without plate_mu"),
+                     "with plate_mu, the friction of the end plates, beside it; with " + plated_methods() +
+                         ", or with rigid grains or inner particles, which are loaded by plates");
     }
 }
 
@@ -180,23 +204,29 @@ void read_plates(const JobTable& table, bool particles, TestSpec& test) {
     if (table.has("plates")) test.plates = table.choice("plates", plate_shapes);
     if (table.has("jaw_radius")) {
         if (test.plates != PlateShape::curved)
-            table.check({"plates", "disc"}, [&] { table.fail("jaw_radius", "given for flat plates", "plates = \"curved\", which is for a whole disc"); });
+            table.check({"plates", "disc"}, [&] {
+                table.fail("jaw_radius", "given for flat plates", "plates = \"curved\", which is for a whole disc");
+            });
         test.jaw_radius = table.number("jaw_radius");
     }
     if (table.has("plate_Kn") && table.has("plate_stiffness_factor"))
         table.check({}, [&] { table.fail("plate_Kn", "given beside plate_stiffness_factor", "one of them"); });
-    if (table.has("plate_Kn")) test.plate_Kn_Pa_m = table.quantity("plate_Kn");
-    else if (test.plates != usual || table.has("plate_stiffness_factor")) test.plate_Kn_Pa_m.reset();   // that of the usual plates
+    if (table.has("plate_Kn"))
+        test.plate_Kn_Pa_m = table.quantity("plate_Kn");
+    else if (test.plates != usual || table.has("plate_stiffness_factor"))
+        test.plate_Kn_Pa_m.reset();  // that of the usual plates
     test.plate_stiffness_factor = table.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (!method.glued && !method_of(test).specimen.fixtures_of_job) test.plate_mu = table.number("plate_mu", method.plate_mu);
     test.membrane_plates = static_cast<int>(table.integer("membrane_plates"));
 }
 
 // The specimen that a test brings itself.
-std::optional<SpecimenSpec> own_specimen(const JobTable& table, const TestMethod& method, const SpecimenSpec& of_job, Known& known) {
+std::optional<SpecimenSpec> own_specimen(const JobTable& table, const TestMethod& method, const SpecimenSpec& of_job,
+                                         Known& known) {
     if (!table.has("specimen")) return std::nullopt;
     if (method.specimen.own_disc) {
-        table.refuse({"specimen"}, fmt::format("kind = \"{}\"", method.name), "it cuts its own disc: diameter, disc = \"flattened\"");
+        table.refuse({"specimen"}, fmt::format("kind = \"{}\"", method.name),
+                     "it cuts its own disc: diameter, disc = \"flattened\"");
         return std::nullopt;
     }
     SpecimenSpec own = read_own_specimen(table, of_job, known.grain_sizes);
@@ -208,27 +238,34 @@ std::optional<SpecimenSpec> own_specimen(const JobTable& table, const TestMethod
 // What the loading does one after the other. Only adaptive numerics turn it.
 void read_loading(const JobTable& table, const std::vector<Variant>& variants, TestSpec& test) {
     const auto all = [&](auto fits) {
-        return std::ranges::all_of(variants, [&](const Variant& variant) { return !variant.runs(test.kind) || fits(variant.numerics); });
+        return std::ranges::all_of(variants,
+                                   [&](const Variant& variant) { return !variant.runs(test.kind) || fits(variant.numerics); });
     };
-    if (table.has("stages")) test.stages = read_stages(table, test, all([](const NumericsSpec& n) { return n.maximum_steps.has_value(); }));
+    if (table.has("stages"))
+        test.stages = read_stages(table, test, all([](const NumericsSpec& n) { return n.maximum_steps.has_value(); }));
     table.check({"kind", "stages"}, [&] {
         if (!stages_of(test).empty() && !all([](const NumericsSpec& n) { return n.kind == NumericsKind::adaptive; }))
-            table.fail(table.has("stages") ? "stages" : "kind", "the loading turns, which only adaptive numerics do", "[numerics] kind = \"adaptive\"");
+            table.fail(table.has("stages") ? "stages" : "kind", "the loading turns, which only adaptive numerics do",
+                       "[numerics] kind = \"adaptive\"");
     });
 }
 
 // The pressures of a multi-stage test: those after the first.
 void read_pressures(const JobTable& table, const std::vector<double>& sigma3_Pa, TestSpec& test) {
     table.check({"sigma3"}, [&] {
-        if (sigma3_Pa.size() < 2) table.fail("sigma3", "a multi-stage test goes through several pressures", "two or more, such as [\"2 MPa\", \"5 MPa\", \"10 MPa\"]");
-        if (!std::ranges::is_sorted(sigma3_Pa, std::ranges::less_equal{})) table.fail("sigma3", "the pressures of a multi-stage test must rise", "each larger than the one before");
+        if (sigma3_Pa.size() < 2)
+            table.fail("sigma3", "a multi-stage test goes through several pressures",
+                       "two or more, such as [\"2 MPa\", \"5 MPa\", \"10 MPa\"]");
+        if (!std::ranges::is_sorted(sigma3_Pa, std::ranges::less_equal{}))
+            table.fail("sigma3", "the pressures of a multi-stage test must rise", "each larger than the one before");
         test.sigma3_Pa = sigma3_Pa.front();
         test.later_sigma3_Pa.assign(sigma3_Pa.begin() + 1, sigma3_Pa.end());
     });
 }
 
 // One test for each sigma3.
-std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job, const std::vector<Variant>& variants, Known known) {
+std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job, const std::vector<Variant>& variants,
+                               Known known) {
     const TestMethod& method = table.choice("kind", test_methods()).definition();
     const bool kind_known = table.sound({"kind"}), own_disc = method.specimen.own_disc;
     if (kind_known) table.suit("kind", method.name);
@@ -237,7 +274,8 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
     TestSpec test = usual_test(method, flattened);
     if (kind_known) test.specimen = own_specimen(table, method, of_job, known);
     const SpecimenSpec& specimen = test.specimen ? *test.specimen : of_job;
-    if (known.outline && method.build.check == nullptr) table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
+    if (known.outline && method.build.check == nullptr)
+        table.check({"kind"}, [&] { check_outline(table, test.kind, specimen.outline); });
 
     if (table.has("stop_fraction")) test.stop_fraction = table.fraction("stop_fraction");
     if (kind_known) read_own_keys(table, test);
@@ -259,7 +297,8 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
     read_plates(table, has_particles(test.kind, variants), test);
 
     if (own_disc) {
-        const double diameter_m = brazilian_diameter(table, of_job, known), flat_angle_rad = read_flats(table, flattened, of_job, diameter_m, known, test);
+        const double diameter_m = brazilian_diameter(table, of_job, known),
+                     flat_angle_rad = read_flats(table, flattened, of_job, diameter_m, known, test);
         test.specimen = disc_of(of_job, diameter_m, flat_angle_rad);
     }
     if (method.reading == Reading::stages) {
@@ -274,26 +313,36 @@ std::vector<TestSpec> read_one(const JobTable& table, const SpecimenSpec& of_job
     if (!table.has(key)) return tests;
     for (double stress : given_stresses(table, key)) {
         test.sigma3_Pa = stress;
-        if (needs.confined) table.check({"maximum_stress", "sigma3"}, [&] {
-            if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= stress)
-                table.fail("maximum_stress", "is there before the specimen is loaded", "a sigma1 above sigma3");
-        });
+        if (needs.confined)
+            table.check({"maximum_stress", "sigma3"}, [&] {
+                if (test.maximum_stress_Pa && *test.maximum_stress_Pa <= stress)
+                    table.fail("maximum_stress", "is there before the specimen is loaded", "a sigma1 above sigma3");
+            });
         tests.push_back(test);
     }
     return tests;
 }
 
 // The strengths of a method's tests are those of one rock, so all have the same specimen.
-void check_one_specimen(const JobTable& table, const SpecimenSpec& of_job, const std::vector<TestSpec>& before, const TestSpec& test) {
-    const auto outline = [&](const TestSpec& t) -> const OutlineSpec& { return t.specimen ? t.specimen->outline : of_job.outline; };
+void check_one_specimen(const JobTable& table, const SpecimenSpec& of_job, const std::vector<TestSpec>& before,
+                        const TestSpec& test) {
+    const auto outline = [&](const TestSpec& t) -> const OutlineSpec& {
+        return t.specimen ? t.specimen->outline : of_job.outline;
+    };
     const auto earlier = std::ranges::find_if(before, [&](const TestSpec& t) { return test_name(t) == test_name(test); });
     if (earlier == before.end() || outline(*earlier) == outline(test)) return;
     table.check({"kind", "specimen", "diameter", "disc", "flat_angle"}, [&] {
-        const std::string others = fmt::format("an earlier {} test", method_of(test).specimen.own_disc ? "Brazilian" : "'" + test_name(test) + "'");
+        const std::string others =
+            fmt::format("an earlier {} test", method_of(test).specimen.own_disc ? "Brazilian" : "'" + test_name(test) + "'");
         if (!method_of(test).specimen.own_disc)
-            table.fail(table.has("specimen") ? "specimen" : "kind", "has another specimen than " + others, "one specimen for all tests of a kind; several sizes are an axis of a study");
-        if (outline(*earlier).diameter_m != outline(test).diameter_m) table.fail("diameter", "differs from that of " + others, "one diameter in a job");
-        table.fail(table.has("flat_angle") ? "flat_angle" : table.has("disc") ? "disc" : "kind", "the flats of the disc differ from those of " + others, "one disc in a job");
+            table.fail(table.has("specimen") ? "specimen" : "kind", "has another specimen than " + others,
+                       "one specimen for all tests of a kind; several sizes are an axis of a study");
+        if (outline(*earlier).diameter_m != outline(test).diameter_m)
+            table.fail("diameter", "differs from that of " + others, "one diameter in a job");
+        table.fail(table.has("flat_angle") ? "flat_angle"
+                   : table.has("disc")     ? "disc"
+                                           : "kind",
+                   "the flats of the disc differ from those of " + others, "one disc in a job");
     });
 }
 
@@ -317,7 +366,7 @@ std::vector<std::uint64_t> read_seed_list(const TableReader& table, std::string_
 std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& specimen, const std::vector<Variant>& variants,
                                  const std::vector<std::uint64_t>& run_seeds) {
     std::vector<TestSpec> result;
-    if (!root.has("test")) return result;   // a mistake that is noted
+    if (!root.has("test")) return result;  // a mistake that is noted
     const Known known{
         std::ranges::all_of(outline_keys, [&](std::string_view key) { return root.sound({"specimen." + std::string(key)}); }),
         root.sound({"specimen.grains.diameter"}), kinds_known(root, variants)};
@@ -332,8 +381,9 @@ std::vector<TestSpec> read_tests(const JobTable& root, const SpecimenSpec& speci
                 // as many digits as the names of the result files show
                 const double sigma3_MPa = std::round(1e3 * (test.sigma3_Pa / 1e6)) / 1e3;
                 const std::string key =
-                    test_name(test) +
-                    (tells_pressure(test) ? fmt::format(" at {} = {} MPa", pressure_key(method_of(test)), format_exact(sigma3_MPa)) : "");
+                    test_name(test) + (tells_pressure(test) ? fmt::format(" at {} = {} MPa", pressure_key(method_of(test)),
+                                                                          format_exact(sigma3_MPa))
+                                                            : "");
                 const bool again = !taken.insert(key + " s" + std::to_string(seed)).second;
                 if (again && root.sound({"run"}))
                     table.check({"kind", "sigma3", "normal_stress", "seeds"}, [&] {
@@ -368,7 +418,8 @@ RunSettings read_run(const JobTable& root) {
     RunSettings run;
     if (!root.has("run")) return run;
     const JobTable table = root.table("run");
-    if (table.has("seeds") && table.has("seed")) table.check({}, [&] { table.fail("seed", "given beside seeds", "seeds = [1, 2, 3], or seed = 1"); });
+    if (table.has("seeds") && table.has("seed"))
+        table.check({}, [&] { table.fail("seed", "given beside seeds", "seeds = [1, 2, 3], or seed = 1"); });
     if (table.has("seeds")) run.seeds = read_seed_list(table, "seeds");
     if (table.has("seed")) run.seeds = {static_cast<std::uint64_t>(table.integer("seed"))};
     run.threads = read_number_or_auto(table, "threads", "threads");

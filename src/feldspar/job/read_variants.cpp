@@ -1,8 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <map>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/utf8.hpp"
 #include "feldspar/job/job_sections.hpp"
@@ -14,23 +14,26 @@ namespace {
 constexpr std::size_t largest_variant_count = 50;
 constexpr std::size_t longest_name = 60;
 
-bool is_plain(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80U; }   // letters of other scripts have no byte below
+bool is_plain(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80U;
+}  // letters of other scripts have no byte below
 
 std::string read_variant_name(const JobTable& table) {
     const std::string given = table.text("name");
     if (!table.sound({"name"})) return given;
     const bool fits = made_of_letters_and(given, " ,.-_%()+=");
     if (!fits || given.size() > longest_name || variant_stem(given).empty() || given.front() == ' ' || given.back() == ' ')
-        table.check({}, [&] {
-            table.fail("name", shown(*table.find("name")) + " cannot name a variant", table.allowed("name"));
-        });
+        table.check({},
+                    [&] { table.fail("name", shown(*table.find("name")) + " cannot name a variant", table.allowed("name")); });
     return given;
 }
 
 std::vector<JobTable> variant_tables(const JobTable& root) {
     std::vector<JobTable> tables = root.tables("variant", "a variant", variant_level);
     if (tables.size() > largest_variant_count)
-        root.check({"variant"}, [&] { root.fail("variant", std::to_string(tables.size()) + " variants are more than a report can show", "at most 50"); });
+        root.check({"variant"}, [&] {
+            root.fail("variant", std::to_string(tables.size()) + " variants are more than a report can show", "at most 50");
+        });
     return tables;
 }
 
@@ -85,7 +88,8 @@ std::vector<MethodId> read_kinds(const TableReader& table) {
             kinds.push_back(*found);
         });
     if (kinds.empty())
-        table.check({"tests"}, [&] { table.fail("tests", "the list is empty", "one kind of test or more, or leave it out for all"); });
+        table.check({"tests"},
+                    [&] { table.fail("tests", "the list is empty", "one kind of test or more, or leave it out for all"); });
     return kinds;
 }
 
@@ -118,11 +122,11 @@ std::vector<Variant> read_variants(const JobTable& root) {
         table.check({"name"}, [&] {
             const auto [other, fresh] = taken.emplace(variant.stem, variant.name);
             if (!fresh)
-                table.fail(
-                    "name",
-                    shown(*table.find("name")) +
-                        (other->second == variant.name ? " is given twice" : " would share its files with '" + other->second + "'"),
-                    "each variant a name of its own");
+                table.fail("name",
+                           shown(*table.find("name")) + (other->second == variant.name
+                                                             ? " is given twice"
+                                                             : " would share its files with '" + other->second + "'"),
+                           "each variant a name of its own");
         });
         variants.push_back(std::move(variant));
     }
@@ -131,23 +135,31 @@ std::vector<Variant> read_variants(const JobTable& root) {
 
 std::vector<Mineral> minerals_with_sizes(const JobTable& root, const std::vector<Variant>& variants) {
     const auto sized = [](const Variant& variant) {
-        return std::any_of(variant.rock.minerals.phases.begin(), variant.rock.minerals.phases.end(), [](const Mineral& phase) { return phase.sizes.has_value(); });
+        return std::any_of(variant.rock.minerals.phases.begin(), variant.rock.minerals.phases.end(),
+                           [](const Mineral& phase) { return phase.sizes.has_value(); });
     };
     const auto first = std::find_if(variants.begin(), variants.end(), sized);
     if (first == variants.end()) return {};
     const std::vector<Mineral>& phases = first->rock.minerals.phases;
     const auto same_sizes = [](const GrainSizeSpec& a, const GrainSizeSpec& b) {
-        return a.kind == b.kind && a.minimum_m == b.minimum_m && a.maximum_m == b.maximum_m && a.median_m == b.median_m && a.log_standard_deviation == b.log_standard_deviation &&
-               std::equal(a.sieve.begin(), a.sieve.end(), b.sieve.begin(), b.sieve.end(), [](SievePoint p, SievePoint q) { return p.diameter_m == q.diameter_m && p.passing == q.passing; });
+        return a.kind == b.kind && a.minimum_m == b.minimum_m && a.maximum_m == b.maximum_m && a.median_m == b.median_m &&
+               a.log_standard_deviation == b.log_standard_deviation &&
+               std::equal(a.sieve.begin(), a.sieve.end(), b.sieve.begin(), b.sieve.end(),
+                          [](SievePoint p, SievePoint q) { return p.diameter_m == q.diameter_m && p.passing == q.passing; });
     };
     const auto same = [&](const Mineral& a, const Mineral& b) {
-        return a.name == b.name && a.share == b.share && a.sizes.has_value() == b.sizes.has_value() && (!a.sizes || same_sizes(*a.sizes, *b.sizes));
+        return a.name == b.name && a.share == b.share && a.sizes.has_value() == b.sizes.has_value() &&
+               (!a.sizes || same_sizes(*a.sizes, *b.sizes));
     };
     for (const Variant& variant : variants) {
         const std::vector<Mineral>& other = variant.rock.minerals.phases;
-        if (other.empty() || std::equal(phases.begin(), phases.end(), other.begin(), other.end(), same)) continue;   // a rock of one mineral takes the same packing
+        if (other.empty() || std::equal(phases.begin(), phases.end(), other.begin(), other.end(), same))
+            continue;  // a rock of one mineral takes the same packing
         root.check({}, [&] {
-            root.fail("variant", fmt::format("\"{}\" and \"{}\" differ in the minerals of which their packing is made: names, shares or diameters of [[material.phase]]", first->name, variant.name),
+            root.fail("variant",
+                      fmt::format("\"{}\" and \"{}\" differ in the minerals of which their packing is made: names, shares or "
+                                  "diameters of [[material.phase]]",
+                                  first->name, variant.name),
                       "the same minerals, shares and diameters in all variants, since these share packings", "two jobs");
         });
         break;
@@ -158,7 +170,8 @@ std::vector<Mineral> minerals_with_sizes(const JobTable& root, const std::vector
 void check_variants(const JobTable& root, const Job& job) {
     if (!root.has("variant") || !root.sound({"test", "run"})) return;
     const std::vector<JobTable> tables = variant_tables(root);
-    for (std::size_t i = 0; i < tables.size(); ++i) tables[i].check({"seeds", "tests"}, [&] { check_variant(tables[i], job.variants[i], job); });
+    for (std::size_t i = 0; i < tables.size(); ++i)
+        tables[i].check({"seeds", "tests"}, [&] { check_variant(tables[i], job.variants[i], job); });
 }
 
 }  // namespace feldspar

@@ -38,7 +38,9 @@ public:
         text_ += (text_.empty() ? "" : "\n") + title + "\n";
     }
     void head(std::string_view path) { head(path, std::string(job_table(path).head)); }
-    void raw(std::string_view key, const std::string& value) { text_ += std::string(table_->key(key).name) + " = " + value + "\n"; }
+    void raw(std::string_view key, const std::string& value) {
+        text_ += std::string(table_->key(key).name) + " = " + value + "\n";
+    }
     void word(std::string_view key, const std::string& value) { raw(key, quote(value)); }
     void number(std::string_view key, double value) { raw(key, format_exact(value)); }
     void quantity(std::string_view key, double value) { quantity(key, value, table_->key(key).value.element.dimension); }
@@ -68,14 +70,17 @@ void write_cutouts(Lines& out, const OutlineSpec& outline) {
     std::vector<std::string> items;
     const auto label = [](const std::string& given) { return given.empty() ? std::string() : ", label = " + quote(given); };
     for (const HoleSpec& hole : outline.holes) {
-        const std::string shape = hole.vertices_m.empty() ? fmt::format("centre = {}, diameter = {}", point(hole.centre_m), si(hole.diameter_m, Dimension::length))
+        const std::string shape = hole.vertices_m.empty() ? fmt::format("centre = {}, diameter = {}", point(hole.centre_m),
+                                                                        si(hole.diameter_m, Dimension::length))
                                                           : fmt::format("vertices = {}", points(hole.vertices_m));
         items.push_back(fmt::format("{{ {}{} }}", shape, label(hole.label)));
     }
     if (!items.empty()) out.raw("holes", list(items));
     items.clear();
     for (const NotchSpec& notch : outline.notches)
-        items.push_back(fmt::format("{{ from = {}, to = {}, width = {}{}{} }}", point(notch.from_m), point(notch.to_m), si(notch.width_m, Dimension::length), label(notch.label), notch.joined ? ", joined = true" : ""));
+        items.push_back(fmt::format("{{ from = {}, to = {}, width = {}{}{} }}", point(notch.from_m), point(notch.to_m),
+                                    si(notch.width_m, Dimension::length), label(notch.label),
+                                    notch.joined ? ", joined = true" : ""));
     if (!items.empty()) out.raw("notches", list(items));
 }
 
@@ -117,7 +122,8 @@ void write_outline(Lines& out, const OutlineSpec& outline) {
             for (const std::string& label : outline.edge_labels) items.push_back(quote(label));
             if (!items.empty()) out.raw("edge_labels", fmt::format("[{}]", fmt::join(items, ", ")));
             items.clear();
-            for (const ArcSpec& arc : outline.arcs) items.push_back(fmt::format("{{ edge = {}, through = {} }}", arc.edge, point(arc.through_m)));
+            for (const ArcSpec& arc : outline.arcs)
+                items.push_back(fmt::format("{{ edge = {}, through = {} }}", arc.edge, point(arc.through_m)));
             if (!items.empty()) out.raw("arcs", list(items));
             break;
         }
@@ -160,7 +166,7 @@ void write_specimen(Lines& out, const SpecimenSpec& specimen) {
         if (!cells.file.empty()) out.word("file", std::filesystem::absolute(cells.file).string());
         out.raw("unit", si(cells.unit_m, Dimension::length));
         out.number("tolerance", cells.tolerance);
-    } else if (specimen.phase_sizes.empty()) {   // else each mineral has its own
+    } else if (specimen.phase_sizes.empty()) {  // else each mineral has its own
         out.raw("diameter", grain_sizes(specimen.grain_sizes));
     }
     if (specimen.crystal_sizes) out.raw("crystals", grain_sizes(*specimen.crystal_sizes));
@@ -185,7 +191,7 @@ void write_model(Lines& out, const ModelSpec& model, const std::string& place) {
 
 void write_materials(Lines& out, const Variant& variant, const std::string& place) {
     const ContactMaterial& contact = variant.contact;
-    if (variant.rock.minerals.phases.empty()) {   // else each mineral has its own
+    if (variant.rock.minerals.phases.empty()) {  // else each mineral has its own
         out.head("material.grain", "[" + place + "material.grain]");
         if (variant.model.kind == GrainKind::flexible) {
             out.quantity("E", variant.grain.E_Pa);
@@ -209,15 +215,18 @@ void write_materials(Lines& out, const Variant& variant, const std::string& plac
 
 void write_distribution(std::vector<std::string>& items, const Distribution& d) {
     items.push_back(fmt::format("distribution = \"{}\"", name(d.kind)));
-    if (d.kind == DistributionKind::weibull) items.push_back("modulus = " + format_exact(d.weibull_modulus));
-    else items.push_back("variation = " + format_exact(d.variation));
+    if (d.kind == DistributionKind::weibull)
+        items.push_back("modulus = " + format_exact(d.weibull_modulus));
+    else
+        items.push_back("variation = " + format_exact(d.variation));
     items.push_back("lowest = " + format_exact(d.lowest));
     if (std::isfinite(d.highest)) items.push_back("highest = " + format_exact(d.highest));
     if (d.correlation_length_m > 0.0) items.push_back("correlation_length = " + si(d.correlation_length_m, Dimension::length));
 }
 
 void write_changes(Lines& out, const ContactChanges& c) {
-    for (const auto& [key, value] : {std::pair{"Kn", c.Kn_Pa_m}, std::pair{"sigma_nt", c.sigma_nt_Pa}, std::pair{"tau", c.tau_Pa}, std::pair{"Gfn", c.Gfn_J_m2}, std::pair{"Gfs", c.Gfs_J_m2}})
+    for (const auto& [key, value] : {std::pair{"Kn", c.Kn_Pa_m}, std::pair{"sigma_nt", c.sigma_nt_Pa}, std::pair{"tau", c.tau_Pa},
+                                     std::pair{"Gfn", c.Gfn_J_m2}, std::pair{"Gfs", c.Gfs_J_m2}})
         if (value) out.quantity(key, *value);
     for (const auto& [key, value] : {std::pair{"eta", c.eta}, std::pair{"mu", c.mu}})
         if (value) out.number(key, *value);
@@ -264,10 +273,14 @@ void write_joints(Lines& out, const Variant& variant, const std::string& place) 
         out.word("name", joint.name);
         if (joint.set) {
             const JointSet& set = *joint.set;
-            std::vector<std::string> items{"dip = " + si(set.dip_rad, Dimension::angle), "dip_deviation = " + si(set.dip_deviation_rad, Dimension::angle),
-                                           "spacing = " + si(set.spacing_m, Dimension::length), "spacing_variation = " + format_exact(set.spacing_variation)};
+            std::vector<std::string> items{"dip = " + si(set.dip_rad, Dimension::angle),
+                                           "dip_deviation = " + si(set.dip_deviation_rad, Dimension::angle),
+                                           "spacing = " + si(set.spacing_m, Dimension::length),
+                                           "spacing_variation = " + format_exact(set.spacing_variation)};
             if (set.length_m > 0.0)
-                items.insert(items.end(), {"length = " + si(set.length_m, Dimension::length), "length_variation = " + format_exact(set.length_variation), "persistence = " + format_exact(set.persistence)});
+                items.insert(items.end(), {"length = " + si(set.length_m, Dimension::length),
+                                           "length_variation = " + format_exact(set.length_variation),
+                                           "persistence = " + format_exact(set.persistence)});
             out.raw("set", fmt::format("{{ {} }}", fmt::join(items, ", ")));
         } else if (!joint.cut.empty()) {
             out.word("cut", joint.cut);
@@ -344,8 +357,10 @@ void write_plates(Lines& out, const TestSpec& test, const Job& job) {
     if (!particles && !method_of(test).specimen.plates && !(test.plate_mu.value_or(0.0) > 0.0)) return;
     if (method_of(test).specimen.own_disc) out.word("plates", name(test.plates));
     if (test.plates == PlateShape::curved) out.number("jaw_radius", test.jaw_radius);
-    if (test.plate_Kn_Pa_m) out.quantity("plate_Kn", *test.plate_Kn_Pa_m);
-    else out.number("plate_stiffness_factor", test.plate_stiffness_factor);
+    if (test.plate_Kn_Pa_m)
+        out.quantity("plate_Kn", *test.plate_Kn_Pa_m);
+    else
+        out.number("plate_stiffness_factor", test.plate_stiffness_factor);
     if (test.plate_mu) out.number("plate_mu", *test.plate_mu);
     if (particles && method_of(test).specimen.confined) out.raw("membrane_plates", std::to_string(test.membrane_plates));
 }
@@ -361,9 +376,9 @@ void write_until(Lines& out, const TestSpec& test) {
 void write_fixture(Lines& out, const FixtureSpec& fixture) {
     const FixtureForm form = fixture.kind == FixtureKind::nodes      ? FixtureForm::boundary
                              : fixture.kind == FixtureKind::pressure ? FixtureForm::pressure
-                             : fixture.radius_m == 0.0          ? FixtureForm::plate
-                             : fixture.radius_m > 0.0           ? FixtureForm::jaw
-                                                                : FixtureForm::roller;
+                             : fixture.radius_m == 0.0               ? FixtureForm::plate
+                             : fixture.radius_m > 0.0                ? FixtureForm::jaw
+                                                                     : FixtureForm::roller;
     const auto flag = [&](const char* key, bool value) { out.raw(key, value ? "true" : "false"); };
     out.head("test.fixture");
     out.word("name", fixture.name);
@@ -386,8 +401,10 @@ void write_fixture(Lines& out, const FixtureSpec& fixture) {
     if (fixture.contact.Kn_Pa_m > 0.0) out.quantity("Kn", fixture.contact.Kn_Pa_m);
     out.number("mu", fixture.contact.mu);
     if (fixture.pressed) {
-        if (fixture.force_N != 0.0) out.quantity("force", fixture.force_N, Dimension::force);
-        else out.quantity("pressure", fixture.pressure_Pa);
+        if (fixture.force_N != 0.0)
+            out.quantity("force", fixture.force_N, Dimension::force);
+        else
+            out.quantity("pressure", fixture.pressure_Pa);
         if (fixture.spring_Pa_m != 0.0) out.quantity("spring", fixture.spring_Pa_m);
         return;
     }
@@ -396,13 +413,20 @@ void write_fixture(Lines& out, const FixtureSpec& fixture) {
 
 GaugeForm form_of(const GaugeSpec& gauge) {
     switch (gauge.kind) {
-        case GaugeKind::force: return GaugeForm::force;
-        case GaugeKind::strain: return GaugeForm::strain;
-        case GaugeKind::mean_stress: return GaugeForm::mean_stress;
-        case GaugeKind::mean_strain: return GaugeForm::mean_strain;
-        case GaugeKind::hole_stress: return GaugeForm::hole_stress;
-        case GaugeKind::energy: return GaugeForm::energy;
-        case GaugeKind::displacement: break;
+        case GaugeKind::force:
+            return GaugeForm::force;
+        case GaugeKind::strain:
+            return GaugeForm::strain;
+        case GaugeKind::mean_stress:
+            return GaugeForm::mean_stress;
+        case GaugeKind::mean_strain:
+            return GaugeForm::mean_strain;
+        case GaugeKind::hole_stress:
+            return GaugeForm::hole_stress;
+        case GaugeKind::energy:
+            return GaugeForm::energy;
+        case GaugeKind::displacement:
+            break;
     }
     return gauge.points.size() == 2 ? GaugeForm::extension : GaugeForm::displacement;
 }
@@ -426,8 +450,10 @@ void write_gauge(Lines& out, const GaugeSpec& gauge) {
         write_circle(out, gauge.region);
         out.raw("direction", direction((1.0 / gauge.region.radius_m) * (gauge.points.front().at - gauge.region.a)));
     } else if (form == GaugeForm::mean_stress || form == GaugeForm::mean_strain) {
-        if (gauge.region.radius_m > 0.0) write_circle(out, gauge.region);
-        else out.raw("box", "[" + point(gauge.region.a) + ", " + point(gauge.region.b) + "]");
+        if (gauge.region.radius_m > 0.0)
+            write_circle(out, gauge.region);
+        else
+            out.raw("box", "[" + point(gauge.region.a) + ", " + point(gauge.region.b) + "]");
         out.raw("direction", direction(gauge.direction));
         if (gauge.normal != Vec2{}) out.raw("normal", direction(gauge.normal));
     } else if (form == GaugeForm::displacement && gauge.points.empty()) {
@@ -451,14 +477,18 @@ void write_method_key(Lines& out, const TestSpec& test, const MethodKey& key) {
     if (key.form != MethodKeyForm::quantity) return out.number(name, value);
     if (!key.list) return out.quantity(name, value);
     std::string values;
-    for (const double one : found->second) values += (values.empty() ? "" : ", ") + as_written(job_key("test", key.name).value, one);
+    for (const double one : found->second)
+        values += (values.empty() ? "" : ", ") + as_written(job_key("test", key.name).value, one);
     out.raw(name, "[" + values + "]");
 }
 
 std::string stage_in_braces(const TestSpec& test, const StageSpec& stage) {
     std::string text = fmt::format("kind = {}", quote(name(stage.kind)));
-    if (stage.kind == StageKind::hold) return stage.travel_times ? text + fmt::format(", travel_times = {}", format_exact(*stage.travel_times)) : text;
-    if (stage.kind == StageKind::confine) return text + fmt::format(", sigma3 = {}{}, keep = {}", si(stage.sigma3_Pa, Dimension::stress), stage.fixture.empty() ? "" : ", fixture = " + quote(stage.fixture), quote(name(stage.keep)));
+    if (stage.kind == StageKind::hold)
+        return stage.travel_times ? text + fmt::format(", travel_times = {}", format_exact(*stage.travel_times)) : text;
+    if (stage.kind == StageKind::confine)
+        return text + fmt::format(", sigma3 = {}{}, keep = {}", si(stage.sigma3_Pa, Dimension::stress),
+                                  stage.fixture.empty() ? "" : ", fixture = " + quote(stage.fixture), quote(name(stage.keep)));
     if (stage.end == StageEnd::test) return text;
     text += fmt::format(", until = {}", quote(stage.end == StageEnd::gauge ? stage.gauge : name(stage.end)));
     if (stage.end == StageEnd::reversal) return text;
@@ -475,8 +505,11 @@ std::string stages(const TestSpec& test) {
     for (const StageGroup& group : test.stages) {
         std::vector<std::string> members;
         for (const StageSpec& stage : group.stages) members.push_back("{ " + stage_in_braces(test, stage) + " }");
-        if (group.times == 1 && members.size() == 1) groups.push_back(members.front());
-        else groups.push_back(fmt::format("{{ kind = \"cycle\", {}stages = {} }}", group.times == 0 ? "" : fmt::format("times = {}, ", group.times), list(members)));
+        if (group.times == 1 && members.size() == 1)
+            groups.push_back(members.front());
+        else
+            groups.push_back(fmt::format("{{ kind = \"cycle\", {}stages = {} }}",
+                                         group.times == 0 ? "" : fmt::format("times = {}, ", group.times), list(members)));
     }
     return list(groups);
 }
@@ -544,13 +577,16 @@ void write_laboratory(Lines& out, const Job& job) {
     if (job.laboratory.empty() && job.laboratory_confined.empty()) return;
     out.head("laboratory");
     for (const auto& [key, value] : job.laboratory) {
-        if (job_key("laboratory", key).value.element.form == ValueForm::quantity) out.quantity(key, value);
-        else out.number(key, value);
+        if (job_key("laboratory", key).value.element.form == ValueForm::quantity)
+            out.quantity(key, value);
+        else
+            out.number(key, value);
     }
     if (job.laboratory_confined.empty()) return;
     std::string pairs;
     for (const ConfinedStrength& c : job.laboratory_confined)
-        pairs += (pairs.empty() ? "" : ", ") + ("[\"" + format_si(c.sigma3_Pa, Dimension::stress) + "\", \"" + format_si(c.sigma1_Pa, Dimension::stress) + "\"]");
+        pairs += (pairs.empty() ? "" : ", ") + ("[\"" + format_si(c.sigma3_Pa, Dimension::stress) + "\", \"" +
+                                                format_si(c.sigma1_Pa, Dimension::stress) + "\"]");
     out.raw("confined", "[" + pairs + "]");
 }
 

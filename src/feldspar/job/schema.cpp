@@ -41,16 +41,26 @@ Json reference(std::string_view table) { return {{"$ref", "#/definitions/" + nam
 Json value_of(const KeyElement& element) {
     switch (element.form) {
         case ValueForm::quantity:
-            if (element.dimension == Dimension::fraction)   // of keys whose dimension another one decides
-                return {{"anyOf", {{{"type", "string"}, {"pattern", number_with_unit}}, {{"type", "string"}, {"pattern", number_with_percent}}}}};
+            if (element.dimension == Dimension::fraction)  // of keys whose dimension another one decides
+                return {{"anyOf",
+                         {{{"type", "string"}, {"pattern", number_with_unit}},
+                          {{"type", "string"}, {"pattern", number_with_percent}}}}};
             return {{"type", "string"}, {"pattern", number_with_unit}};
-        case ValueForm::number: return bounded({{"type", "number"}}, element.range);
-        case ValueForm::fraction: return {{"anyOf", {bounded({{"type", "number"}}, element.range), {{"type", "string"}, {"pattern", number_with_percent}}}}};
-        case ValueForm::integer: return whole(element.range);
-        case ValueForm::flag: return {{"type", "boolean"}};
-        case ValueForm::text: return {{"type", "string"}, {"minLength", 1}};
-        case ValueForm::choice: return {{"type", "string"}, {"enum", element.words}};
-        case ValueForm::table: break;
+        case ValueForm::number:
+            return bounded({{"type", "number"}}, element.range);
+        case ValueForm::fraction:
+            return {{"anyOf",
+                     {bounded({{"type", "number"}}, element.range), {{"type", "string"}, {"pattern", number_with_percent}}}}};
+        case ValueForm::integer:
+            return whole(element.range);
+        case ValueForm::flag:
+            return {{"type", "boolean"}};
+        case ValueForm::text:
+            return {{"type", "string"}, {"minLength", 1}};
+        case ValueForm::choice:
+            return {{"type", "string"}, {"enum", element.words}};
+        case ValueForm::table:
+            break;
     }
     return reference(element.table);
 }
@@ -66,15 +76,18 @@ Json array_of(Json items, int least) { return {{"type", "array"}, {"items", std:
 Json type_of(const KeyValue& value) {
     const Json one = element_of(value.element);
     switch (value.shape) {
-        case ValueShape::one: return one;
-        case ValueShape::one_or_list: return {{"anyOf", {one, array_of(one, 1)}}};
+        case ValueShape::one:
+            return one;
+        case ValueShape::one_or_list:
+            return {{"anyOf", {one, array_of(one, 1)}}};
         case ValueShape::pairs: {
             Json pair = array_of(Json::array({one, element_of(*value.second)}), 2);
             pair["additionalItems"] = false;
             return array_of(std::move(pair), 0);
         }
         case ValueShape::list:
-        case ValueShape::tables: break;
+        case ValueShape::tables:
+            break;
     }
     return array_of(one, 1);
 }
@@ -109,8 +122,10 @@ Json object_of(const KeyTable& table) {
         properties[std::string(key.name)] = property_of(key);
         if (key.usual.need == KeyNeed::always) needed.push_back(key.name);
     }
-    Json object{
-        {"type", "object"}, {"description", sentence(without_markup(table.meaning))}, {"properties", std::move(properties)}, {"additionalProperties", false}};
+    Json object{{"type", "object"},
+                {"description", sentence(without_markup(table.meaning))},
+                {"properties", std::move(properties)},
+                {"additionalProperties", false}};
     if (!needed.empty()) object["required"] = std::move(needed);
     return object;
 }

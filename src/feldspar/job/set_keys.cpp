@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::string_view kOption = "--set ";
 
-[[noreturn]] void refuse(const std::string& setting, const std::string& problem, const std::string& allowed = {}, const std::string& suggestion = {}) {
+[[noreturn]] void refuse(const std::string& setting, const std::string& problem, const std::string& allowed = {},
+                         const std::string& suggestion = {}) {
     throw InputError({std::string(kOption) + "'" + setting + "'", 0, 0, {}}, problem, allowed, suggestion);
 }
 
@@ -42,18 +43,21 @@ toml::table parse_setting(const std::string& setting) {
     if (value.empty()) refuse(setting, "has no value", form);
     const std::string source = std::string(kOption) + "'" + setting + "'";
     const auto read = [&](const std::string& written) { return toml::parse(key + " = " + written, source); };
-    const auto single = [](const toml::table& tree) {   // a value with a line end could bring further keys
+    const auto single = [](const toml::table& tree) {  // a value with a line end could bring further keys
         const toml::table* table = &tree;
-        while (table->size() == 1 && table->begin()->second.is_table() && !table->begin()->second.as_table()->is_inline()) table = table->begin()->second.as_table();
+        while (table->size() == 1 && table->begin()->second.is_table() && !table->begin()->second.as_table()->is_inline())
+            table = table->begin()->second.as_table();
         return table->size() == 1;
     };
     try {
         toml::table tree = read(value);
         const toml::node* node = &tree;
-        while (node->is_table() && !node->as_table()->empty() && !node->as_table()->is_inline()) node = &node->as_table()->begin()->second;
+        while (node->is_table() && !node->as_table()->empty() && !node->as_table()->is_inline())
+            node = &node->as_table()->begin()->second;
         if (single(tree) && !node->is_date() && !node->is_time() && !node->is_date_time()) return tree;
     } catch (const toml::parse_error& error) {
-        if (std::string_view("[{\"'").find(value.front()) != std::string_view::npos) refuse(setting, "syntax error: " + std::string(error.description()), form);
+        if (std::string_view("[{\"'").find(value.front()) != std::string_view::npos)
+            refuse(setting, "syntax error: " + std::string(error.description()), form);
     }
     try {
         return read(quoted(value));
@@ -79,12 +83,15 @@ void lay(toml::table& under, toml::table&& over, const std::string& setting, con
 std::vector<std::size_t> tables_with(const toml::array& list, std::string_view key, std::string_view word) {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < list.size(); ++i)
-        if (const toml::table* table = list.get(i)->as_table(); table != nullptr && (*table)[key].value<std::string_view>() == word) found.push_back(i);
+        if (const toml::table* table = list.get(i)->as_table();
+            table != nullptr && (*table)[key].value<std::string_view>() == word)
+            found.push_back(i);
     return found;
 }
 
 // The tables of a list that a word of a setting names; none if it is one of their keys.
-std::vector<std::size_t> named_tables(const toml::array& list, std::string_view list_name, std::string_view word, const std::string& setting) {
+std::vector<std::size_t> named_tables(const toml::array& list, std::string_view list_name, std::string_view word,
+                                      const std::string& setting) {
     if (list_name != "test") return tables_with(list, "name", word);
     const auto method = find_method_called(word);
     if (!method) return {};
@@ -103,10 +110,12 @@ void set_in_list(toml::array& list, const std::string& list_name, const std::str
     const bool named = !chosen.empty();
     for (std::size_t i = 0; !named && i < list.size(); ++i) chosen.push_back(i);
     for (const std::size_t i : chosen) {
-        toml::table again = parse_setting(setting);   // to be moved from
+        toml::table again = parse_setting(setting);  // to be moved from
         toml::table& inside = *again.begin()->second.as_table();
         toml::table* table = list.get(i)->as_table();
-        if (table != nullptr) lay(*table, std::move(named ? *inside.get(word)->as_table() : inside), setting, named ? list_name + "." + word : list_name);
+        if (table != nullptr)
+            lay(*table, std::move(named ? *inside.get(word)->as_table() : inside), setting,
+                named ? list_name + "." + word : list_name);
     }
 }
 
@@ -121,8 +130,10 @@ void set_keys(toml::table& job, std::span<const std::string> settings) {
         const toml::node& value = tree.begin()->second;
         toml::node* there = job.get(key);
         toml::array* list = there != nullptr ? there->as_array() : nullptr;
-        if (list != nullptr && value.is_table() && !value.as_table()->is_inline()) set_in_list(*list, key, setting);
-        else lay(job, std::move(tree), setting, {});
+        if (list != nullptr && value.is_table() && !value.as_table()->is_inline())
+            set_in_list(*list, key, setting);
+        else
+            lay(job, std::move(tree), setting, {});
     }
 }
 

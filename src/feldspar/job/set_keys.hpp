@@ -8,12 +8,15 @@
 
 namespace feldspar {
 
-/// Lays keys over a job. Each of `settings` is "key=value": a dotted key ("material.contact.tau"), and a value as the file would have it. Text needs no quotes: what is no value of TOML is text ("30 MPa", "rigid").
+/// Lays keys over a job. Each of `settings` is "key=value": a dotted key ("material.contact.tau"), and a value as the file would
+/// have it. Text needs no quotes: what is no value of TOML is text ("30 MPa", "rigid").
 ///
-/// `test.plate_mu` is for every [[test]], `test.brazilian.plate_Kn` for those of that kind, whose short name (BTS) is taken, too; `variant.numerics.accuracy` for every [[variant]],
-/// `variant.rigid.numerics.accuracy` for the one of that name (in quotes if it has a dot or a blank). Tables that are missing are made. Later settings go before earlier ones.
-/// What the reader says of such a value or key names the setting instead of a line of the file.
-/// @throws InputError for a setting without a key or '=', a value that cannot be read, a test or variant that the job has not, or a key in what is no table
+/// `test.plate_mu` is for every [[test]], `test.brazilian.plate_Kn` for those of that kind, whose short name (BTS) is taken, too;
+/// `variant.numerics.accuracy` for every [[variant]], `variant.rigid.numerics.accuracy` for the one of that name (in quotes if it
+/// has a dot or a blank). Tables that are missing are made. Later settings go before earlier ones. What the reader says of such a
+/// value or key names the setting instead of a line of the file.
+/// @throws InputError for a setting without a key or '=', a value that cannot be read, a test or variant that the job has not, or
+/// a key in what is no table
 void set_keys(toml::table& job, std::span<const std::string> settings);
 
 /// Whether a place in the source of a node is a setting, and not a line of a file.

@@ -6,7 +6,7 @@
 #undef TOML_SHARED_LIB
 #define TOML_HEADER_ONLY 0
 #pragma push_macro("NDEBUG")
-#undef NDEBUG   // with NDEBUG toml++ would turn some assertions into assumptions of the optimiser
+#undef NDEBUG  // with NDEBUG toml++ would turn some assertions into assumptions of the optimiser
 #define TOML_ASSERT(condition) static_cast<void>(0)
 #include <toml++/toml.h>
 #pragma pop_macro("NDEBUG")

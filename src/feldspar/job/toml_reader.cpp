@@ -14,7 +14,7 @@
 namespace feldspar {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();   // stands in for a number that could not be read
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();  // stands in for a number that could not be read
 constexpr std::size_t largest_file = 16u << 20;  // bytes; what a user writes is a page, so anything beyond is a mistaken file
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
@@ -110,7 +110,8 @@ std::string read_toml_file(const std::filesystem::path& file, const std::string&
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
     if (!stream)
-        throw InputError(place, std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"), {}, suggestion);
+        throw InputError(place, std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"), {},
+                         suggestion);
     std::string text(largest_file + 1, '\0');
     stream.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(stream.gcount()));
@@ -134,16 +135,20 @@ TableReader::TableReader(const toml::table& table, std::string path, std::string
     for (const auto& [key, value] : table)
         if (std::find(known.begin(), known.end(), key.str()) == known.end()) unknown.push_back(&key);
     // in the order of the file, not of the alphabet
-    std::sort(unknown.begin(), unknown.end(), [](const toml::key* a, const toml::key* b) { return a->source().begin < b->source().begin; });
+    std::sort(unknown.begin(), unknown.end(),
+              [](const toml::key* a, const toml::key* b) { return a->source().begin < b->source().begin; });
     if (unknown.empty()) return;
-    std::vector<std::string_view> likely(known.begin(), known.end());   // of equally near ones the key that is not there yet was meant
+    std::vector<std::string_view> likely(known.begin(),
+                                         known.end());  // of equally near ones the key that is not there yet was meant
     std::stable_partition(likely.begin(), likely.end(), [&](std::string_view key) { return !table.contains(key); });
     for (const toml::key* key : unknown) {
-        const InputError error(place_of(key->source(), file_, full(key->str())), "unknown key", listed(known), did_you_mean(key->str(), likely));
+        const InputError error(place_of(key->source(), file_, full(key->str())), "unknown key", listed(known),
+                               did_you_mean(key->str(), likely));
         if (mistakes_ == nullptr) throw error;
         const std::string_view meant = nearest(key->str(), likely);
         // a table may be there in part, under its right name
-        const bool missed = !meant.empty() && (!has(meant) || table.get(key->str())->is_table() || table.get(key->str())->is_array_of_tables());
+        const bool missed =
+            !meant.empty() && (!has(meant) || table.get(key->str())->is_table() || table.get(key->str())->is_array_of_tables());
         mistakes_->add(error, missed ? full(meant) : std::string());
     }
 }
@@ -223,7 +228,8 @@ TableReader TableReader::table(std::string_view key, std::span<const std::string
     return inside;
 }
 
-std::vector<TableReader> TableReader::tables(std::string_view key, std::string_view what, std::span<const std::string_view> known, int level) const {
+std::vector<TableReader> TableReader::tables(std::string_view key, std::string_view what, std::span<const std::string_view> known,
+                                             int level) const {
     const std::string head = "[[" + without_numbers(full(key)) + "]]";
     std::vector<TableReader> readers;
     if (has(key) && find(key)->is_table()) {
@@ -235,7 +241,8 @@ std::vector<TableReader> TableReader::tables(std::string_view key, std::string_v
         ++number;
         check({}, [&] {
             if (!node.is_table()) fail_at(node, key, shown(node) + " is not " + std::string(what), "a table headed " + head);
-            readers.emplace_back(*node.as_table(), full(key) + "[" + std::to_string(number) + "]", file_, known, level, mistakes_);
+            readers.emplace_back(*node.as_table(), full(key) + "[" + std::to_string(number) + "]", file_, known, level,
+                                 mistakes_);
         });
     }
     if (number == 0) check({key}, [&] { fail(key, "the list is empty", "one " + head + " or more"); });
@@ -276,7 +283,8 @@ double TableReader::number(std::string_view key, const Range& range, std::option
     if (!has(key) && fallback) return *fallback;
     return noted(key, fallback.value_or(nothing), [&] {
         const toml::node& node = must_have(key);
-        if (!node.is_number()) fail(key, shown(node) + " is not a plain number", bounded(range, "a number without quotes or unit"));
+        if (!node.is_number())
+            fail(key, shown(node) + " is not a plain number", bounded(range, "a number without quotes or unit"));
         const double value = *node.value<double>();
         if (!std::isfinite(value)) fail(key, shown(node) + " is not a finite number", bounded(range, "a number"));
         if (!range.contains(value)) fail(key, shown(node) + " is not allowed", bounded(range, "a number"));

@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/range.hpp"
 #include "feldspar/base/units.hpp"
 #include "feldspar/job/mistakes.hpp"
-#include "feldspar/base/range.hpp"
 #include "feldspar/job/toml_include.hpp"
 
 namespace feldspar {
@@ -38,14 +38,15 @@ inline constexpr int not_given = std::numeric_limits<int>::max();
 
 /// One table, with the names that may stand in it.
 ///
-/// With a list of mistakes reading goes on after one: it is noted, and its key takes its fallback, or a value that stands in (not-a-number, "", the
-/// first of the choices, the lowest whole number, an empty list or table). What rests on such a key is to be asked for by check() or after sound(),
-/// else one mistake would cause messages that only follow from it. Whoever made the list throws at the end, so no such value is ever used. Without a
-/// list the first mistake is thrown.
+/// With a list of mistakes reading goes on after one: it is noted, and its key takes its fallback, or a value that stands in
+/// (not-a-number, "", the first of the choices, the lowest whole number, an empty list or table). What rests on such a key is to
+/// be asked for by check() or after sound(), else one mistake would cause messages that only follow from it. Whoever made the
+/// list throws at the end, so no such value is ever used. Without a list the first mistake is thrown.
 class TableReader {
 public:
     /// @param path   dotted path of the table, "" for the file itself
-    /// @param known  all keys that may stand in it. Any other is a mistake, with "did you mean"; the key that was meant counts as spoilt
+    /// @param known  all keys that may stand in it. Any other is a mistake, with "did you mean"; the key that was meant counts as
+    /// spoilt
     /// @param level  among tables that lie over each other: a smaller one goes before a larger one
     /// @param mistakes  takes those of this table and of all tables in it; must outlive them
     TableReader(const toml::table& table, std::string path, std::string file, std::span<const std::string_view> known,
@@ -106,8 +107,10 @@ public:
     }
 
     /// The tables of the list [[key]], which must hold one at least, in order. @param what  one of them in words, "a test"
-    std::vector<TableReader> tables(std::string_view key, std::string_view what, std::span<const std::string_view> known, int level = 0) const;
-    std::vector<TableReader> tables(std::string_view key, std::string_view what, std::initializer_list<std::string_view> known, int level = 0) const {
+    std::vector<TableReader> tables(std::string_view key, std::string_view what, std::span<const std::string_view> known,
+                                    int level = 0) const;
+    std::vector<TableReader> tables(std::string_view key, std::string_view what, std::initializer_list<std::string_view> known,
+                                    int level = 0) const {
         return tables(key, what, std::span(known.begin(), known.size()), level);
     }
 
@@ -137,8 +140,8 @@ public:
         return choice_among<Value>(key, choices, fallback);
     }
 
-    /// The same readings for a value that stands in a list; `key` is what messages call it. @throws InputError also if mistakes are collected
-    /// (see check()).
+    /// The same readings for a value that stands in a list; `key` is what messages call it. @throws InputError also if mistakes
+    /// are collected (see check()).
     double quantity_of(const toml::node& node, std::string_view key, Dimension dimension, const Range& range) const;
     double fraction_of(const toml::node& node, std::string_view key, const Range& range) const;
     long long integer_of(const toml::node& node, std::string_view key, long long low, long long high) const;
@@ -153,7 +156,8 @@ public:
 
 private:
     template <class Value>
-    Value choice_among(std::string_view key, std::span<const std::pair<std::string_view, Value>> choices, std::optional<Value> fallback) const {
+    Value choice_among(std::string_view key, std::span<const std::pair<std::string_view, Value>> choices,
+                       std::optional<Value> fallback) const {
         if (!has(key) && fallback) return *fallback;
         return noted(key, fallback.value_or(choices.front().second), [&] {
             const std::string given = text_of(must_have(key), key);

@@ -14,14 +14,16 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-// Constants of the rock by which a crack's displacement becomes a moment: of flexible grains theirs; else what the test has shown.
+// Constants of the rock by which a crack's displacement becomes a moment: of flexible grains theirs; else what the test has
+// shown.
 struct Lame {
     double lambda = nan, G = nan;
 };
 
 Lame lame_of(const TestResult& result) {
     const bool flexible = result.model.kind == GrainKind::flexible;
-    const double E = flexible ? result.grain.E_Pa : result.properties.E_initial_Pa, nu = flexible ? result.grain.nu : result.properties.nu_initial;
+    const double E = flexible ? result.grain.E_Pa : result.properties.E_initial_Pa,
+                 nu = flexible ? result.grain.nu : result.properties.nu_initial;
     const double G = E / (2.0 * (1.0 + nu));
     return {result.model.plane == PlaneState::strain ? 2.0 * G * nu / (1.0 - 2.0 * nu) : 2.0 * G * nu / (1.0 - nu), G};
 }
@@ -31,7 +33,8 @@ Mat2 moment_of(const Crack& crack, const Lame& rock) {
     const Vec2 n = crack.normal, d = crack.opening_m * n + crack.slip_m * rot90(n);
     const double trace = rock.lambda * crack.opening_m;
     const double A = crack.area_m2;
-    return {A * (trace + 2.0 * rock.G * d.x * n.x), A * rock.G * (d.x * n.y + d.y * n.x), A * rock.G * (d.x * n.y + d.y * n.x), A * (trace + 2.0 * rock.G * d.y * n.y)};
+    return {A * (trace + 2.0 * rock.G * d.x * n.x), A * rock.G * (d.x * n.y + d.y * n.x), A * rock.G * (d.x * n.y + d.y * n.x),
+            A * (trace + 2.0 * rock.G * d.y * n.y)};
 }
 
 // Magnitude, moment magnitude and R, once all cracks are in.
@@ -53,9 +56,11 @@ AcousticEmission gather_events(const TestResult& result, double radius_grains) {
     emission.radius_m = radius_grains * result.specimen->quality.cell_sizes.mean_m;
     emission.window_steps = emission.radius_m / result.length_m * result.travel_steps;
     const Lame rock = lame_of(result);
-    std::vector<std::size_t> active;   // events that a crack may still join, the oldest first
+    std::vector<std::size_t> active;  // events that a crack may still join, the oldest first
     for (const Crack& crack : result.cracks) {
-        std::erase_if(active, [&](std::size_t e) { return static_cast<double>(crack.step - emission.events[e].last_step) > emission.window_steps; });
+        std::erase_if(active, [&](std::size_t e) {
+            return static_cast<double>(crack.step - emission.events[e].last_step) > emission.window_steps;
+        });
         std::size_t joined = emission.events.size();
         double nearest = emission.radius_m;
         for (const std::size_t e : active)
@@ -64,7 +69,8 @@ AcousticEmission gather_events(const TestResult& result, double radius_grains) {
                 joined = e;
             }
         if (joined == emission.events.size()) {
-            emission.events.push_back({.first_step = crack.step, .axial_strain = crack.axial_strain, .axial_stress_Pa = crack.axial_stress_Pa});
+            emission.events.push_back(
+                {.first_step = crack.step, .axial_strain = crack.axial_strain, .axial_stress_Pa = crack.axial_stress_Pa});
             active.push_back(joined);
         }
         AcousticEvent& event = emission.events[joined];
@@ -74,7 +80,8 @@ AcousticEmission gather_events(const TestResult& result, double radius_grains) {
         event.shear_cracks += crack.mode == CrackMode::shear;
         event.energy_J += crack.energy_J;
         const Mat2 m = moment_of(crack, rock);
-        event.moment_Nm = {event.moment_Nm.xx + m.xx, event.moment_Nm.xy + m.xy, event.moment_Nm.yx + m.yx, event.moment_Nm.yy + m.yy};
+        event.moment_Nm = {event.moment_Nm.xx + m.xx, event.moment_Nm.xy + m.xy, event.moment_Nm.yx + m.yx,
+                           event.moment_Nm.yy + m.yy};
     }
     std::vector<double> magnitudes;
     std::vector<Vec2> places;
@@ -104,7 +111,8 @@ double magnitude_of_completeness(const std::vector<double>& magnitudes) {
     constexpr double kBin = 0.1, kCorrection = 0.2;
     std::map<long long, int> histogram;
     for (const double m : magnitudes) ++histogram[std::llround(m / kBin)];
-    const auto most = std::max_element(histogram.begin(), histogram.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most =
+        std::max_element(histogram.begin(), histogram.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     return most == histogram.end() ? nan : kBin * static_cast<double>(most->first) + kCorrection;
 }
 
@@ -126,8 +134,8 @@ BValue b_value(std::vector<double> magnitudes, double completeness, double bin) 
 }
 
 double correlation_dimension(const std::vector<Vec2>& places) {
-    constexpr double kFrom = 0.05, kTo = 0.30;   // of the largest distance: below a few points decide, above the specimen's edge
-    constexpr std::size_t kRadii = 12, kMost = 2000;   // of more places every n-th, as the pairs grow with the square
+    constexpr double kFrom = 0.05, kTo = 0.30;  // of the largest distance: below a few points decide, above the specimen's edge
+    constexpr std::size_t kRadii = 12, kMost = 2000;  // of more places every n-th, as the pairs grow with the square
     std::vector<Vec2> sample(std::min(places.size(), kMost));
     for (std::size_t i = 0; i < sample.size(); ++i) sample[i] = places[i * places.size() / sample.size()];
     const auto for_each_distance = [&](auto visit) {
@@ -140,11 +148,13 @@ double correlation_dimension(const std::vector<Vec2>& places) {
     double largest = 0.0;
     for_each_distance([&](double squared) { largest = std::max(largest, squared); });
     std::array<double, kRadii> r{};
-    for (std::size_t k = 0; k < kRadii; ++k) r[k] = std::sqrt(largest) * kFrom * std::pow(kTo / kFrom, static_cast<double>(k) / (kRadii - 1));
-    std::array<double, kRadii> closer{};   // pairs nearer than r[k], and not nearer than r[k - 1]
+    for (std::size_t k = 0; k < kRadii; ++k)
+        r[k] = std::sqrt(largest) * kFrom * std::pow(kTo / kFrom, static_cast<double>(k) / (kRadii - 1));
+    std::array<double, kRadii> closer{};  // pairs nearer than r[k], and not nearer than r[k - 1]
     for_each_distance([&](double squared) {
         if (squared >= r.back() * r.back()) return;
-        ++closer[static_cast<std::size_t>(std::find_if(r.begin(), r.end(), [&](double radius) { return squared < radius * radius; }) - r.begin())];
+        ++closer[static_cast<std::size_t>(
+            std::find_if(r.begin(), r.end(), [&](double radius) { return squared < radius * radius; }) - r.begin())];
     });
     std::partial_sum(closer.begin(), closer.end(), closer.begin());
     const double pairs = 0.5 * static_cast<double>(sample.size()) * (static_cast<double>(sample.size()) - 1.0);

@@ -15,14 +15,15 @@ StoredEnergy stored_energy(const Assembly& assembly, double since) {
     sum.fracture_J = packs.fracture;
     sum.friction_J = packs.friction;
     const Nodes& nodes = assembly.nodes;
-    Array<Vec2> u;   // of grains in no pack, if there are any
+    Array<Vec2> u;  // of grains in no pack, if there are any
     for (const int b : assembly.packs.loose_bodies) {
         const Body& grain = assembly.bodies[b];
         if (u.empty() && grain.triangle_begin < grain.triangle_end) u = nodes.displacement;
         for (int t = grain.triangle_begin; t < grain.triangle_end; ++t) {
             const Triangle& triangle = assembly.triangles[t];
             for (const int n : triangle.node) u[n] = nodes.displacement[n] - since * nodes.velocity[n];
-            sum.grains_J += triangle.volume_m3 * strain_energy_density(assembly.elasticity_of(b), displacement_gradient(u, triangle));
+            sum.grains_J +=
+                triangle.volume_m3 * strain_energy_density(assembly.elasticity_of(b), displacement_gradient(u, triangle));
         }
     }
     for (const BodyWork& work : assembly.body_work) {
@@ -38,8 +39,10 @@ double pressure_power(const Assembly& assembly) {
     double power = 0.0;
     for (const PressureEdge& edge : assembly.pressure_edges) {
         const Nodes& nodes = assembly.nodes;
-        const double length = edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(nodes.position(edge.node_b) - nodes.position(edge.node_a));
-        power -= 0.5 * assembly.pressure_Pa(assembly.dead_loads[edge.load]) * length * assembly.thickness_m * dot(edge.outward, nodes.velocity[edge.node_a] + nodes.velocity[edge.node_b]);
+        const double length =
+            edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(nodes.position(edge.node_b) - nodes.position(edge.node_a));
+        power -= 0.5 * assembly.pressure_Pa(assembly.dead_loads[edge.load]) * length * assembly.thickness_m *
+                 dot(edge.outward, nodes.velocity[edge.node_a] + nodes.velocity[edge.node_b]);
     }
     return power;
 }

@@ -11,11 +11,11 @@
 namespace feldspar {
 namespace {
 
-constexpr double kFrom = 0.25, kTo = 0.75;   // of the range of stress: where slopes are read
+constexpr double kFrom = 0.25, kTo = 0.75;  // of the range of stress: where slopes are read
 constexpr double none = CycleProperties::none;
 
 struct Rows {
-    std::size_t from = 0, to = 0;   // both included
+    std::size_t from = 0, to = 0;  // both included
 };
 
 class Reader {
@@ -25,7 +25,8 @@ public:
 
     double stress(std::size_t row) const { return sign_ * result_.history[row].axial_stress_Pa; }
     double strain(std::size_t row) const { return sign_ * result_.history[row].axial_strain; }
-    // In the middle of the specimen; of one that is not strained evenly the axial strain is that of the loading motion, and there is no other.
+    // In the middle of the specimen; of one that is not strained evenly the axial strain is that of the loading motion, and there
+    // is no other.
     double axial(std::size_t row) const { return evenly_ ? sign_ * result_.history[row].axial_strain_gauge : strain(row); }
     double lateral(std::size_t row) const { return evenly_ ? sign_ * result_.history[row].lateral_strain_gauge : none; }
 
@@ -36,7 +37,8 @@ public:
         return found;
     }
 
-    // Strains per stress where the stress is in the middle half between two stresses; not-a-number with fewer than two rows there.
+    // Strains per stress where the stress is in the middle half between two stresses; not-a-number with fewer than two rows
+    // there.
     struct Compliance {
         double strain = none, axial = none, lateral = none;
     };
@@ -51,7 +53,8 @@ public:
             laterals.push_back(lateral(r));
         }
         if (stresses.size() < 2) return {};
-        return {regression_line(stresses, strains).slope, regression_line(stresses, axials).slope, regression_line(stresses, laterals).slope};
+        return {regression_line(stresses, strains).slope, regression_line(stresses, axials).slope,
+                regression_line(stresses, laterals).slope};
     }
 
     // From the state where it begins to its largest stress, measured from there.
@@ -59,7 +62,8 @@ public:
         LoadingCurve curve;
         curve.stress_offset_Pa = stress(rows.from);
         for (std::size_t r = rows.from; r <= largest(rows); ++r)
-            curve.points.push_back({stress(r) - curve.stress_offset_Pa, strain(r) - strain(rows.from), axial(r) - axial(rows.from), lateral(r) - lateral(rows.from), r});
+            curve.points.push_back({stress(r) - curve.stress_offset_Pa, strain(r) - strain(rows.from),
+                                    axial(r) - axial(rows.from), lateral(r) - lateral(rows.from), r});
         return curve;
     }
 
@@ -91,9 +95,10 @@ std::vector<Cycle> split(const std::vector<StageRecord>& stages) {
     return unloads ? cycles : std::vector<Cycle>{};
 }
 
-// Most cycles are unloaded before their volume turns, and the waves of the motion make a largest value close to the top: it must have fallen from there.
+// Most cycles are unloaded before their volume turns, and the waves of the motion make a largest value close to the top: it must
+// have fallen from there.
 bool dilates(const LoadingCurve& curve) {
-    constexpr double kFallen = 0.002;   // of the growth, as in (P9)
+    constexpr double kFallen = 0.002;  // of the growth, as in (P9)
     const auto volume = [](const CurvePoint& p) { return p.strain_gauge + p.lateral_gauge; };
     double largest = 0.0;
     for (const CurvePoint& p : curve.points) largest = std::max(largest, volume(p));
@@ -126,7 +131,9 @@ CycleProperties read(const Reader& of, const Cycle& cycle, std::size_t origin, s
     p.peak_stress_Pa = of.stress(peak);
     p.peak_strain = of.strain(peak);
     p.sigma3_Pa = result.history[peak].sigma3_Pa;
-    if (unloaded_from_Pa) p.reloading_modulus_Pa = 1.0 / of.compliance({whole.from, peak}, of.stress(whole.from), std::min(*unloaded_from_Pa, p.peak_stress_Pa)).strain;
+    if (unloaded_from_Pa)
+        p.reloading_modulus_Pa =
+            1.0 / of.compliance({whole.from, peak}, of.stress(whole.from), std::min(*unloaded_from_Pa, p.peak_stress_Pa)).strain;
     if (cycle.unloading) {
         const Rows unloading{stages[*cycle.unloading].first_row, stages[*cycle.unloading].last_row};
         const double top = of.stress(unloading.from), end = of.stress(unloading.to), left = end - of.stress(origin);
@@ -162,7 +169,7 @@ std::vector<CycleProperties> cycles_of(const TestResult& result) {
         if (cycle.unloading) {
             unloaded_from_Pa = of.stress(result.stages[*cycle.unloading].first_row);
             if (std::isfinite(p.permanent_volumetric_strain)) {
-                damage += permanent_before - p.permanent_volumetric_strain;   // (P54): dilation counts
+                damage += permanent_before - p.permanent_volumetric_strain;  // (P54): dilation counts
                 permanent_before = p.permanent_volumetric_strain;
                 p.damage = damage;
             }

@@ -12,9 +12,10 @@ namespace feldspar {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double counted_fraction = 0.01;       // (P7)
-constexpr double departure_tolerance = 0.002;   // (P9), (P10): of the elastic strain at the peak; well above the waves of the motion
-constexpr double elastic_from = 0.10, elastic_to_least = 0.20, elastic_to_most = 0.40;   // (P9), of the peak
+constexpr double counted_fraction = 0.01;  // (P7)
+constexpr double departure_tolerance =
+    0.002;  // (P9), (P10): of the elastic strain at the peak; well above the waves of the motion
+constexpr double elastic_from = 0.10, elastic_to_least = 0.20, elastic_to_most = 0.40;  // (P9), of the peak
 
 double volumetric(const CurvePoint& p) { return p.strain_gauge + p.lateral_gauge; }
 

@@ -7,9 +7,9 @@ namespace feldspar {
 
 /// Stresses at which cracking starts and becomes unstable: total axial stress, not-a-number where the curve shows none.
 struct DamageThresholds {
-    double crack_volume_Pa;      ///< sigma_ci: the crack volumetric strain turns (P9)
-    double lateral_strain_Pa;    ///< sigma_ci: lateral strain response (P10)
-    double reversal_Pa;          ///< sigma_cd: the volumetric strain turns (P8)
+    double crack_volume_Pa;    ///< sigma_ci: the crack volumetric strain turns (P9)
+    double lateral_strain_Pa;  ///< sigma_ci: lateral strain response (P10)
+    double reversal_Pa;        ///< sigma_cd: the volumetric strain turns (P8)
 };
 
 /// @param first_crack_Pa  total axial stress at the first crack; not-a-number without one

@@ -9,15 +9,15 @@
 namespace feldspar {
 namespace {
 
-// Half the width of the central band (P26). A path along grain edges departs from a straight line by a grain to either side and starts
-// beside the axis by as much: two grains. In a disc of many grains the stress decides: within 0.1 D of the axis the tension across the
-// loaded diameter is at least 0.85 of that in the centre, ((1 - x^2)/(1 + x^2))^2 with x = 0.2 R.
+// Half the width of the central band (P26). A path along grain edges departs from a straight line by a grain to either side and
+// starts beside the axis by as much: two grains. In a disc of many grains the stress decides: within 0.1 D of the axis the
+// tension across the loaded diameter is at least 0.85 of that in the centre, ((1 - x^2)/(1 + x^2))^2 with x = 0.2 R.
 constexpr double band_of_diameter = 0.10;
 constexpr double band_of_grains = 2.0;
 
-// The cracks of neighbouring grain edges meet at a shared vertex, and those of one edge end where the next begins. What is left open is
-// an end point of an edge that has not broken: a sixth of an edge, some 0.1 of a grain. A middle that holds (0.4 of a grain) is a bridge
-// and must not be passed over.
+// The cracks of neighbouring grain edges meet at a shared vertex, and those of one edge end where the next begins. What is left
+// open is an end point of an edge that has not broken: a sixth of an edge, some 0.1 of a grain. A middle that holds (0.4 of a
+// grain) is a bridge and must not be passed over.
 constexpr double reach_of_grain = 0.25;
 
 bool cross_each_other(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
@@ -28,16 +28,20 @@ bool cross_each_other(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
 
 double distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
     if (cross_each_other(a, b, c, d)) return 0.0;
-    return std::min({distance_to_segment(a, c, d), distance_to_segment(b, c, d), distance_to_segment(c, a, b), distance_to_segment(d, a, b)});
+    return std::min(
+        {distance_to_segment(a, c, d), distance_to_segment(b, c, d), distance_to_segment(c, a, b), distance_to_segment(d, a, b)});
 }
 
 }  // namespace
 
-double LoadedDisc::band_half_width_m() const { return std::max(band_of_diameter * 2.0 * radius_m, band_of_grains * mean_grain_m); }
+double LoadedDisc::band_half_width_m() const {
+    return std::max(band_of_diameter * 2.0 * radius_m, band_of_grains * mean_grain_m);
+}
 double LoadedDisc::reach_m() const { return reach_of_grain * mean_grain_m; }
 
 std::optional<LoadedDisc> loaded_disc(const TestResult& result) {
-    if (method_of(result.test).reading != Reading::disc || !result.specimen || !result.specimen->outline.is_disc) return std::nullopt;
+    if (method_of(result.test).reading != Reading::disc || !result.specimen || !result.specimen->outline.is_disc)
+        return std::nullopt;
     const Outline& outline = result.specimen->outline;
     const LoadedDisc disc{outline.centre, outline.radius_m, result.specimen->quality.mean_diameter_m, outline.flat_height_m};
     if (!(disc.radius_m > 0.0) || !(disc.mean_grain_m > 0.0)) return std::nullopt;
@@ -82,7 +86,8 @@ void SplittingCrack::add(const Crack& crack) {
         for (double j = std::floor(low / size); j <= std::floor(high / size); ++j) {
             std::vector<int>& here = squares_[square((i + 0.5) * size, (j + 0.5) * size)];
             for (const int other : here)
-                if (root(other) != root(piece) && distance(from, to, pieces_[other].from, pieces_[other].to) <= reach) join(other, piece);
+                if (root(other) != root(piece) && distance(from, to, pieces_[other].from, pieces_[other].to) <= reach)
+                    join(other, piece);
             here.push_back(piece);
         }
     const int path = root(piece);

@@ -10,11 +10,14 @@ namespace feldspar {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-// Damping as a share of the critical damping of the Rayleigh quotient. The quotient of many modes lies above the slowest mode, which decides how long it takes.
+// Damping as a share of the critical damping of the Rayleigh quotient. The quotient of many modes lies above the slowest mode,
+// which decides how long it takes.
 constexpr double kOfCritical = 0.6;
 
 // Smallest factor > 0 with value + factor x change = limit; the start is below the limit.
-double reaches(double value, double change, double limit) { return change > 0.0 ? std::max(0.0, (limit - value) / change) : kNever; }
+double reaches(double value, double change, double limit) {
+    return change > 0.0 ? std::max(0.0, (limit - value) / change) : kNever;
+}
 
 // The same for shear with friction on top of the cohesion: ks |us| - mu max(-kn un, 0) = tau, per area.
 double shear_with_friction(const BondLaw& law, const BondState& base, double dun, double dus) {
@@ -85,7 +88,7 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
     PlatenWork none;
     Relaxation result;
     double largest_contacts = 0.0;
-    StepSequence steps(assembly, team);   // in between nodes are only read
+    StepSequence steps(assembly, team);  // in between nodes are only read
     while (result.steps < maximum_steps && !(stop && stop())) {
         force_before = nodes.force;
         velocity_before = nodes.velocity;
@@ -100,9 +103,11 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
             inertia += nodes.mass[n] * dot(v, v);
             force += norm({fx * nodes.force[n].x, fy * nodes.force[n].y});
         }
-        if (inertia > 0.0 && stiffness > 0.0) settings.viscous = std::min(1.9 / dt, kOfCritical * 2.0 * std::sqrt(stiffness / (dt * inertia)));
+        if (inertia > 0.0 && stiffness > 0.0)
+            settings.viscous = std::min(1.9 / dt, kOfCritical * 2.0 * std::sqrt(stiffness / (dt * inertia)));
         if (result.steps % 10 == 0) {
-            constexpr double kNothing = 1e-6;   // of the largest: a body that nothing holds together, behind an open joint, has come to rest without force
+            constexpr double kNothing =
+                1e-6;  // of the largest: a body that nothing holds together, behind an open joint, has come to rest without force
             const double contacts = mean_contact_force(assembly);
             largest_contacts = std::max(largest_contacts, contacts);
             if (contacts < kNothing * largest_contacts) {
@@ -118,7 +123,7 @@ Relaxation relax(Assembly& assembly, Team& team, Strength strength, double toler
         }
     }
     std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
-    for (BodyWork& work : assembly.body_work) work = {};   // relaxation is not part of the test's energy balance
+    for (BodyWork& work : assembly.body_work) work = {};  // relaxation is not part of the test's energy balance
     return result;
 }
 

@@ -13,7 +13,7 @@ namespace feldspar {
 
 /// Everything of a body that moves or remembers, besides velocities.
 struct BodyState {
-    double platen_travel_m = 0.0;               ///< along the loading platen's mode
+    double platen_travel_m = 0.0;  ///< along the loading platen's mode
     Array<Vec2> displacement_m;
     Bonds bonds;
 };
@@ -29,7 +29,7 @@ double first_damage(const Assembly& assembly, const BodyState& base, const BodyS
 
 struct Relaxation {
     long long steps = 0;
-    double residual = 0.0;    ///< mean |F| / mean |contact force| at the stop
+    double residual = 0.0;  ///< mean |F| / mean |contact force| at the stop
     bool converged = false;
 };
 

@@ -1,9 +1,9 @@
 #include "feldspar/lab/experiment.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -63,7 +63,8 @@ void require_gauge(const Gauges& gauges, const std::string& name, const char* ke
     if (gauges.find(name) >= 0) return;
     std::string known;
     for (const GaugeSpec& gauge : gauges.specs()) known += (known.empty() ? "" : ", ") + gauge.name;
-    throw InputError({.key = key}, fmt::format("the test of this specimen has no gauge called \"{}\"", name), known.empty() ? "none" : known,
+    throw InputError({.key = key}, fmt::format("the test of this specimen has no gauge called \"{}\"", name),
+                     known.empty() ? "none" : known,
                      name == "CMOD" ? "CMOD is measured on a beam with a notch in the middle of its lower side" : "");
 }
 
@@ -71,10 +72,12 @@ void require_gauge(const Gauges& gauges, const std::string& name, const char* ke
 
 void require_stage(const Experiment& e, const StageSpec& stage) {
     if (e.setup.numerics.kind != NumericsKind::adaptive)
-        throw InputError({.key = "test.stages"}, "stages turn the loading motion, which only adaptive numerics do", "[numerics] kind = \"adaptive\", or a test without stages");
+        throw InputError({.key = "test.stages"}, "stages turn the loading motion, which only adaptive numerics do",
+                         "[numerics] kind = \"adaptive\", or a test without stages");
     if (stage.end == StageEnd::gauge) require_gauge(e.gauges, stage.gauge, "test.stages");
     if (stage.kind == StageKind::confine && e.assembly.dead_loads.empty())
-        throw InputError({.key = "test.stages"}, "a stage changes the pressure on the specimen, and nothing presses on it", "stages without \"confine\", or a test with a pressure");
+        throw InputError({.key = "test.stages"}, "a stage changes the pressure on the specimen, and nothing presses on it",
+                         "stages without \"confine\", or a test with a pressure");
 }
 
 double mean_body_diameter(const Assembly& assembly) {
@@ -124,7 +127,9 @@ void Experiment::impose_motion() {
 }
 
 bool Experiment::has_dead_loads() const {
-    return !full_weight.empty() || std::any_of(assembly.dead_loads.begin(), assembly.dead_loads.end(), [](const DeadLoad& load) { return load.given_Pa != 0.0 || load.stiffness_Pa_m > 0.0; });
+    return !full_weight.empty() || std::any_of(assembly.dead_loads.begin(), assembly.dead_loads.end(), [](const DeadLoad& load) {
+        return load.given_Pa != 0.0 || load.stiffness_Pa_m > 0.0;
+    });
 }
 
 void Experiment::set_dead_loads(double share) {
@@ -135,7 +140,8 @@ void Experiment::set_dead_loads(double share) {
 
 double Experiment::weight_work(double since) const {
     double work = 0.0;
-    for (std::size_t n = 0; n < assembly.weight.size(); ++n) work += dot(assembly.weight[n], assembly.nodes.displacement[n] - since * assembly.nodes.velocity[n]);
+    for (std::size_t n = 0; n < assembly.weight.size(); ++n)
+        work += dot(assembly.weight[n], assembly.nodes.displacement[n] - since * assembly.nodes.velocity[n]);
     return work;
 }
 
@@ -148,7 +154,8 @@ void Experiment::run(int count) {
 }
 
 // The next contact stage moves the contacts by the new velocities. So that bodies and contacts stay together, the bodies take the
-// difference too, as if the step behind had been made at the new speed; the platens' work is taken with the mean of the two steps.
+// difference too, as if the step behind had been made at the new speed; the platens' work is taken with the mean of the two
+// steps.
 void Experiment::change_speed(double speed) {
     stepped = false;
     const double dv = speed - settings.speed;
@@ -166,7 +173,8 @@ void Experiment::change_speed(double speed) {
     settings.speed = speed;
 }
 
-// As change_speed() for the components that the fixture imposes: what its nodes and their contacts do is then of the step behind, too.
+// As change_speed() for the components that the fixture imposes: what its nodes and their contacts do is then of the step behind,
+// too.
 void Experiment::change_motion(std::size_t fixture, Vec2 motion) {
     Fixture& changed = assembly.fixtures[fixture];
     const Vec2 more = motion - changed.motion, dv = settings.speed * Vec2{changed.imposed.x * more.x, changed.imposed.y * more.y};
@@ -215,23 +223,24 @@ void choose_step(Experiment& e) {
         if (e.settings.dt > stable)
             throw InputError({.key = "numerics.time_step"},
                              fmt::format("a time step of {:.4g} s is unstable for this body", e.settings.dt),
-                             fmt::format("at most {:.4g} s (largest frequency {:.4g} 1/s, local damping {})", stable, std::sqrt(e.omega2), n.damping),
+                             fmt::format("at most {:.4g} s (largest frequency {:.4g} 1/s, local damping {})", stable,
+                                         std::sqrt(e.omega2), n.damping),
                              "leave the key out: 0.8 of the stable step is then used");
         e.omega2 *= e.settings.dt * e.settings.dt;
     } else if (e.omega2 > e.omega2_bound) {
         throw InputError({.key = "numerics.mass_factor"},
-                         fmt::format("a mass factor of {:.4g} is unstable for this body: largest omega^2 {:.4g}, limit {:.4g}", e.mass_factor,
-                                     e.omega2, e.omega2_bound),
+                         fmt::format("a mass factor of {:.4g} is unstable for this body: largest omega^2 {:.4g}, limit {:.4g}",
+                                     e.mass_factor, e.omega2, e.omega2_bound),
                          fmt::format("at least {:.4g}", e.mass_factor * e.omega2 / e.omega2_bound),
                          fmt::format("leave the key out: 1 + damping = {:.4g} is then used", 1.0 + n.damping));
     }
     const double density = mass(e.assembly) / volume(*e.setup.specimen);
     double distance = e.length_m;
-    if (e.method.start.time_of_mode) {   // its length may be any
+    if (e.method.start.time_of_mode) {  // its length may be any
         const Box box = bounding_box(e.setup.specimen->mesh.nodes);
         distance = std::max(box.upper.x - box.lower.x, box.upper.y - box.lower.y);
     }
-    e.travel_time = distance * std::sqrt(density / e.elastic_guess.E_Pa);   // refined by the elastic start
+    e.travel_time = distance * std::sqrt(density / e.elastic_guess.E_Pa);  // refined by the elastic start
 }
 
 }  // namespace feldspar

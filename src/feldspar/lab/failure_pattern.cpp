@@ -33,15 +33,16 @@ void read_directions(const TestResult& result, double total, FailurePattern& pat
     pattern.crack_angle_deg = in_degrees(std::abs(0.5 * std::atan2(sine, cosine)));
 }
 
-/// The most cracked tenth of the specimen, by squares. The places count with the whole crack at its middle: a crack is shorter than a grain, a square some grains wide.
+/// The most cracked tenth of the specimen, by squares. The places count with the whole crack at its middle: a crack is shorter
+/// than a grain, a square some grains wide.
 void read_concentration(const TestResult& result, double total, FailurePattern& pattern) {
     if (!result.specimen || result.specimen->mesh.nodes.empty()) return;
     const Box box = bounding_box(result.specimen->mesh.nodes);
     const double side = (box.upper.x - box.lower.x) / 10.0;
     struct Square {
         double length = 0.0;
-        Vec2 first;                                // sum of length times place
-        double xx = 0.0, yy = 0.0, xy = 0.0;       // and of the products of its coordinates
+        Vec2 first;                           // sum of length times place
+        double xx = 0.0, yy = 0.0, xy = 0.0;  // and of the products of its coordinates
     };
     std::map<std::pair<int, int>, Square> squares;
     for (const Crack& crack : result.cracks) {
@@ -58,7 +59,7 @@ void read_concentration(const TestResult& result, double total, FailurePattern& 
     std::vector<Square> ordered;
     for (const auto& [place, square] : squares) ordered.push_back(square);
     std::stable_sort(ordered.begin(), ordered.end(), [](const Square& l, const Square& r) { return l.length > r.length; });
-    const double tenth = 0.1 * result.specimen->outline.area_m2 / (side * side);   // squares, usually not a whole number
+    const double tenth = 0.1 * result.specimen->outline.area_m2 / (side * side);  // squares, usually not a whole number
     double inside = 0.0, left = tenth;
     Square sum;
     for (const Square& square : ordered) {
@@ -72,7 +73,8 @@ void read_concentration(const TestResult& result, double total, FailurePattern& 
         if (left <= 0.0) break;
     }
     pattern.crack_localisation = inside / total;
-    const double x = sum.first.x / inside, y = sum.first.y / inside, xx = sum.xx / inside - x * x, yy = sum.yy / inside - y * y, xy = sum.xy / inside - x * y;
+    const double x = sum.first.x / inside, y = sum.first.y / inside, xx = sum.xx / inside - x * x, yy = sum.yy / inside - y * y,
+                 xy = sum.xy / inside - x * y;
     const double mean = 0.5 * (xx + yy), radius = std::hypot(0.5 * (xx - yy), xy);
     if (!(mean > 0.0)) return;
     pattern.band_angle_deg = 90.0 - std::abs(in_degrees(0.5 * std::atan2(2.0 * xy, xx - yy)));
@@ -89,7 +91,7 @@ double post_peak_strain(const TestResult& result) {
     std::size_t row = peak->row;
     if (result.stages.empty()) {
         while (row + 1 < result.history.size() && high(row)) ++row;
-    } else {   // cycles go below it and come back: when it is left for good
+    } else {  // cycles go below it and come back: when it is left for good
         row = result.history.size() - 1;
         while (row > peak->row && !high(row - 1)) --row;
     }
@@ -114,9 +116,9 @@ FailurePattern failure_pattern(const TestResult& result) {
 
 FailureMode failure_mode(const TestResult& result) {
     // Bounds between forms, chosen on the numbers of some thirty specimens of the examples.
-    constexpr std::size_t kFewest = 30;          // cracks
-    constexpr double kBand = 2.0, kInclined = 15.0, kSteepest = 60.0;   // elongation, and angles from the loading axis, degrees
-    constexpr double kAligned = 0.25, kEven = 0.3;                      // alignment and localisation below which cracks go everywhere
+    constexpr std::size_t kFewest = 30;                                // cracks
+    constexpr double kBand = 2.0, kInclined = 15.0, kSteepest = 60.0;  // elongation, and angles from the loading axis, degrees
+    constexpr double kAligned = 0.25, kEven = 0.3;  // alignment and localisation below which cracks go everywhere
     const TestMethod& method = method_of(result.test);
     const bool compression = method.loading.on_envelope || (method.reading == Reading::stages && method.loading.sign > 0.0);
     const auto peak = find_peak(result);
@@ -124,12 +126,19 @@ FailureMode failure_mode(const TestResult& result) {
     const FailurePattern p = failure_pattern(result);
     if (!std::isfinite(p.band_elongation)) return {};
     FailureMode mode{"axial cracks without one form", {}};
-    if (p.band_elongation >= kBand && p.band_angle_deg >= kInclined && p.band_angle_deg <= kSteepest) mode.name = "shear band";
-    else if (p.crack_alignment < kAligned && p.crack_localisation < kEven) mode.name = "crushing";
-    else if (p.band_elongation >= kBand && p.band_angle_deg < kInclined && p.crack_angle_deg < kInclined) mode.name = "axial splitting";
-    mode.words = fmt::format("The most cracked tenth of the specimen has {:.0f} % of the crack length; it is {:.1f} times as long as wide, at {:.0f} degrees to the loading axis. "
-                             "{:.0f} % of the crack length is tensile; cracks lie at {:.0f} degrees to the axis in the mean, with an alignment of {:.2f}",
-                             100.0 * p.crack_localisation, p.band_elongation, p.band_angle_deg, 100.0 * p.tensile_share, p.crack_angle_deg, p.crack_alignment);
+    if (p.band_elongation >= kBand && p.band_angle_deg >= kInclined && p.band_angle_deg <= kSteepest)
+        mode.name = "shear band";
+    else if (p.crack_alignment < kAligned && p.crack_localisation < kEven)
+        mode.name = "crushing";
+    else if (p.band_elongation >= kBand && p.band_angle_deg < kInclined && p.crack_angle_deg < kInclined)
+        mode.name = "axial splitting";
+    mode.words = fmt::format(
+        "The most cracked tenth of the specimen has {:.0f} % of the crack length; it is {:.1f} times as long as wide, at {:.0f} "
+        "degrees to the loading axis. "
+        "{:.0f} % of the crack length is tensile; cracks lie at {:.0f} degrees to the axis in the mean, with an alignment of "
+        "{:.2f}",
+        100.0 * p.crack_localisation, p.band_elongation, p.band_angle_deg, 100.0 * p.tensile_share, p.crack_angle_deg,
+        p.crack_alignment);
     return mode;
 }
 

@@ -1,12 +1,12 @@
 #include "feldspar/lab/gauges.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Eigenvalues>
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/overlap.hpp"
@@ -16,8 +16,8 @@
 
 namespace feldspar {
 
-// About the mean point the constant drops out of the normal equations, and a symmetric 2 x 2 matrix is left. Its pseudo-inverse leaves out
-// directions along which the points have no extent.
+// About the mean point the constant drops out of the normal equations, and a symmetric 2 x 2 matrix is left. Its pseudo-inverse
+// leaves out directions along which the points have no extent.
 SlopeWeights slope_weights(std::span<const Vec2> points, double length_m) {
     Vec2 mean;
     for (const Vec2 p : points) mean += p;
@@ -32,7 +32,8 @@ SlopeWeights slope_weights(std::span<const Vec2> points, double length_m) {
     Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
     for (int k = 0; k < 2; ++k) {
         const double extent2 = solver.eigenvalues()(k);
-        if (extent2 > 1e-12 * static_cast<double>(points.size())) inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / extent2;
+        if (extent2 > 1e-12 * static_cast<double>(points.size()))
+            inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / extent2;
     }
     SlopeWeights weights;
     for (const Vec2 p : points) {
@@ -54,7 +55,7 @@ StrainGauge::StrainGauge(const Assembly& assembly, const Specimen& specimen) {
                                                      : std::abs(X[g].y - 0.5 * (box.lower.y + box.upper.y)) < 0.25 * height;
         if (inside) centre_nodes_.push_back(assembly.bodies[g].centre_node);
     }
-    if (centre_nodes_.size() < 3) {   // a very coarse specimen: all of it
+    if (centre_nodes_.size() < 3) {  // a very coarse specimen: all of it
         centre_nodes_.clear();
         for (const Body& grain : assembly.bodies) centre_nodes_.push_back(grain.centre_node);
     }
@@ -65,7 +66,8 @@ StrainGauge::StrainGauge(const Assembly& assembly, const Specimen& specimen) {
 
 double StrainGauge::fit(const Assembly& assembly, const std::vector<double>& weights, double Vec2::*component) const {
     double strain = 0.0;
-    for (std::size_t i = 0; i < weights.size(); ++i) strain += weights[i] * assembly.nodes.displacement[centre_nodes_[i]].*component;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        strain += weights[i] * assembly.nodes.displacement[centre_nodes_[i]].*component;
     return strain;
 }
 
@@ -84,9 +86,12 @@ Place place_of(const GrainMesh& mesh, Vec2 point) {
         const auto& corners = mesh.triangles[t];
         const Vec2 a = mesh.nodes[corners[0]], b = mesh.nodes[corners[1]], c = mesh.nodes[corners[2]];
         const double area = cross(b - a, c - a);
-        const std::array<double, 3> share = {cross(b - point, c - point) / area, cross(c - point, a - point) / area, cross(a - point, b - point) / area};
+        const std::array<double, 3> share = {cross(b - point, c - point) / area, cross(c - point, a - point) / area,
+                                             cross(a - point, b - point) / area};
         const bool inside = std::all_of(share.begin(), share.end(), [](double s) { return s >= 0.0; });
-        const double distance = inside ? 0.0 : std::min({distance_to_segment(point, a, b), distance_to_segment(point, b, c), distance_to_segment(point, c, a)});
+        const double distance = inside ? 0.0
+                                       : std::min({distance_to_segment(point, a, b), distance_to_segment(point, b, c),
+                                                   distance_to_segment(point, c, a)});
         if (distance < best.distance_m) best = {t, distance, share};
         if (inside) break;
     }
@@ -128,12 +133,18 @@ Vec2 normal_of(const GaugeSpec& gauge) { return gauge.normal == Vec2{} ? gauge.d
 
 double value_of(EnergyTerm term, const EnergyLedger& energy) {
     switch (term) {
-        case EnergyTerm::supplied: return energy.supplied();
-        case EnergyTerm::elastic: return energy.elastic_grains + energy.elastic_contacts;
-        case EnergyTerm::fracture: return energy.fracture;
-        case EnergyTerm::friction: return energy.friction;
-        case EnergyTerm::damping: return energy.damping;
-        case EnergyTerm::kinetic: return energy.kinetic;
+        case EnergyTerm::supplied:
+            return energy.supplied();
+        case EnergyTerm::elastic:
+            return energy.elastic_grains + energy.elastic_contacts;
+        case EnergyTerm::fracture:
+            return energy.fracture;
+        case EnergyTerm::friction:
+            return energy.friction;
+        case EnergyTerm::damping:
+            return energy.damping;
+        case EnergyTerm::kinetic:
+            return energy.kinetic;
     }
     return 0.0;
 }
@@ -144,29 +155,45 @@ double value_of(EnergyTerm term, const EnergyLedger& energy) {
 
 }  // namespace
 
-Gauges::Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs) : specs_(std::move(specs)), mesh_(&specimen.mesh) {
+Gauges::Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs)
+    : specs_(std::move(specs)), mesh_(&specimen.mesh) {
     for (const GaugeSpec& gauge : specs_) {
         int fixture = -1;
         const bool of_fixture = gauge.kind == GaugeKind::displacement && gauge.points.empty();
         if (gauge.kind == GaugeKind::force || of_fixture) {
-            const auto found = std::find_if(assembly.fixtures.begin(), assembly.fixtures.end(), [&](const Fixture& f) { return f.name == gauge.fixture; });
+            const auto found = std::find_if(assembly.fixtures.begin(), assembly.fixtures.end(),
+                                            [&](const Fixture& f) { return f.name == gauge.fixture; });
             if (found == assembly.fixtures.end())
-                throw InputError({.key = "gauge"}, fmt::format("the gauge \"{}\" reads the fixture \"{}\", which the test does not have", gauge.name, gauge.fixture));
+                throw InputError({.key = "gauge"},
+                                 fmt::format("the gauge \"{}\" reads the fixture \"{}\", which the test does not have",
+                                             gauge.name, gauge.fixture));
             if (of_fixture && found->plate < 0)
-                throw InputError({.key = "gauge"}, fmt::format("the gauge \"{}\" reads the way of the fixture \"{}\", which is no plate", gauge.name, gauge.fixture), "a plate, roller or jaw; or a point of the specimen");
-            if (of_fixture) terms_.push_back({found->nodes.front(), gauge.direction});
-            else fixture = static_cast<int>(found - assembly.fixtures.begin());
+                throw InputError({.key = "gauge"},
+                                 fmt::format("the gauge \"{}\" reads the way of the fixture \"{}\", which is no plate",
+                                             gauge.name, gauge.fixture),
+                                 "a plate, roller or jaw; or a point of the specimen");
+            if (of_fixture)
+                terms_.push_back({found->nodes.front(), gauge.direction});
+            else
+                fixture = static_cast<int>(found - assembly.fixtures.begin());
         }
         switch (gauge.kind) {
             case GaugeKind::displacement:
             case GaugeKind::strain:
                 for (const GaugePoint& point : gauge.points) add_point(assembly, specimen, gauge, point);
                 break;
-            case GaugeKind::mean_stress: add_mean_stress(assembly, specimen.mesh, gauge); break;
-            case GaugeKind::mean_strain: add_mean_strain(assembly, gauge); break;
-            case GaugeKind::hole_stress: add_hole_stress(assembly, specimen.mesh, gauge); break;
+            case GaugeKind::mean_stress:
+                add_mean_stress(assembly, specimen.mesh, gauge);
+                break;
+            case GaugeKind::mean_strain:
+                add_mean_strain(assembly, gauge);
+                break;
+            case GaugeKind::hole_stress:
+                add_hole_stress(assembly, specimen.mesh, gauge);
+                break;
             case GaugeKind::force:
-            case GaugeKind::energy: break;
+            case GaugeKind::energy:
+                break;
         }
         fixture_of_.push_back(fixture);
         ends_.push_back(terms_.size());
@@ -178,14 +205,17 @@ void Gauges::add_point(const Assembly& assembly, const Specimen& specimen, const
     const GrainMesh& mesh = specimen.mesh;
     const Place place = place_of(mesh, point.at);
     if (!(place.distance_m <= specimen.quality.mean_diameter_m))
-        throw InputError({.key = "gauge"}, fmt::format("the point ({:.4g}, {:.4g}) mm of the gauge \"{}\" lies {:.3g} mm outside the specimen", 1e3 * point.at.x, 1e3 * point.at.y, gauge.name, 1e3 * place.distance_m),
+        throw InputError({.key = "gauge"},
+                         fmt::format("the point ({:.4g}, {:.4g}) mm of the gauge \"{}\" lies {:.3g} mm outside the specimen",
+                                     1e3 * point.at.x, 1e3 * point.at.y, gauge.name, 1e3 * place.distance_m),
                          "points of the specimen");
-    if (!assembly.node_of_mesh.empty()) {   // flexible grains: by the triangle's corners
-        for (std::size_t k = 0; k < 3; ++k) terms_.push_back({assembly.node_of_mesh[mesh.triangles[place.triangle][k]], place.share[k] * point.weight});
+    if (!assembly.node_of_mesh.empty()) {  // flexible grains: by the triangle's corners
+        for (std::size_t k = 0; k < 3; ++k)
+            terms_.push_back({assembly.node_of_mesh[mesh.triangles[place.triangle][k]], place.share[k] * point.weight});
         return;
     }
     int body = grain_of_triangle(mesh, place.triangle);
-    if (!assembly.body_of_particle.empty()) {   // the nearest of the grain's particles
+    if (!assembly.body_of_particle.empty()) {  // the nearest of the grain's particles
         double nearest = std::numeric_limits<double>::infinity();
         const int grain = body;
         for (const std::int32_t particle : assembly.body_of_particle) {
@@ -196,7 +226,7 @@ void Gauges::add_point(const Assembly& assembly, const Specimen& specimen, const
             }
         }
     }
-    const Body& rigid = assembly.bodies[body];   // u + turn / radius x arm: the turn is an arc on the contact circle
+    const Body& rigid = assembly.bodies[body];  // u + turn / radius x arm: the turn is an arc on the contact circle
     const Vec2 arm = point.at - assembly.nodes.reference[rigid.centre_node];
     terms_.push_back({rigid.centre_node, point.weight});
     terms_.push_back({rigid.centre_node + 1, {dot(point.weight, rot90(arm)) / rigid.radius_m, 0.0}});
@@ -211,16 +241,20 @@ void Gauges::add_mean_stress(const Assembly& assembly, const GrainMesh& mesh, co
     for (int t = 0; t < std::ssize(mesh.triangles); ++t) {
         const std::array<Vec2, 3> triangle = corners_of(mesh, t);
         const Box around = bounding_box(triangle);
-        if (around.lower.x > box.upper.x || around.upper.x < box.lower.x || around.lower.y > box.upper.y || around.upper.y < box.lower.y) continue;
+        if (around.lower.x > box.upper.x || around.upper.x < box.lower.x || around.lower.y > box.upper.y ||
+            around.upper.y < box.lower.y)
+            continue;
         const double part = overlap_area(triangle, region);
         if (!(part > 0.0)) continue;
         area += part;
         const Vec2 d = gauge.direction, n = normal_of(gauge);
         const double mixed = 0.5 * part * (d.x * n.y + d.y * n.x);
-        terms.push_back({has_triangles(assembly) ? t : grain_of_triangle(mesh, t), {part * d.x * n.x, mixed, mixed, part * d.y * n.y}});
+        terms.push_back(
+            {has_triangles(assembly) ? t : grain_of_triangle(mesh, t), {part * d.x * n.x, mixed, mixed, part * d.y * n.y}});
     }
     if (!(area > 0.0)) too_little_rock(gauge, "has no rock in it", "a region that lies in the specimen, at least in part");
-    for (StressTerm& term : terms) term.weight = {term.weight.xx / area, term.weight.xy / area, term.weight.yx / area, term.weight.yy / area};
+    for (StressTerm& term : terms)
+        term.weight = {term.weight.xx / area, term.weight.xy / area, term.weight.yx / area, term.weight.yy / area};
     add_stress(assembly, mesh, std::move(terms));
 }
 
@@ -247,8 +281,9 @@ void Gauges::add_mean_strain(const Assembly& assembly, const GaugeSpec& gauge) {
 
 // (P43), (P44): of the elastic fields around the hole that fit the stresses near it.
 void Gauges::add_hole_stress(const Assembly& assembly, const GrainMesh& mesh, const GaugeSpec& gauge) {
-    constexpr double kReach = 1.6;        // of the rock that is looked at, over the radius: farther out near boundaries add fields that grow faster than these
-    constexpr std::size_t kEnough = 40;   // grains that determine all fields; the uniform ones alone take fewer
+    constexpr double kReach = 1.6;  // of the rock that is looked at, over the radius: farther out near boundaries add fields that
+                                    // grow faster than these
+    constexpr std::size_t kEnough = 40;  // grains that determine all fields; the uniform ones alone take fewer
     const Vec2 centre = gauge.region.a;
     const double radius = gauge.region.radius_m;
     std::vector<StressSample> samples;
@@ -262,7 +297,7 @@ void Gauges::add_hole_stress(const Assembly& assembly, const GrainMesh& mesh, co
             const double third = cross(b - a, c - a) / 6.0;
             for (const Vec2 middle : {0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
                 Vec2 place = middle - centre;
-                if (norm(place) < radius) place = (radius / norm(place)) * place;   // chords cut into the circle
+                if (norm(place) < radius) place = (radius / norm(place)) * place;  // chords cut into the circle
                 samples.push_back({has_triangles(assembly) ? t : g, third, place});
             }
         }
@@ -278,7 +313,8 @@ void Gauges::add_hole_stress(const Assembly& assembly, const GrainMesh& mesh, co
         wanted.push_back(mean);
     }
     std::vector<StressTerm> terms = fitted_value(samples, fields, wanted);
-    if (terms.empty()) too_little_rock(gauge, "has too few grains around it", "a round hole of the specimen, of several grains' diameter");
+    if (terms.empty())
+        too_little_rock(gauge, "has too few grains around it", "a round hole of the specimen, of several grains' diameter");
     add_stress(assembly, mesh, std::move(terms));
 }
 
@@ -296,7 +332,8 @@ void Gauges::add_stress(const Assembly& assembly, const GrainMesh& mesh, std::ve
     }
     for (; first < stress_terms_.size(); ++first) {
         StressTerm& term = stress_terms_[first];
-        const std::span corners(mesh.nodes.begin() + mesh.node_begin[term.cell], static_cast<std::size_t>(mesh.vertex_count[term.cell]));
+        const std::span corners(mesh.nodes.begin() + mesh.node_begin[term.cell],
+                                static_cast<std::size_t>(mesh.vertex_count[term.cell]));
         const double volume = signed_area(corners) * assembly.thickness_m;
         term.weight = {term.weight.xx / volume, term.weight.xy / volume, term.weight.yx / volume, term.weight.yy / volume};
     }
@@ -307,10 +344,12 @@ namespace {
 Mat2 stress_of_triangle(const Assembly& assembly, int triangle) {
     int body = 0;
     if (assembly.elasticity.size() > 1) {
-        const auto behind = std::upper_bound(assembly.bodies.begin(), assembly.bodies.begin() + std::ssize(assembly.elasticity), triangle, [](int t, const Body& b) { return t < b.triangle_begin; });
+        const auto behind = std::upper_bound(assembly.bodies.begin(), assembly.bodies.begin() + std::ssize(assembly.elasticity),
+                                             triangle, [](int t, const Body& b) { return t < b.triangle_begin; });
         body = static_cast<int>(behind - assembly.bodies.begin()) - 1;
     }
-    return cauchy_stress(assembly.elasticity_of(body), displacement_gradient(assembly.nodes.displacement, assembly.triangles[triangle]));
+    return cauchy_stress(assembly.elasticity_of(body),
+                         displacement_gradient(assembly.nodes.displacement, assembly.triangles[triangle]));
 }
 
 }  // namespace
@@ -337,7 +376,7 @@ std::vector<double> Gauges::read(const Assembly& assembly, const EnergyLedger& e
     for (std::size_t g = 0; g < specs_.size(); ++g) {
         double sum = fixture_of_[g] >= 0 ? dot(felt_by(assembly, assembly.fixtures[fixture_of_[g]]), specs_[g].direction) : 0.0;
         for (; term < ends_[g]; ++term) sum += dot(terms_[term].weight, assembly.nodes.displacement[terms_[term].node]);
-        if (stress < stress_ends_[g]) sum -= stress_sum(assembly, stress, stress_ends_[g], of_grains);   // compression positive
+        if (stress < stress_ends_[g]) sum -= stress_sum(assembly, stress, stress_ends_[g], of_grains);  // compression positive
         stress = stress_ends_[g];
         values.push_back(sum);
     }

@@ -1,5 +1,6 @@
-// Strain gauges away from the platens: the least-squares linear displacement field of the grain centres in a window. And the gauges of a method or a
-// user: displacements of points, strains between them, forces of fixtures, means of stress and strain over a region, energies.
+// Strain gauges away from the platens: the least-squares linear displacement field of the grain centres in a window. And the
+// gauges of a method or a user: displacements of points, strains between them, forces of fixtures, means of stress and strain
+// over a region, energies.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "feldspar/methods/result.hpp"
 #include "feldspar/lab/stress_fields.hpp"
+#include "feldspar/methods/result.hpp"
 #include "feldspar/model/assembly.hpp"
 #include "feldspar/model/gauge_spec.hpp"
 #include "feldspar/specimen/specimen.hpp"
@@ -17,11 +18,11 @@ namespace feldspar {
 
 /// What each value of a field contributes to the slopes of the least-squares plane through all of them.
 struct SlopeWeights {
-    std::vector<double> x, y;   ///< 1/m; sum of weight times value = slope along x, along y
+    std::vector<double> x, y;  ///< 1/m; sum of weight times value = slope along x, along y
 };
 
-/// Weights of a plane fitted to values at `points` (m). Costs time and memory in proportion to the points. Where the points determine no
-/// plane (all in one place or on one line), the plane that is flat across what they leave open.
+/// Weights of a plane fitted to values at `points` (m). Costs time and memory in proportion to the points. Where the points
+/// determine no plane (all in one place or on one line), the plane that is flat across what they leave open.
 /// @param length_m  about the extent of the points (> 0), for scaling
 SlopeWeights slope_weights(std::span<const Vec2> points, double length_m);
 
@@ -48,7 +49,8 @@ class Gauges {
 public:
     Gauges() = default;
     /// @param specimen  which must outlive the gauges
-    /// @throws InputError  if a point lies outside the specimen by more than a grain, a fixture is not there, or a region has too little rock
+    /// @throws InputError  if a point lies outside the specimen by more than a grain, a fixture is not there, or a region has too
+    /// little rock
     Gauges(const Assembly& assembly, const Specimen& specimen, std::vector<GaugeSpec> specs);
 
     const std::vector<GaugeSpec>& specs() const { return specs_; }
@@ -59,7 +61,7 @@ public:
     void read_energies(const EnergyLedger& energy, std::span<double> values) const;
 
 private:
-    struct Term {   // of a gauge's sum: weight . displacement of a node
+    struct Term {  // of a gauge's sum: weight . displacement of a node
         std::int32_t node;
         Vec2 weight;
     };
@@ -72,10 +74,10 @@ private:
 
     std::vector<GaugeSpec> specs_;
     std::vector<Term> terms_;
-    std::vector<StressTerm> stress_terms_;   // of triangles; of other grains than flexible ones, of the sums of (P42)
-    std::vector<std::size_t> ends_;          // into terms_: behind those of each gauge
-    std::vector<std::size_t> stress_ends_;   // likewise into stress_terms_
-    std::vector<int> fixture_of_;            // force: into Assembly::fixtures; else -1
+    std::vector<StressTerm> stress_terms_;  // of triangles; of other grains than flexible ones, of the sums of (P42)
+    std::vector<std::size_t> ends_;         // into terms_: behind those of each gauge
+    std::vector<std::size_t> stress_ends_;  // likewise into stress_terms_
+    std::vector<int> fixture_of_;           // force: into Assembly::fixtures; else -1
     const GrainMesh* mesh_ = nullptr;
 };
 

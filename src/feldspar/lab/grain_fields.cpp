@@ -1,8 +1,7 @@
 #include "feldspar/lab/grain_fields.hpp"
 
-#include <algorithm>
-
 #include <Eigen/Dense>
+#include <algorithm>
 
 #include "feldspar/geometry/polygon.hpp"
 
@@ -39,7 +38,7 @@ LinearField fit(const Assembly& assembly, int begin, int end, std::span<const Ve
         A += Eigen::Vector2d(x.x, x.y) * Eigen::RowVector2d(x.x, x.y);
         B += Eigen::Vector2d(du.x, du.y) * Eigen::RowVector2d(x.x, x.y);
     }
-    if (A.determinant() <= 1e-12 * A.trace() * A.trace()) return field;   // all on a line: moved as one piece
+    if (A.determinant() <= 1e-12 * A.trace() * A.trace()) return field;  // all on a line: moved as one piece
     const Eigen::Matrix2d G = B * A.inverse();
     field.G = {G(0, 0), G(0, 1), G(1, 0), G(1, 1)};
     return field;
@@ -65,7 +64,8 @@ std::vector<Vec2> mesh_displacements(const Assembly& assembly, const Specimen& s
         const bool alone = first[g + 1] - first[g] == 1;
         const LinearField field = alone ? LinearField{} : fit(assembly, first[g], first[g + 1], u);
         for (int n = mesh.node_begin[g]; n < mesh.node_begin[g + 1]; ++n)
-            displacements[n] = alone ? moved_rigidly(assembly, assembly.bodies[first[g]], mesh.nodes[n], u) : field.at(mesh.nodes[n]);
+            displacements[n] =
+                alone ? moved_rigidly(assembly, assembly.bodies[first[g]], mesh.nodes[n], u) : field.at(mesh.nodes[n]);
     }
     return displacements;
 }
@@ -100,7 +100,8 @@ std::vector<Mat2> grain_stresses(const Assembly& assembly, const Specimen& speci
     std::vector<Mat2> sums(mesh.vertex_count.size());
     sum_grain_moments(assembly, mesh, sums);
     for (std::size_t g = 0; g < sums.size(); ++g) {
-        std::vector<Vec2> corners(mesh.nodes.begin() + mesh.node_begin[g], mesh.nodes.begin() + mesh.node_begin[g] + mesh.vertex_count[g]);
+        std::vector<Vec2> corners(mesh.nodes.begin() + mesh.node_begin[g],
+                                  mesh.nodes.begin() + mesh.node_begin[g] + mesh.vertex_count[g]);
         const double per_volume = 1.0 / (signed_area(corners) * assembly.thickness_m);
         sums[g] = {per_volume * sums[g].xx, per_volume * sums[g].xy, per_volume * sums[g].xy, per_volume * sums[g].yy};
     }

@@ -1,6 +1,6 @@
 // Fields on the grain mesh, which every kind of grain is drawn with: flexible grains have them at their own nodes and triangles;
-// a rigid grain moves its cell as one piece, inner particles move theirs by the linear field that fits them best, and both have one
-// stress a grain, from the forces on it.
+// a rigid grain moves its cell as one piece, inner particles move theirs by the linear field that fits them best, and both have
+// one stress a grain, from the forces on it.
 #pragma once
 
 #include <span>

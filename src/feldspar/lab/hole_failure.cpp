@@ -11,18 +11,20 @@
 namespace feldspar {
 namespace {
 
-constexpr double kSector = M_PI / 6.0;     // to both sides of a pole or a side: cracks there belong to it
-constexpr double kBreakout = M_PI / 4.0;   // likewise to a breakout
-constexpr double kOnset = 1.0;             // mean grains that a breakout is deep when it begins
+constexpr double kSector = M_PI / 6.0;    // to both sides of a pole or a side: cracks there belong to it
+constexpr double kBreakout = M_PI / 4.0;  // likewise to a breakout
+constexpr double kOnset = 1.0;            // mean grains that a breakout is deep when it begins
 
 enum class At { pole, side };
 
 // Angle between the direction from the hole's centre to a place and the nearest pole or side.
-double angle_from(At at, Vec2 out) { return at == At::pole ? std::atan2(std::abs(out.x), std::abs(out.y)) : std::atan2(std::abs(out.y), std::abs(out.x)); }
+double angle_from(At at, Vec2 out) {
+    return at == At::pole ? std::atan2(std::abs(out.x), std::abs(out.y)) : std::atan2(std::abs(out.y), std::abs(out.x));
+}
 
 // Axial stress at the first crack of a kind within a grain of the edge.
 double first_crack_at(const TestResult& result, const RoundHole& hole, double reach_m, At at, bool tensile_only) {
-    for (const Crack& crack : result.cracks) {   // in the order in which they broke
+    for (const Crack& crack : result.cracks) {  // in the order in which they broke
         const Vec2 out = crack.place - hole.centre;
         if (tensile_only && crack.mode != CrackMode::tensile) continue;
         if (norm(out) - hole.radius_m <= reach_m && angle_from(at, out) <= kSector) return crack.axial_stress_Pa;
@@ -52,12 +54,13 @@ public:
 private:
     RoundHole hole_;
     double step_m_, depth_m_ = 0.0;
-    std::vector<double> waiting_;   // cracks that are too deep yet
+    std::vector<double> waiting_;  // cracks that are too deep yet
 };
 
-// A row of the elastic answer: the end of the computed start, which lies below the first damage; else where loading has begun, before contacts soften.
+// A row of the elastic answer: the end of the computed start, which lies below the first damage; else where loading has begun,
+// before contacts soften.
 const HistoryRow* elastic_row(const TestResult& result, const Peak& peak) {
-    constexpr double kBegun = 0.02;   // of the largest stress
+    constexpr double kBegun = 0.02;  // of the largest stress
     const HistoryRow* found = nullptr;
     for (const HistoryRow& row : result.history)
         if (row.phase == Phase::elastic) found = &row;
@@ -80,8 +83,9 @@ HoleProperties hole_failure(const TestResult& result, const Peak& peak) {
     p.radius_m = hole.radius_m;
     p.radius_over_grain = hole.radius_m / grain_m;
     if (side < 0 || pole < 0) return p;
-    const bool stress_known = result.model.kind != GrainKind::inner_particles;   // docs/decisions, stress at a hole
-    if (const HistoryRow* row = elastic_row(result, peak); stress_known && row != nullptr && row->sigma3_Pa == 0.0 && row->axial_stress_Pa > 0.0) {
+    const bool stress_known = result.model.kind != GrainKind::inner_particles;  // docs/decisions, stress at a hole
+    if (const HistoryRow* row = elastic_row(result, peak);
+        stress_known && row != nullptr && row->sigma3_Pa == 0.0 && row->axial_stress_Pa > 0.0) {
         p.side_factor = row->gauges[side] / row->axial_stress_Pa;
         p.pole_factor = row->gauges[pole] / row->axial_stress_Pa;
     }
@@ -103,7 +107,8 @@ HoleProperties hole_failure(const TestResult& result, const Peak& peak) {
     if (onset == nullptr) return p;
     p.breakout_Pa = onset->axial_stress_Pa;
     if (!stress_known) return p;
-    const auto then = std::ranges::lower_bound(result.history, onset->step, {}, &HistoryRow::step);   // the row that closes the crack's interval
+    const auto then =
+        std::ranges::lower_bound(result.history, onset->step, {}, &HistoryRow::step);  // the row that closes the crack's interval
     p.breakout_side_stress_Pa = (then == result.history.end() ? result.history.back() : *then).gauges[side];
     return p;
 }

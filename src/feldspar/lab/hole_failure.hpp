@@ -1,4 +1,5 @@
-// How a plate with a round hole fails (docs/theory/properties.md, (P49)-(P51)): stresses at the edge of the hole, first cracks, breakouts.
+// How a plate with a round hole fails (docs/theory/properties.md, (P49)-(P51)): stresses at the edge of the hole, first cracks,
+// breakouts.
 #pragma once
 
 #include "feldspar/lab/loading_curve.hpp"

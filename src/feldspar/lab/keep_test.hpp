@@ -22,19 +22,22 @@ void keep(Archive& archive, StepSettings& settings) {
 /// A result without what the setup of its test gives.
 template <class Archive>
 void keep_course(Archive& archive, TestResult& result) {
-    auto& [variant, test, model, contact, grain, rock, texture, numerics, seed, specimen,   // of the setup
-           history, cracks, snapshots, grain_contacts, stages, gauges, length, section, energy_at_end, energy_residual, evidence, properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages,
-           preparation_steps, wall, ms_per_step, threads, shape_fallbacks, angular_momentum_loss, vanished_compressions, new_contacts, travel_steps, travel_time, stable_omega2,
-           stable_limit] = result;
-    archive(history, cracks, snapshots, grain_contacts, stages, gauges, length, section, energy_at_end, energy_residual, evidence, properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages,
-            preparation_steps, wall, ms_per_step, threads, shape_fallbacks, angular_momentum_loss, vanished_compressions, new_contacts, travel_steps, travel_time, stable_omega2,
-            stable_limit);
+    auto& [variant, test, model, contact, grain, rock, texture, numerics, seed, specimen,  // of the setup
+           history, cracks, snapshots, grain_contacts, stages, gauges, length, section, energy_at_end, energy_residual, evidence,
+           properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages, preparation_steps, wall,
+           ms_per_step, threads, shape_fallbacks, angular_momentum_loss, vanished_compressions, new_contacts, travel_steps,
+           travel_time, stable_omega2, stable_limit] = result;
+    archive(history, cracks, snapshots, grain_contacts, stages, gauges, length, section, energy_at_end, energy_residual, evidence,
+            properties, emission, nearest, stop_reason, interrupted, steps, steps_to_peak, passages, preparation_steps, wall,
+            ms_per_step, threads, shape_fallbacks, angular_momentum_loss, vanished_compressions, new_contacts, travel_steps,
+            travel_time, stable_omega2, stable_limit);
 }
 
 /// The parts of a run in which states are kept.
 enum class TestPart { none, preparation, loading };
 
-/// Keeps the state of a test under way by a StateKeeper, and brings it back. A test may be several runs: the repeats that confirm it.
+/// Keeps the state of a test under way by a StateKeeper, and brings it back. A test may be several runs: the repeats that confirm
+/// it.
 class TestKeeping {
 public:
     /// @param keeper  may be null: nothing is kept then, and nothing brought back
@@ -54,7 +57,8 @@ public:
         waiting_ = TestPart::none;
         std::uint64_t fingerprint = 0;
         reader_->read(fingerprint, before_s_);
-        if (fingerprint != base_.fingerprint()) throw StateError("it is of another specimen or material, or of another version of the program");
+        if (fingerprint != base_.fingerprint())
+            throw StateError("it is of another specimen or material, or of another version of the program");
         read(*reader_);
         if (!reader_->at_end()) throw StateError("more follows than belongs to it");
         reader_.reset();

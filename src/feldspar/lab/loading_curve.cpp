@@ -10,9 +10,9 @@ namespace feldspar {
 
 namespace {
 
-constexpr double drop_fraction = 0.95;       // (P2): a fall to this fraction of the largest stress so far ends a peak
-constexpr double fall_in_stage = 0.98;       // of the largest stress of a stage: below it the stage itself has passed a peak
-constexpr double first_peak_floor = 0.10;    // drops below this fraction of the largest stress are settling of the plates
+constexpr double drop_fraction = 0.95;     // (P2): a fall to this fraction of the largest stress so far ends a peak
+constexpr double fall_in_stage = 0.98;     // of the largest stress of a stage: below it the stage itself has passed a peak
+constexpr double first_peak_floor = 0.10;  // drops below this fraction of the largest stress are settling of the plates
 
 bool is_loading(const HistoryRow& row) { return row.phase != Phase::consolidation; }
 
@@ -41,7 +41,8 @@ bool of_loading_stage(const TestResult& result, const HistoryRow& row) {
 }
 
 const Crack* first_crack(const TestResult& result) {
-    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(), [](const Crack& a, const Crack& b) { return a.step < b.step; });
+    const auto first = std::min_element(result.cracks.begin(), result.cracks.end(),
+                                        [](const Crack& a, const Crack& b) { return a.step < b.step; });
     return first == result.cracks.end() ? nullptr : &*first;
 }
 
@@ -49,7 +50,8 @@ double largest_stress(const TestResult& result) {
     const double sign = method_of(result.test).loading.sign;
     double largest = 0.0;
     for (const HistoryRow& row : result.history) {
-        if (is_loading(row) && is_finite(row) && of_loading_stage(result, row)) largest = std::max(largest, sign * row.axial_stress_Pa);
+        if (is_loading(row) && is_finite(row) && of_loading_stage(result, row))
+            largest = std::max(largest, sign * row.axial_stress_Pa);
     }
     return largest;
 }
@@ -76,19 +78,20 @@ std::optional<Peak> peak_before_a_fall(const TestResult& result, bool first_only
     return peak;
 }
 
-/// The same of a test with stages: it is reached if the stress has fallen while a stage behind it, or its own, loaded; or if a later stage loaded the
-/// specimen farther, or made it wider, than it was there and met less stress.
+/// The same of a test with stages: it is reached if the stress has fallen while a stage behind it, or its own, loaded; or if a
+/// later stage loaded the specimen farther, or made it wider, than it was there and met less stress.
 std::optional<Peak> peak_in_stages(const TestResult& result) {
     const double sign = method_of(result.test).loading.sign, overall = largest_stress(result);
     if (!(overall > 0.0)) return std::nullopt;
     Peak peak;
     double of_stage = 0.0;
     int stage = 0;
-    const HistoryRow* last = nullptr;   // of the stage
+    const HistoryRow* last = nullptr;  // of the stage
     const auto end_stage = [&] {
         const HistoryRow& top = result.history[peak.row];
         if (last == nullptr || last->stage == top.stage || of_stage > drop_fraction * peak.stress_Pa) return;
-        const bool farther = sign * last->axial_strain > sign * top.axial_strain, wider = sign * last->lateral_strain_gauge < sign * top.lateral_strain_gauge;
+        const bool farther = sign * last->axial_strain > sign * top.axial_strain,
+                   wider = sign * last->lateral_strain_gauge < sign * top.lateral_strain_gauge;
         if (farther || wider) peak.reached = true;
     };
     for (std::size_t i = 0; i < result.history.size(); ++i) {
@@ -102,8 +105,11 @@ std::optional<Peak> peak_in_stages(const TestResult& result) {
         last = &row;
         const double stress = sign * row.axial_stress_Pa;
         of_stage = std::max(of_stage, stress);
-        if (stress > peak.stress_Pa) peak = {i, stress, false};
-        else if (stress <= drop_fraction * peak.stress_Pa && stress <= fall_in_stage * of_stage && of_stage >= first_peak_floor * overall) peak.reached = true;
+        if (stress > peak.stress_Pa)
+            peak = {i, stress, false};
+        else if (stress <= drop_fraction * peak.stress_Pa && stress <= fall_in_stage * of_stage &&
+                 of_stage >= first_peak_floor * overall)
+            peak.reached = true;
     }
     end_stage();
     return peak;
@@ -141,14 +147,19 @@ LoadingCurve loading_curve(const TestResult& result, const Peak& peak) {
     const bool confined = method_of(result.test).specimen.confined;
     if (confined) curve.stress_offset_Pa = result.test.sigma3_Pa;
 
-    HistoryRow origin;   // unloaded
+    HistoryRow origin;  // unloaded
     if (confined) {
         std::size_t first = history.size();
         for (std::size_t i = 0; i < history.size(); ++i) {
             if (!is_finite(history[i])) continue;
-            if (!is_loading(history[i])) first = i;           // the last row of the consolidation ...
-            else if (first == history.size()) { first = i; break; }   // ... or, without one, the first row there is
-            else break;
+            if (!is_loading(history[i]))
+                first = i;  // the last row of the consolidation ...
+            else if (first == history.size()) {
+                first = i;
+                break;
+            }  // ... or, without one, the first row there is
+            else
+                break;
         }
         if (first == history.size()) return {};
         origin = history[first];
@@ -159,7 +170,7 @@ LoadingCurve loading_curve(const TestResult& result, const Peak& peak) {
                           sign * (row.lateral_strain_gauge - origin.lateral_strain_gauge), i};
     };
     curve.points.push_back(point(origin, 0));
-    double before_Pa = 0.0, largest_Pa = 0.0;   // in the stages before this one, and so far
+    double before_Pa = 0.0, largest_Pa = 0.0;  // in the stages before this one, and so far
     int stage = 0;
     for (std::size_t i = 0; i <= peak.row && i < history.size(); ++i) {
         if (!is_loading(history[i]) || !is_finite(history[i]) || !of_loading_stage(result, history[i])) continue;
@@ -167,7 +178,7 @@ LoadingCurve loading_curve(const TestResult& result, const Peak& peak) {
         stage = history[i].stage;
         const double stress_Pa = sign * history[i].axial_stress_Pa;
         largest_Pa = std::max(largest_Pa, stress_Pa);
-        if (before_Pa > 0.0 && stress_Pa < before_Pa) continue;   // a loop; without stages there is no stage before
+        if (before_Pa > 0.0 && stress_Pa < before_Pa) continue;  // a loop; without stages there is no stage before
         curve.points.push_back(point(history[i], i));
     }
     if (curve.points.size() < 2 || !(curve.peak_Pa() > curve.points.front().stress_Pa)) return {};

@@ -11,9 +11,9 @@ namespace feldspar {
 
 /// Where a history has its strength (P1), (P2).
 struct Peak {
-    std::size_t row = 0;       ///< into TestResult::history
-    double stress_Pa = 0.0;    ///< magnitude, total axial stress
-    bool reached = false;      ///< the stress fell to 0.95 of it or below afterwards; Brazilian: the disc was split
+    std::size_t row = 0;     ///< into TestResult::history
+    double stress_Pa = 0.0;  ///< magnitude, total axial stress
+    bool reached = false;    ///< the stress fell to 0.95 of it or below afterwards; Brazilian: the disc was split
 };
 
 /// The strength of a history; for a Brazilian test the largest stress until the disc is split. Empty without a single loaded row.
@@ -34,17 +34,18 @@ double largest_stress(const TestResult& result);
 /// One moment of loading, measured from the unloaded (biaxial: consolidated) state; all values positive in the sense of
 /// the loading, so that tension and compression read alike.
 struct CurvePoint {
-    double stress_Pa = 0.0;       ///< axial stress; biaxial: the deviator sigma_1 - sigma_3
-    double strain = 0.0;          ///< axial, from the platens
-    double strain_gauge = 0.0;    ///< axial, from the gauge
-    double lateral_gauge = 0.0;   ///< lateral, from the gauge: < 0 while a compressed specimen widens
-    std::size_t row = 0;          ///< into TestResult::history
+    double stress_Pa = 0.0;      ///< axial stress; biaxial: the deviator sigma_1 - sigma_3
+    double strain = 0.0;         ///< axial, from the platens
+    double strain_gauge = 0.0;   ///< axial, from the gauge
+    double lateral_gauge = 0.0;  ///< lateral, from the gauge: < 0 while a compressed specimen widens
+    std::size_t row = 0;         ///< into TestResult::history
 };
 
-/// The pre-peak curve; of a test with stages that part of each loading which goes beyond all before it, so that loops are left out.
+/// The pre-peak curve; of a test with stages that part of each loading which goes beyond all before it, so that loops are left
+/// out.
 struct LoadingCurve {
-    std::vector<CurvePoint> points;   ///< from the origin to the peak, both included; empty when there is nothing to read
-    double stress_offset_Pa = 0.0;    ///< what to add for the total axial stress (biaxial: sigma_3)
+    std::vector<CurvePoint> points;  ///< from the origin to the peak, both included; empty when there is nothing to read
+    double stress_offset_Pa = 0.0;   ///< what to add for the total axial stress (biaxial: sigma_3)
 
     double peak_Pa() const { return points.back().stress_Pa; }
 };

@@ -6,8 +6,8 @@
 
 namespace feldspar {
 
-/// The contact point between grains that is nearest to its limit: traction over strength (C8), in tension or in shear. Plates, broken points and
-/// contacts without strength do not count. Changes nothing.
+/// The contact point between grains that is nearest to its limit: traction over strength (C8), in tension or in shear. Plates,
+/// broken points and contacts without strength do not count. Changes nothing.
 NearestToFailure nearest_to_failure(const Assembly& assembly);
 
 }  // namespace feldspar

@@ -8,8 +8,8 @@
 namespace feldspar {
 
 struct CardNeeds {
-    std::string not_ported;   ///< what of the test a card does not know, as a sentence; empty: it can run there
-    double bytes = 0.0;       ///< of the card's memory, about
+    std::string not_ported;  ///< what of the test a card does not know, as a sentence; empty: it can run there
+    double bytes = 0.0;      ///< of the card's memory, about
 };
 
 /// Builds the test, and runs nothing.

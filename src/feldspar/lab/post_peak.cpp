@@ -22,7 +22,7 @@ bool leaves(const std::vector<BranchPoint>& branch, double stress_Pa, BranchPoin
     std::size_t last = branch.size();
     for (std::size_t i = branch.size(); i-- > 0 && last == branch.size();)
         if (branch[i].stress_Pa >= stress_Pa) last = i;
-    if (last + 1 >= branch.size()) return false;   // never that high, or not below it at the end
+    if (last + 1 >= branch.size()) return false;  // never that high, or not below it at the end
     const BranchPoint &above = branch[last], &below = branch[last + 1];
     const double w = (above.stress_Pa - stress_Pa) / (above.stress_Pa - below.stress_Pa);
     found = {stress_Pa, above.strain + w * (below.strain - above.strain)};
@@ -51,13 +51,14 @@ PostPeak post_peak(const TestResult& result, const Peak& peak, const LoadingCurv
     PostPeak p;
     if (!peak.reached || curve.points.empty()) return p;
     const EnergyLedger &at_peak = result.history[peak.row].energy, &at_end = result.history.back().energy;
-    const double fracture = at_end.fracture - at_peak.fracture, friction = at_end.friction - at_peak.friction, damping = at_end.damping - at_peak.damping;
+    const double fracture = at_end.fracture - at_peak.fracture, friction = at_end.friction - at_peak.friction,
+                 damping = at_end.damping - at_peak.damping;
     if (const double all = fracture + friction + damping; all > 0.0) {
         p.fracture_share = fracture / all;
         p.friction_share = friction / all;
         p.damping_share = damping / all;
     }
-    if (!branch_is_followed(result) || !result.stages.empty()) return p;   // cycles cut the branch to pieces
+    if (!branch_is_followed(result) || !result.stages.empty()) return p;  // cycles cut the branch to pieces
     const double sign = method_of(result.test).loading.sign;
     std::vector<BranchPoint> branch;
     for (std::size_t i = peak.row; i < result.history.size(); ++i) {

@@ -1,10 +1,10 @@
 // From the unloaded body to the first moment of loading (docs/theory/loading.md).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -16,26 +16,31 @@
 namespace feldspar {
 namespace {
 
-constexpr double kTolerance = 1e-5;         // mean |F| / mean |contact force| of the relaxed body
-constexpr double kOnTheWay = 1e-3;          // the same for a state that is only scaled or corrected next
-constexpr double kBelowDamage = 0.98;       // of the first damage: where the elastic phase ends
+constexpr double kTolerance = 1e-5;    // mean |F| / mean |contact force| of the relaxed body
+constexpr double kOnTheWay = 1e-3;     // the same for a state that is only scaled or corrected next
+constexpr double kBelowDamage = 0.98;  // of the first damage: where the elastic phase ends
 constexpr long long kMaximumSteps = 20000;
 
 void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
     if (e.control.progress) e.control.progress({.stage = "elastic start", .step = e.preparation_steps});
-    const Relaxation r = relax(e.assembly, e.team, Strength::unlimited, tolerance, kMaximumSteps, [&] { return e.stopped(); }, e.settings.dt);
+    const Relaxation r = relax(
+        e.assembly, e.team, Strength::unlimited, tolerance, kMaximumSteps, [&] { return e.stopped(); }, e.settings.dt);
     e.preparation_steps += r.steps;
     if (e.stopped()) throw Interrupted();
     if (!r.converged)
-        throw NumericalError(fmt::format("the elastic start did not relax: residual {:.3g} after {} steps, wanted {:.3g}", r.residual, r.steps, tolerance));
+        throw NumericalError(fmt::format("the elastic start did not relax: residual {:.3g} after {} steps, wanted {:.3g}",
+                                         r.residual, r.steps, tolerance));
 }
 
 // What a node of a body takes of an affine field: a rigid body does not turn, a plate moves where it may.
 Vec2 share_of_field(const Assembly& assembly, const Body& body, int node, Vec2 field) {
     switch (body.kind) {
-        case BodyKind::flexible: return field;
-        case BodyKind::rigid: return node == body.centre_node ? field : Vec2{};
-        case BodyKind::plate: return {assembly.nodes.inverse_mass[node].x != 0.0 ? field.x : 0.0, 0.0};
+        case BodyKind::flexible:
+            return field;
+        case BodyKind::rigid:
+            return node == body.centre_node ? field : Vec2{};
+        case BodyKind::plate:
+            return {assembly.nodes.inverse_mass[node].x != 0.0 ? field.x : 0.0, 0.0};
     }
     return {};
 }
@@ -48,8 +53,8 @@ double fixed_x(const Assembly& assembly, const Box& box) {
     return 0.5 * (box.lower.x + box.upper.x);
 }
 
-// Moves the nodes by what `set_motion` writes into their velocities. The contacts follow the motion as they do in a step, so that gaps that it
-// opens or closes between rigid bodies and at plates are felt.
+// Moves the nodes by what `set_motion` writes into their velocities. The contacts follow the motion as they do in a step, so that
+// gaps that it opens or closes between rigid bodies and at plates are felt.
 template <class SetMotion>
 void move_by(Experiment& e, double travel_m, SetMotion&& set_motion) {
     Nodes& nodes = e.assembly.nodes;
@@ -101,7 +106,8 @@ void go_to(Experiment& e, const BodyState& state) {
 void set_loading_mode(Experiment& e, const BodyState& from, const BodyState& to) {
     const double travel = to.platen_travel_m - from.platen_travel_m;
     Nodes& nodes = e.assembly.nodes;
-    for (int n = 0; n < nodes.count(); ++n) nodes.loading_mode[n] = (1.0 / travel) * (to.displacement_m[n] - from.displacement_m[n]);
+    for (int n = 0; n < nodes.count(); ++n)
+        nodes.loading_mode[n] = (1.0 / travel) * (to.displacement_m[n] - from.displacement_m[n]);
     e.impose_motion();
 }
 
@@ -115,30 +121,38 @@ double factor_at_maximum(const Experiment& e, double force_at_base, double force
 // The same at which the first stage of a test ends, or of one that does not load first, at which the specimen is just in touch.
 // @param before  what the end of the stage looks at, at the base
 double factor_at_first_stage(const Experiment& e, double before, double damage_factor) {
-    constexpr double kInTouch = 0.01;   // of the first damage
+    constexpr double kInTouch = 0.01;  // of the first damage
     if (e.stages.empty()) return std::numeric_limits<double>::infinity();
     const StageSpec& first = e.stages.front().stages.front();
     if (first.kind != StageKind::load) return kInTouch * damage_factor;
     if (first.end == StageEnd::share_of_peak) return std::numeric_limits<double>::infinity();
-    const double change = stage_quantity(e, first) - before, wanted = first.counts != StageValue::reached ? std::copysign(first.value, change) : first.value - before;
+    const double change = stage_quantity(e, first) - before,
+                 wanted = first.counts != StageValue::reached ? std::copysign(first.value, change) : first.value - before;
     const double factor = wanted / change;
-    return factor > 0.0 ? factor : std::numeric_limits<double>::infinity();   // no end of this kind, or one that the loading moves away from
+    return factor > 0.0
+               ? factor
+               : std::numeric_limits<double>::infinity();  // no end of this kind, or one that the loading moves away from
 }
 
-double quantity_at_base(const Experiment& e) { return e.stages.empty() ? 0.0 : stage_quantity(e, e.stages.front().stages.front()); }
+double quantity_at_base(const Experiment& e) {
+    return e.stages.empty() ? 0.0 : stage_quantity(e, e.stages.front().stages.front());
+}
 
-// Whether the state stands where the elastic phase ends: at the maximum stress, or just below the first damage at a further factor.
+// Whether the state stands where the elastic phase ends: at the maximum stress, or just below the first damage at a further
+// factor.
 bool is_end_of_elastic_phase(double damage_factor, double nearly, double maximum_factor) {
     return damage_factor > 1.0 && (damage_factor < nearly || std::abs(maximum_factor - 1.0) < 1e-3);
 }
 
 // Contacts between grains that are broken before the test, perhaps open: the answer is not linear.
 bool has_cracks(const Assembly& assembly) {
-    return std::any_of(assembly.contacts.begin(), assembly.contacts.end(),
-                       [&](const Contact& contact) { return !contact.plate && assembly.bonds.damage[assembly.points[contact.first_point].state] >= 1.0; });
+    return std::any_of(assembly.contacts.begin(), assembly.contacts.end(), [&](const Contact& contact) {
+        return !contact.plate && assembly.bonds.damage[assembly.points[contact.first_point].state] >= 1.0;
+    });
 }
 
-// Axial loading of the relaxed state `base` up to the maximum stress or just below the first damage; sets B. Platens that stay in touch.
+// Axial loading of the relaxed state `base` up to the maximum stress or just below the first damage; sets B. Platens that stay in
+// touch.
 void elastic_loading(Experiment& e, const BodyState& base) {
     const double force_before = platen_force(e), quantity_before = quantity_at_base(e);
     add_affine(e, 1e-5 * e.length_m);
@@ -148,12 +162,13 @@ void elastic_loading(Experiment& e, const BodyState& base) {
         const BodyState reached = capture(e.assembly, e.platen_travel_m);
         const double factor = first_damage(e.assembly, base, reached);
         if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded");
-        const double most = std::min(factor_at_maximum(e, force_before, platen_force(e)), factor_at_first_stage(e, quantity_before, factor));
+        const double most =
+            std::min(factor_at_maximum(e, force_before, platen_force(e)), factor_at_first_stage(e, quantity_before, factor));
         if (attempt > 0 && is_end_of_elastic_phase(factor, 1.05, most)) break;
         go_to(e, superpose(base, reached, std::min(kBelowDamage * factor, most)));
         relax_or_throw(e);
     }
-    if (has_cracks(e.assembly)) {   // they may have slid: not beyond the first damage
+    if (has_cracks(e.assembly)) {  // they may have slid: not beyond the first damage
         const BodyState reached = capture(e.assembly, e.platen_travel_m);
         if (const double factor = first_damage(e.assembly, base, reached); factor <= 1.0) {
             go_to(e, superpose(base, reached, 0.9 * factor));
@@ -169,7 +184,9 @@ void move_fixtures(Experiment& e, double travel_m) {
     move_by(e, travel_m, [&] {
         std::fill(nodes.velocity.begin(), nodes.velocity.end(), Vec2{});
         for (const Fixture& fixture : e.assembly.fixtures)
-            for (const int node : fixture.nodes) nodes.velocity[node] = travel_m * Vec2{fixture.imposed.x * fixture.motion.x, fixture.imposed.y * fixture.motion.y};
+            for (const int node : fixture.nodes)
+                nodes.velocity[node] =
+                    travel_m * Vec2{fixture.imposed.x * fixture.motion.x, fixture.imposed.y * fixture.motion.y};
     });
 }
 
@@ -180,7 +197,8 @@ void learn_time_of_mode(Experiment& e, double stiffness) {
     for (const Body& body : e.assembly.bodies)
         if (body.kind != BodyKind::plate)
             for (const int n : body.nodes()) inertia += nodes.mass[n] * dot(nodes.loading_mode[n], nodes.loading_mode[n]);
-    if (!(stiffness > 0.0) || !(inertia > 0.0)) throw NumericalError("the specimen does not resist the loading: nothing holds it, or nothing presses on it");
+    if (!(stiffness > 0.0) || !(inertia > 0.0))
+        throw NumericalError("the specimen does not resist the loading: nothing holds it, or nothing presses on it");
     e.axial_stiffness = stiffness;
     e.travel_time = std::sqrt(3.0 * inertia / stiffness);
 }
@@ -211,11 +229,11 @@ BodyState first_motion(Experiment& e, double first_m, double force_unloaded, Mov
     return reached;
 }
 
-// Where contacts close on the way the answer is not linear, so scale and relax several times; B from the last two states. Beside dead loads the first
-// motion is small against them: a specimen that they alone hold may slide.
+// Where contacts close on the way the answer is not linear, so scale and relax several times; B from the last two states. Beside
+// dead loads the first motion is small against them: a specimen that they alone hold may slide.
 void elastic_contacts(Experiment& e) {
-    constexpr double kLargestScale = 20.0, kHolds = 0.8;   // of a round; share of the load that a linear body would have gained
-    constexpr double kFirstStrain = 2e-5, kFirstLoad = 0.02;   // the first motion; load that it brings about, over the dead loads
+    constexpr double kLargestScale = 20.0, kHolds = 0.8;  // of a round; share of the load that a linear body would have gained
+    constexpr double kFirstStrain = 2e-5, kFirstLoad = 0.02;  // the first motion; load that it brings about, over the dead loads
     const BodyState unloaded = capture(e.assembly, e.platen_travel_m);
     const double force_unloaded = platen_force(e), quantity_unloaded = quantity_at_base(e);
     const auto settle = [&](double tolerance = kTolerance) {
@@ -225,29 +243,35 @@ void elastic_contacts(Experiment& e) {
     };
     double first_m = kFirstStrain * e.length_m;
     if (e.has_dead_loads()) first_m = std::min(first_m, kFirstLoad * e.dead_load_N / e.axial_stiffness);
-    const auto move = [&](double travel_m) { e.method.start.strained_evenly ? add_affine(e, travel_m) : move_fixtures(e, travel_m); };
+    const auto move = [&](double travel_m) {
+        e.method.start.strained_evenly ? add_affine(e, travel_m) : move_fixtures(e, travel_m);
+    };
     BodyState reached = first_motion(e, first_m, force_unloaded, move, [&] { return settle(kOnTheWay); });
     for (int round = 0; round < 6; ++round) {
         const double factor = first_damage(e.assembly, unloaded, reached);
-        if (!std::isfinite(factor)) throw NumericalError("no contact point comes closer to failure when the specimen is loaded: its fixtures do not strain it");
-        const double most = std::min(factor_at_maximum(e, force_unloaded, platen_force(e)), factor_at_first_stage(e, quantity_unloaded, factor));
+        if (!std::isfinite(factor))
+            throw NumericalError(
+                "no contact point comes closer to failure when the specimen is loaded: its fixtures do not strain it");
+        const double most =
+            std::min(factor_at_maximum(e, force_unloaded, platen_force(e)), factor_at_first_stage(e, quantity_unloaded, factor));
         if (round > 0 && is_end_of_elastic_phase(factor, 1.04, most)) break;
         const double scale = std::min({kBelowDamage * factor, most, kLargestScale}), gained = platen_force(e) - force_unloaded;
         const BodyState before = reached;
         go_to(e, superpose(unloaded, reached, scale));
         reached = settle(kOnTheWay);
-        if (e.has_dead_loads() && platen_force(e) - force_unloaded < kHolds * scale * gained) {   // it slides: more motion brings no more load
+        if (e.has_dead_loads() &&
+            platen_force(e) - force_unloaded < kHolds * scale * gained) {  // it slides: more motion brings no more load
             go_to(e, before);
             reached = before;
             break;
         }
     }
     reached = settle();
-    if (first_damage(e.assembly, unloaded, reached) <= 1.0) {   // the rounds did not settle below the first damage
+    if (first_damage(e.assembly, unloaded, reached) <= 1.0) {  // the rounds did not settle below the first damage
         go_to(e, superpose(unloaded, reached, 0.9 * first_damage(e.assembly, unloaded, reached)));
         reached = settle();
     }
-    if (!e.stages.empty()) {   // the rounds saw the load of a body that was not yet in balance
+    if (!e.stages.empty()) {  // the rounds saw the load of a body that was not yet in balance
         const double most = factor_at_first_stage(e, quantity_unloaded, first_damage(e.assembly, unloaded, reached));
         if (most < 1.0) {
             go_to(e, superpose(unloaded, reached, most));
@@ -261,19 +285,22 @@ void elastic_contacts(Experiment& e) {
     relax_or_throw(e);
     set_loading_mode(e, below, capture(e.assembly, e.platen_travel_m));
     const double force_change = platen_force(e) - force_below, travel_change = reached.platen_travel_m - below.platen_travel_m;
-    if (e.method.start.time_of_mode) learn_time_of_mode(e, force_change / travel_change);
-    else learn_from(e, force_change, travel_change);
+    if (e.method.start.time_of_mode)
+        learn_time_of_mode(e, force_change / travel_change);
+    else
+        learn_from(e, force_change, travel_change);
 }
 
 // Isotropic stress by superposition: lateral pressure, and platen travel until the platens carry the same stress.
 void consolidate_elastically(Experiment& e) {
     const double target = e.setup.test.sigma3_Pa * e.section_m2;
     e.set_dead_loads(1.0);
-    double tolerance = kOnTheWay;   // until the platens are right; a loose state moves on when it is relaxed in full, so both are asked then
+    double tolerance =
+        kOnTheWay;  // until the platens are right; a loose state moves on when it is relaxed in full, so both are asked then
     relax_or_throw(e, tolerance);
     for (int round = 0; round < 12; ++round) {
         const double missing = target - platen_force(e);
-        if (round > 0 && std::abs(missing) < 1e-3 * target) {   // what the relaxation leaves moving is of this size
+        if (round > 0 && std::abs(missing) < 1e-3 * target) {  // what the relaxation leaves moving is of this size
             if (tolerance == kTolerance) return;
             tolerance = kTolerance;
             relax_or_throw(e, tolerance);
@@ -287,16 +314,17 @@ void consolidate_elastically(Experiment& e) {
     relax_or_throw(e);
 }
 
-// Dead loads with the real law: they follow a ramp of many travel times, then wait for rest. Of a confined specimen the platens follow by a servo, so
-// that the stress is isotropic; else the fixtures rest. From where the ramp stands.
+// Dead loads with the real law: they follow a ramp of many travel times, then wait for rest. Of a confined specimen the platens
+// follow by a servo, so that the stress is isotropic; else the fixtures rest. From where the ramp stands.
 void bring_up_dead_loads(Experiment& e) {
     const double target = e.confined() ? e.setup.test.sigma3_Pa * e.section_m2 : e.dead_load_N;
-    const double period = e.travel_time / e.settings.dt;                    // in steps
+    const double period = e.travel_time / e.settings.dt;  // in steps
     const long long ramp = std::llround(30.0 * period), most = 40 * ramp;
     const double already = e.ramp.already;
     for (long long& k = e.ramp.step;; k += 10) {
         const bool stopped = e.stopped();
-        if (e.keeping != nullptr && e.keeping->due(stopped)) e.keeping->keep(TestPart::preparation, [&](StateWriter& writer) { writer.write(e.state()); });
+        if (e.keeping != nullptr && e.keeping->due(stopped))
+            e.keeping->keep(TestPart::preparation, [&](StateWriter& writer) { writer.write(e.state()); });
         if (stopped) throw Interrupted();
         const double share = std::min(1.0, already + (1.0 - already) * static_cast<double>(k) / static_cast<double>(ramp));
         e.set_dead_loads(share);
@@ -305,14 +333,17 @@ void bring_up_dead_loads(Experiment& e) {
         e.run(10);
         e.preparation_steps += 10;
         if (!std::isfinite(force)) throw NumericalError("a force is not a number during the consolidation");
-        if (e.control.progress && k % 100 == 0) e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
+        if (e.control.progress && k % 100 == 0)
+            e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
         const auto [loading, rest] = reactions(e.assembly);
-        const double mean = 0.5 * (loading + rest);   // which is reported
+        const double mean = 0.5 * (loading + rest);  // which is reported
         const bool there = !e.confined() || std::abs(mean - target) < 2e-3 * target;
         if (share == 1.0 && there && unbalanced_force(e.assembly) < 0.01 * target) break;
         if (k > most)
-            throw NumericalError(e.confined() ? "the specimen does not come to rest under the isotropic stress: it fails before it is sheared"
-                                              : "the specimen does not come to rest under its pressures and its weight: it fails before it is loaded");
+            throw NumericalError(
+                e.confined()
+                    ? "the specimen does not come to rest under the isotropic stress: it fails before it is sheared"
+                    : "the specimen does not come to rest under its pressures and its weight: it fails before it is loaded");
     }
     e.change_speed(0.0);
 }
@@ -350,7 +381,8 @@ bool consolidated_is_elastic(const Experiment& e, const BodyState& unloaded) {
 
 void forget_relaxation_work(Experiment& e) {
     for (BodyWork& work : e.assembly.body_work) work = {};
-    for (auto* energy : {&e.assembly.bonds.fracture_J, &e.assembly.bonds.friction_J}) std::fill(energy->begin(), energy->end(), 0.0);
+    for (auto* energy : {&e.assembly.bonds.fracture_J, &e.assembly.bonds.friction_J})
+        std::fill(energy->begin(), energy->end(), 0.0);
     e.platen_work = {};
     e.rate_control_J = 0.0;
     e.weight_start_J = e.weight_work();
@@ -403,7 +435,8 @@ void press_by_ramp(Experiment& e) {
     rest_under_dead_loads(e);
 }
 
-// A first motion along the mode: rates are shares of the motion so far. @param elastic_m  motion at the first damage of the elastic body
+// A first motion along the mode: rates are shares of the motion so far. @param elastic_m  motion at the first damage of the
+// elastic body
 void set_out(Experiment& e, double elastic_m) {
     constexpr double kShare = 0.01;
     const double travel_m = kShare * elastic_m;
@@ -430,7 +463,7 @@ void prepare_adaptive(Experiment& e) {
         forget_relaxation_work(e);
         if (e.has_dead_loads() && elastic) note_consolidated(e);
         elastic_contacts(e);
-        if (!elastic) {   // the mode is that of the whole body; the loading begins where the dead loads have left it
+        if (!elastic) {  // the mode is that of the whole body; the loading begins where the dead loads have left it
             e.ramp.travel_m = e.platen_travel_m;
             go_to(e, unloaded);
             press_by_ramp(e);
@@ -439,17 +472,19 @@ void prepare_adaptive(Experiment& e) {
     } else {
         const BodyState unloaded = capture(e.assembly, 0.0);
         bool elastic = true;
-        double consolidated = 1.0;   // share of the dead loads that the elastic body bears
+        double consolidated = 1.0;  // share of the dead loads that the elastic body bears
         if (e.confined()) {
             consolidate_elastically(e);
             elastic = consolidated_is_elastic(e, unloaded);
-            if (!elastic) consolidated = go_below_damage(e, unloaded);   // then ramp with the real law
+            if (!elastic) consolidated = go_below_damage(e, unloaded);  // then ramp with the real law
         }
         forget_relaxation_work(e);
         if (elastic) {
             note_consolidated(e);
-            if (has_cracks(e.assembly) && !e.confined()) elastic_contacts(e);
-            else elastic_loading(e, capture(e.assembly, e.platen_travel_m));
+            if (has_cracks(e.assembly) && !e.confined())
+                elastic_contacts(e);
+            else
+                elastic_loading(e, capture(e.assembly, e.platen_travel_m));
         } else {
             const StoredEnergy before = stored_energy(e.assembly, 0.0);
             e.elastic_start_J = before.grains_J + before.contacts_J;
@@ -478,7 +513,8 @@ void set_going(Experiment& e) {
     forget_mode(e);
 }
 
-// A specimen that is not strained evenly begins with the velocities of its elastic answer: pushed at one place only, it would swing.
+// A specimen that is not strained evenly begins with the velocities of its elastic answer: pushed at one place only, it would
+// swing.
 void begin_in_mode(Experiment& e) {
     const BodyState unloaded = capture(e.assembly, 0.0);
     press_elastically(e);
@@ -519,8 +555,10 @@ void begin_behind_ramp(Experiment& e) {
     if (adaptive && e.method.start.stays_in_touch) return begin_damaged(e);
     if (!adaptive && e.method.start.strained_evenly) return begin_affinely(e);
     rest_under_dead_loads(e);
-    if (adaptive) set_out(e, e.ramp.travel_m);
-    else set_going(e);
+    if (adaptive)
+        set_out(e, e.ramp.travel_m);
+    else
+        set_going(e);
 }
 
 }  // namespace

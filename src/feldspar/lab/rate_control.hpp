@@ -4,12 +4,13 @@
 #include <array>
 #include <vector>
 
-#include "feldspar/model/assembly.hpp"
 #include "feldspar/methods/test_spec.hpp"
+#include "feldspar/model/assembly.hpp"
 
 namespace feldspar {
 
-/// Target of R* with which a strength is first looked for, from the wanted relative accuracy; or what the user gives in its place.
+/// Target of R* with which a strength is first looked for, from the wanted relative accuracy; or what the user gives in its
+/// place.
 double residual_target(const NumericsSpec& numerics, MethodId kind);
 
 /// The accuracy that has this target: the inverse of residual_target().
@@ -17,8 +18,8 @@ double accuracy_of(double residual_target, MethodId kind);
 
 /// How fast the load may pass: both limits fall together when a passage was too fast.
 struct PassageLimits {
-    double residual = 0.0;   ///< target of R*
-    double growth = 0.0;     ///< of the platen travel in a travel time of a wave, relative to the travel so far
+    double residual = 0.0;  ///< target of R*
+    double growth = 0.0;    ///< of the platen travel in a travel time of a wave, relative to the travel so far
 };
 
 /// Of the first passage: wide, so that it is quick.
@@ -27,15 +28,15 @@ PassageLimits first_passage(const NumericsSpec& numerics, MethodId kind);
 /// What the free degrees of freedom leave unbalanced, sums of |F|.
 struct Unbalanced {
     double total_N = 0.0;
-    double typical_N = 0.0;   ///< of the median body (plates apart), times the number of bodies: what the total would be without
-                              ///< the few bodies beside a running crack, or that rattle in crushed rock whatever the speed is
+    double typical_N = 0.0;  ///< of the median body (plates apart), times the number of bodies: what the total would be without
+                             ///< the few bodies beside a running crack, or that rattle in crushed rock whatever the speed is
 };
 
 Unbalanced unbalanced(const Assembly& assembly);
 
-/// Adjusts the platen speed every few steps so that the unbalanced force stays at its target: down to rest while the typical body is
-/// out of balance, so that an unstable crack runs out at a platen that stands still. It knows no strength and no length: only the
-/// travel so far, the time in which a wave crosses the specimen, and its limits.
+/// Adjusts the platen speed every few steps so that the unbalanced force stays at its target: down to rest while the typical body
+/// is out of balance, so that an unstable crack runs out at a platen that stands still. It knows no strength and no length: only
+/// the travel so far, the time in which a wave crosses the specimen, and its limits.
 class RateControl {
 public:
     /// @param travel_time  of a wave over the height, in steps
@@ -49,7 +50,8 @@ public:
     /// @param platen_travel_m    so far
     /// @param slowest_growth     at least so much of the travel in a travel time of a wave, whatever is out of balance
     /// @return the speed for the next steps
-    double next(double speed, const Unbalanced& unbalanced, double platen_force_N, double platen_travel_m, double slowest_growth = 0.0);
+    double next(double speed, const Unbalanced& unbalanced, double platen_force_N, double platen_travel_m,
+                double slowest_growth = 0.0);
 
     /// Whether the typical body was within the target when next() was asked last.
     bool balanced() const { return residual_ <= limits_.residual; }
@@ -72,13 +74,14 @@ private:
     double travel_time_;
     double largest_force_N_ = 0.0;
     double residual_ = 0.0;
-    std::array<double, 3> recent_{};   ///< total R* of the last blocks, the oldest first
+    std::array<double, 3> recent_{};  ///< total R* of the last blocks, the oldest first
 };
 
 /// Lets the loading mode B follow the damaged body. The body's mean motion over about one travel time of a wave is, per unit of
 /// platen travel, what B should be; blending it in leaves every velocity as it is and only changes what the damping calls a
-/// deviation. Windows with a crack in them count too: a B that nobody corrects drags on the body for good, and holds the unbalanced
-/// force where no window would ever be quiet again. What a crack moved is no motion of the loading, so a mode is bounded.
+/// deviation. Windows with a crack in them count too: a B that nobody corrects drags on the body for good, and holds the
+/// unbalanced force where no window would ever be quiet again. What a crack moved is no motion of the loading, so a mode is
+/// bounded.
 class LoadingModeUpdate {
 public:
     /// @param travel_time  of a wave over the height, in steps: the window

@@ -76,7 +76,7 @@ HistoryRow Recorder::present(Phase phase) {
     if (!e_.stepped) last.dt = 0.0;
     const StoredEnergy stored = stored_energy(e_.assembly, last.dt);
     const Motion moving = motion(e_.assembly, last);
-    row.kinetic_deviation = moving.deviation_J;   // local damping: the loading mode is zero, and this is all motion
+    row.kinetic_deviation = moving.deviation_J;  // local damping: the loading mode is zero, and this is all motion
     row.energy.external = e_.platen_work.loading + stored.pressure_J - moving.ahead_external_J;
     if (!e_.full_weight.empty()) row.energy.external += e_.weight_work(last.dt) - e_.weight_start_J;
     row.energy.elastic_start = e_.elastic_start_J;
@@ -94,20 +94,25 @@ HistoryRow Recorder::present(Phase phase) {
 void Recorder::elastic_phase(const HistoryRow& from) {
     constexpr int kRows = 20;
     const HistoryRow to = present(Phase::elastic);
-    const int first = result_.history.empty() ? 0 : 1;   // the row at `from` may stand there already
+    const int first = result_.history.empty() ? 0 : 1;  // the row at `from` may stand there already
     const auto mix = [](double a, double b, double share) { return a + share * (b - a); };
     for (int i = first; i < kRows; ++i) {
         const double share = static_cast<double>(i) / kRows;
         HistoryRow row = to;
-        for (double HistoryRow::*value : {&HistoryRow::platen_displacement_m, &HistoryRow::axial_strain, &HistoryRow::axial_strain_gauge,
-                                          &HistoryRow::lateral_strain_gauge, &HistoryRow::stress_top_Pa, &HistoryRow::stress_bottom_Pa,
-                                          &HistoryRow::axial_stress_Pa})
+        for (double HistoryRow::*value :
+             {&HistoryRow::platen_displacement_m, &HistoryRow::axial_strain, &HistoryRow::axial_strain_gauge,
+              &HistoryRow::lateral_strain_gauge, &HistoryRow::stress_top_Pa, &HistoryRow::stress_bottom_Pa,
+              &HistoryRow::axial_stress_Pa})
             row.*value = mix(from.*value, to.*value, share);
-        for (std::size_t g = 0; g < row.gauges.size(); ++g) row.gauges[g] = mix(g < from.gauges.size() ? from.gauges[g] : 0.0, to.gauges[g], share);
+        for (std::size_t g = 0; g < row.gauges.size(); ++g)
+            row.gauges[g] = mix(g < from.gauges.size() ? from.gauges[g] : 0.0, to.gauges[g], share);
         // Energies grow with the square of the load only from an unloaded start; elsewhere they follow the two states.
-        for (double EnergyLedger::*value : {&EnergyLedger::elastic_grains, &EnergyLedger::elastic_contacts, &EnergyLedger::elastic_start})
-            row.energy.*value = from.axial_stress_Pa == 0.0 ? share * share * (to.energy.*value) : mix(from.energy.*value, to.energy.*value, share);
-        row.energy.rate_control = row.energy.kinetic = row.kinetic_deviation = row.residual = row.residual_median = row.platen_speed = 0.0;
+        for (double EnergyLedger::*value :
+             {&EnergyLedger::elastic_grains, &EnergyLedger::elastic_contacts, &EnergyLedger::elastic_start})
+            row.energy.*value = from.axial_stress_Pa == 0.0 ? share * share * (to.energy.*value)
+                                                            : mix(from.energy.*value, to.energy.*value, share);
+        row.energy.rate_control = row.energy.kinetic = row.kinetic_deviation = row.residual = row.residual_median =
+            row.platen_speed = 0.0;
         e_.gauges.read_energies(row.energy, row.gauges);
         result_.history.push_back(row);
     }
@@ -117,7 +122,8 @@ const HistoryRow& Recorder::record(Phase phase) {
     collect_cracks();
     result_.history.push_back(present(phase));
     const HistoryRow& row = result_.history.back();
-    for (std::size_t c = result_.cracks.size(); c-- > 0 && result_.cracks[c].step >= now_.cracks_seen_until;) {   // those of this interval
+    for (std::size_t c = result_.cracks.size();
+         c-- > 0 && result_.cracks[c].step >= now_.cracks_seen_until;) {  // those of this interval
         result_.cracks[c].axial_strain = row.axial_strain;
         result_.cracks[c].axial_stress_Pa = row.axial_stress_Pa;
     }
@@ -132,11 +138,12 @@ void Recorder::collect_cracks() {
         int contact, point;
     };
     std::vector<Found> found;
-    const std::vector<Contact>& contacts = e_.assembly.contacts;   // in the order of their points
+    const std::vector<Contact>& contacts = e_.assembly.contacts;  // in the order of their points
     for (int p = 0; p < std::ssize(e_.assembly.points); ++p) {
         const long long step = e_.assembly.points[p].broken_step;
         if (step < std::max(0LL, now_.cracks_seen_until)) continue;
-        const auto behind = std::upper_bound(contacts.begin(), contacts.end(), p, [](int point, const Contact& c) { return point < c.first_point; });
+        const auto behind = std::upper_bound(contacts.begin(), contacts.end(), p,
+                                             [](int point, const Contact& c) { return point < c.first_point; });
         found.push_back({step, static_cast<int>(behind - contacts.begin()) - 1, p});
     }
     std::stable_sort(found.begin(), found.end(), [](const Found& l, const Found& r) { return l.step < r.step; });
@@ -178,7 +185,8 @@ Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& ro
     }
     if (!e_.assembly.dilations.empty())
         for (const Contact& contact : e_.assembly.contacts)
-            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) f.opening[p] += e_.assembly.dilated_m(contact, p);
+            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
+                f.opening[p] += e_.assembly.dilated_m(contact, p);
     for (const Contact& contact : e_.assembly.contacts) {
         if (!joins_grains(contact)) continue;
         double damage = 0.0, normal = 0.0, shear = 0.0;
@@ -196,14 +204,17 @@ Recorder::Fields Recorder::fields(const std::string& label, const HistoryRow& ro
 }
 
 // New contacts come behind those of the initial assembly, which stay in the list when they are dropped.
-bool Recorder::joins_grains(const Contact& contact) const { return contact.material == between_grains && !contact.plate && !contact.new_contact; }
+bool Recorder::joins_grains(const Contact& contact) const {
+    return contact.material == between_grains && !contact.plate && !contact.new_contact;
+}
 
 void Recorder::name_grain_contacts() {
     for (std::size_t c = 0; c < e_.assembly.contacts.size(); ++c) {
         const Contact& contact = e_.assembly.contacts[c];
         if (!joins_grains(contact)) continue;
         const ContactOrigin& origin = e_.assembly.origins[c];
-        result_.grain_contacts.push_back({e_.assembly.bodies[contact.a.body].grain, e_.assembly.bodies[contact.b.body].grain, origin.from, origin.to});
+        result_.grain_contacts.push_back(
+            {e_.assembly.bodies[contact.a.body].grain, e_.assembly.bodies[contact.b.body].grain, origin.from, origin.to});
     }
 }
 
@@ -217,7 +228,7 @@ void Recorder::keep_snapshots(const HistoryRow& row) {
     if (!now_.peak || load > 1.001 * strength_sign() * now_.peak->row.axial_stress_Pa) now_.peak = kept("peak");
     if (most <= 0 || cracks == 0 || cracks < now_.next_cracks) return;
     now_.loading.push_back(kept("load"));
-    if (static_cast<int>(now_.loading.size()) > 2 * most) {   // keep every second one
+    if (static_cast<int>(now_.loading.size()) > 2 * most) {  // keep every second one
         std::vector<Kept> thinned;
         for (std::size_t i = 1; i < now_.loading.size(); i += 2) thinned.push_back(now_.loading[i]);
         now_.loading = std::move(thinned);
@@ -247,9 +258,10 @@ Snapshot Recorder::complete(const Fields& f) const {
         s.stress_yy_Pa.push_back(-stress.yy);
         s.stress_xy_Pa.push_back(-stress.xy);
     };
-    for (int b = 0; b < std::ssize(e_.assembly.bodies); ++b)   // the triangles of all bodies, in their order
+    for (int b = 0; b < std::ssize(e_.assembly.bodies); ++b)  // the triangles of all bodies, in their order
         for (int t = e_.assembly.bodies[b].triangle_begin; t < e_.assembly.bodies[b].triangle_end; ++t)
-            add_stress(cauchy_stress(e_.assembly.elasticity_of(b), displacement_gradient(f.displacement, e_.assembly.triangles[t])));
+            add_stress(
+                cauchy_stress(e_.assembly.elasticity_of(b), displacement_gradient(f.displacement, e_.assembly.triangles[t])));
     for (std::size_t g = 0; g < f.grain_stress.size(); ++g)
         for (int t = mesh.triangle_begin[g]; t < mesh.triangle_begin[g + 1]; ++t) add_stress(f.grain_stress[g]);
     s.damage.assign(mesh.triangles.size(), 0.0F);
@@ -259,7 +271,8 @@ Snapshot Recorder::complete(const Fields& f) const {
         if (origin.edge_a < 0) continue;
         for (const auto& [side, edge] : {std::pair{contact.a, origin.edge_a}, std::pair{contact.b, origin.edge_b}}) {
             float& damage = s.damage[mesh.edge_triangle[mesh.edge_begin[e_.assembly.bodies[side.body].grain] + edge]];
-            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) damage = std::max(damage, f.damage[p]);
+            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
+                damage = std::max(damage, f.damage[p]);
         }
     }
     s.cracks = f.cracks;
@@ -288,7 +301,7 @@ void Recorder::finish() {
     for (Fields& f : all) {
         if (f.label == "load") f.label = "load-" + std::to_string(++number);
         result_.snapshots.push_back(complete(f));
-        f = {};   // its memory is enough for a part of the next
+        f = {};  // its memory is enough for a part of the next
     }
 }
 

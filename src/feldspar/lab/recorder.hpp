@@ -38,14 +38,14 @@ public:
     void finish();
 
 private:
-    struct Fields {   // what a snapshot needs, copied cheaply; stresses are computed at the end
+    struct Fields {  // what a snapshot needs, copied cheaply; stresses are computed at the end
         std::string label;
         HistoryRow row;
-        Array<Vec2> displacement;   // a node of the assembly
-        std::vector<Mat2> grain_stress;   // a grain, unless grains have triangles of their own
-        std::vector<float> damage;     // a contact point
-        std::vector<double> opening;   // a contact point
-        std::vector<float> contact_damage, contact_normal, contact_shear;   // a contact that bonded two grains before the test
+        Array<Vec2> displacement;                                          // a node of the assembly
+        std::vector<Mat2> grain_stress;                                    // a grain, unless grains have triangles of their own
+        std::vector<float> damage;                                         // a contact point
+        std::vector<double> opening;                                       // a contact point
+        std::vector<float> contact_damage, contact_normal, contact_shear;  // a contact that bonded two grains before the test
         int cracks = 0;
     };
     HistoryRow present(Phase phase);
@@ -58,13 +58,13 @@ private:
     int strength_sign() const { return e_.direction < 0.0 ? -1 : 1; }
 
     using Kept = std::shared_ptr<const Fields>;
-    struct State {   // everything that recording changes here
-        long long cracks_seen_until = -1;   // step
-        std::vector<int> crack_points;      // contact point of each crack
-        std::vector<Kept> loading;          // evenly spaced in cracks, thinned out as their number grows
+    struct State {                         // everything that recording changes here
+        long long cracks_seen_until = -1;  // step
+        std::vector<int> crack_points;     // contact point of each crack
+        std::vector<Kept> loading;         // evenly spaced in cracks, thinned out as their number grows
         int crack_spacing = 1;
         int next_cracks = 0;
-        Kept start, first_crack, peak;      // may be empty
+        Kept start, first_crack, peak;  // may be empty
         int tensile = 0, shear = 0;
         Unbalanced unbalanced;
     };
@@ -76,7 +76,7 @@ private:
 
 struct Recorder::Mark {
     State state;
-    std::size_t rows = 0, cracks = 0;   // of the result
+    std::size_t rows = 0, cracks = 0;  // of the result
 };
 
 }  // namespace feldspar

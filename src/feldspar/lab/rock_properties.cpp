@@ -18,7 +18,8 @@ using Source = RockProperty::Source;
 constexpr std::string_view confined_stem = "sigma1_at_sigma3", confined_start = "sigma1_at_sigma3_", confined_end = "MPa_Pa";
 
 /// A number of one kind of test, as each packing has it.
-RockProperty read(std::string_view quantity, MethodId kind, const char* label, const char* symbol, std::string_view laboratory = {}) {
+RockProperty read(std::string_view quantity, MethodId kind, const char* label, const char* symbol,
+                  std::string_view laboratory = {}) {
     const TestQuantity& read_from = test_quantity(quantity);
     RockProperty p{read_from.name, read_from.unit, label, symbol, read_from.definition, Source::test, {kind}, &read_from};
     p.laboratory = laboratory;
@@ -37,7 +38,8 @@ MethodId method_that_reads(Reading reading) {
 
 RockProperty strength(MethodId kind) {
     const MethodStrength& measured = method_of(kind).strength;
-    RockProperty p = read("strength", kind, measured.label, "", measured.laboratory.empty() ? measured.name : measured.laboratory);
+    RockProperty p =
+        read("strength", kind, measured.label, "", measured.laboratory.empty() ? measured.name : measured.laboratory);
     p.name = measured.name;
     p.symbol = measured.symbol.empty() ? measured.name : measured.symbol;
     p.of_broken_only = true;
@@ -55,7 +57,12 @@ RockProperty share(std::string_view name, RockProperty p) {
 }
 
 RockProperty ratio(std::string_view name, std::string_view above, std::string_view below) {
-    RockProperty p{name, units::pure, fmt::format("Ratio {} / {}", above, below), fmt::format("{}/{}", above, below), "(P11)", Source::ratio,
+    RockProperty p{name,
+                   units::pure,
+                   fmt::format("Ratio {} / {}", above, below),
+                   fmt::format("{}/{}", above, below),
+                   "(P11)",
+                   Source::ratio,
                    {method_of_strength(above), method_of_strength(below)}};
     p.above = above;
     p.below = below;
@@ -69,15 +76,17 @@ RockProperty over_UCS(std::string_view name, std::string_view above, const char*
     return p;
 }
 
-RockProperty fitted(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, std::string_view definition, double EnvelopeFit::* fit,
-                    std::string_view laboratory = {}) {
-    RockProperty p{name, unit, label, symbol, definition, Source::envelope, {method_of_strength("UCS"), method_of_confined_strength()}};
+RockProperty fitted(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, std::string_view definition,
+                    double EnvelopeFit::*fit, std::string_view laboratory = {}) {
+    RockProperty p{
+        name, unit, label, symbol, definition, Source::envelope, {method_of_strength("UCS"), method_of_confined_strength()}};
     p.fit = fit;
     p.laboratory = laboratory;
     return p;
 }
 
-RockProperty sheared(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, double ShearFit::* fit, std::string_view laboratory) {
+RockProperty sheared(std::string_view name, QuantityUnit unit, const char* label, const char* symbol, double ShearFit::*fit,
+                     std::string_view laboratory) {
     RockProperty p{name, unit, label, symbol, "(P63)", Source::shear_envelope, {}};
     for (const MethodId method : test_methods())
         if (method_of(method).specimen.sheared) p.tests.insert(method);
@@ -104,31 +113,50 @@ std::vector<RockProperty> table() {
         in_splitting("BTS_first_dip", "Brazilian test, stress at the first fall of 5 %", "BTS dip", "BTS"),
         in_splitting("BTS_largest", "Brazilian test, largest stress of the record", "BTS largest", "BTS"),
         fitted("cohesion", stress, "Cohesion, Mohr-Coulomb", "c", "(P12)", &EnvelopeFit::cohesion_Pa, "cohesion"),
-        fitted("friction_angle", angle, "Friction angle, Mohr-Coulomb", "\u03c6", "(P12)", &EnvelopeFit::friction_angle_deg, "friction_angle"),
-        fitted("hoek_brown_mi", pure, "Hoek-Brown constant, intact rock", "mi", "(P13)", &EnvelopeFit::hoek_brown_mi, "hoek_brown_mi"),
-        read("multi_stage_cohesion", method_that_reads(Reading::stages), "Cohesion, one specimen under rising pressures", "c multi-stage", "cohesion"),
-        read("multi_stage_friction_angle", method_that_reads(Reading::stages), "Friction angle, one specimen under rising pressures", "\u03c6 multi-stage", "friction_angle"),
+        fitted("friction_angle", angle, "Friction angle, Mohr-Coulomb", "\u03c6", "(P12)", &EnvelopeFit::friction_angle_deg,
+               "friction_angle"),
+        fitted("hoek_brown_mi", pure, "Hoek-Brown constant, intact rock", "mi", "(P13)", &EnvelopeFit::hoek_brown_mi,
+               "hoek_brown_mi"),
+        read("multi_stage_cohesion", method_that_reads(Reading::stages), "Cohesion, one specimen under rising pressures",
+             "c multi-stage", "cohesion"),
+        read("multi_stage_friction_angle", method_that_reads(Reading::stages),
+             "Friction angle, one specimen under rising pressures", "\u03c6 multi-stage", "friction_angle"),
         sheared("shear_cohesion", stress, "Cohesion, direct shear", "c shear", &ShearFit::cohesion_Pa, "cohesion"),
-        sheared("shear_friction_angle", angle, "Friction angle, direct shear", "\u03c6 shear", &ShearFit::friction_angle_deg, "friction_angle"),
-        sheared("residual_cohesion", stress, "Residual cohesion, direct shear", "c residual", &ShearFit::residual_cohesion_Pa, "residual_cohesion"),
-        sheared("residual_friction_angle", angle, "Residual friction angle, direct shear", "\u03c6 residual", &ShearFit::residual_friction_angle_deg, "residual_friction_angle"),
+        sheared("shear_friction_angle", angle, "Friction angle, direct shear", "\u03c6 shear", &ShearFit::friction_angle_deg,
+                "friction_angle"),
+        sheared("residual_cohesion", stress, "Residual cohesion, direct shear", "c residual", &ShearFit::residual_cohesion_Pa,
+                "residual_cohesion"),
+        sheared("residual_friction_angle", angle, "Residual friction angle, direct shear", "\u03c6 residual",
+                &ShearFit::residual_friction_angle_deg, "residual_friction_angle"),
         ratio("UCS_over_BTS", "UCS", "BTS"),
         ratio("UCS_over_DTS", "UCS", "DTS"),
         ratio("BTS_over_DTS", "BTS", "DTS"),
-        {confined_stem, stress, "Strength at \u03c3\u2083", "\u03c3\u2081", "(P1)", Source::confined_strength, {method_of_confined_strength()}},
+        {confined_stem,
+         stress,
+         "Strength at \u03c3\u2083",
+         "\u03c3\u2081",
+         "(P1)",
+         Source::confined_strength,
+         {method_of_confined_strength()}},
         fitted("UCS_fitted", stress, "UCS from the Mohr-Coulomb line", "UCS fit", "(P12)", &EnvelopeFit::UCS_fitted_Pa),
         {"mohr_coulomb_N", pure, "Slope of the Mohr-Coulomb line", "N", "(P12)"},
         {"mohr_coulomb_tension", stress, "Tensile strength, Mohr-Coulomb line", "\u03c3t M-C", "(P19)"},
         fitted("hoek_brown_UCS", stress, "UCS from the Hoek-Brown fit", "\u03c3ci fit", "(P13)", &EnvelopeFit::hoek_brown_UCS_Pa),
         {"hoek_brown_tension", stress, "Tensile strength, Hoek-Brown parabola", "\u03c3t H-B", "(P19)"},
-        read("hole_side_factor", method_that_reads(Reading::hole), "Stress at the sides of a hole over the axial stress, elastic", "k side"),
-        read("hole_pole_factor", method_that_reads(Reading::hole), "Stress at the poles of a hole over the axial stress, elastic", "k pole"),
-        read("hole_pole_crack", method_that_reads(Reading::hole), "Axial stress at the first tensile crack at a pole of a hole", "\u03c3 pole"),
-        read("hole_side_crack", method_that_reads(Reading::hole), "Axial stress at the first crack at a side of a hole", "\u03c3 side"),
+        read("hole_side_factor", method_that_reads(Reading::hole), "Stress at the sides of a hole over the axial stress, elastic",
+             "k side"),
+        read("hole_pole_factor", method_that_reads(Reading::hole), "Stress at the poles of a hole over the axial stress, elastic",
+             "k pole"),
+        read("hole_pole_crack", method_that_reads(Reading::hole), "Axial stress at the first tensile crack at a pole of a hole",
+             "\u03c3 pole"),
+        read("hole_side_crack", method_that_reads(Reading::hole), "Axial stress at the first crack at a side of a hole",
+             "\u03c3 side"),
         read("hole_breakout", method_that_reads(Reading::hole), "Axial stress at which a breakout begins", "\u03c3 breakout"),
-        read("hole_breakout_side_stress", method_that_reads(Reading::hole), "Stress at the sides of a hole when a breakout begins", "\u03c3\u03b8 breakout"),
+        read("hole_breakout_side_stress", method_that_reads(Reading::hole),
+             "Stress at the sides of a hole when a breakout begins", "\u03c3\u03b8 breakout"),
         in_compression("first_crack", "Stress at the first crack", "\u03c31st"),
-        in_compression("sigma_ci_crack_volume", "Crack initiation stress, crack volumetric strain", "\u03c3ci", "sigma_ci_crack_volume"),
+        in_compression("sigma_ci_crack_volume", "Crack initiation stress, crack volumetric strain", "\u03c3ci",
+                       "sigma_ci_crack_volume"),
         in_compression("sigma_ci_crack_count", "Crack initiation stress, crack count", "\u03c3ci"),
         in_compression("sigma_ci_lateral_strain", "Crack initiation stress, lateral strain response", "\u03c3ci"),
         in_compression("sigma_cd", "Crack damage stress, reversal of the volumetric strain", "\u03c3cd", "sigma_cd"),
@@ -164,7 +192,8 @@ const RockProperty* rock_property(std::string_view name) {
 const RockProperty* kept_rock_property(std::string_view kept_name) {
     if (pressure_of_confined_strength_MPa(kept_name)) return rock_property(confined_stem);
     const std::span<const RockProperty> all = rock_properties();
-    const auto found = std::ranges::find_if(all, [&](const RockProperty& p) { return p.source != Source::confined_strength && p.kept_name() == kept_name; });
+    const auto found = std::ranges::find_if(
+        all, [&](const RockProperty& p) { return p.source != Source::confined_strength && p.kept_name() == kept_name; });
     return found == all.end() ? nullptr : &*found;
 }
 

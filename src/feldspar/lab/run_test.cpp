@@ -53,7 +53,8 @@ TestResult begin_result(const TestSetup& setup) {
     result.contact = setup.contact;
     result.grain = setup.grain;
     result.rock = setup.rock;
-    if (setup.rock.any() || setup.specimen->quality.crystals > 0) result.texture = Texture(*setup.specimen, setup.grain, setup.contact, setup.rock).summary();
+    if (setup.rock.any() || setup.specimen->quality.crystals > 0)
+        result.texture = Texture(*setup.specimen, setup.grain, setup.contact, setup.rock).summary();
     result.numerics = setup.numerics;
     result.seed = setup.specimen->seed;
     result.specimen = setup.specimen;
@@ -89,7 +90,7 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     try {
         if (!keeping.goes_on(TestPart::loading)) {
             prepare(e);
-            HistoryRow from;   // where the computed start began: nothing, or the state under dead loads
+            HistoryRow from;  // where the computed start began: nothing, or the state under dead loads
             if (e.has_dead_loads()) {
                 from = e.consolidated;
                 from.phase = Phase::consolidation;
@@ -122,8 +123,9 @@ TestResult run_once(const TestSetup& setup, const RunControl& control, TestKeepi
     if (!result.history.empty()) result.energy_at_end = result.history.back().energy;
     result.energy_residual = largest_energy_residual(result.history);
     result.properties = measure(result);
-    if (result.stop_reason == kEndedByUser) result.properties.remarks.push_back("The test was ended by the user, before its own end.");
-    result.emission = acoustic_emission(result);   // reads moduli, too
+    if (result.stop_reason == kEndedByUser)
+        result.properties.remarks.push_back("The test was ended by the user, before its own end.");
+    result.emission = acoustic_emission(result);  // reads moduli, too
     result.evidence = judge(result);
     result.wall_s = keeping.seconds();
     if (!result.interrupted) keeping.add_finished(result);
@@ -150,7 +152,7 @@ TestResult run_with_repeats(const TestSetup& setup, const RunControl& control) {
     TestResult result = run_once(setup, control, keeping);
     if (!setup.numerics.confirm || result.interrupted || result.stop_reason == kEndedByUser) return result;
     bool interrupted = false, ended = false;
-    const auto peak_change = [&](const TestSetup& changed) -> std::optional<double> {   // none if the repeat shows no strength
+    const auto peak_change = [&](const TestSetup& changed) -> std::optional<double> {  // none if the repeat shows no strength
         const TestResult repeat = run_once(changed, control, keeping);
         result.wall_s += repeat.wall_s;
         interrupted = repeat.interrupted;
@@ -170,7 +172,7 @@ TestResult run_with_repeats(const TestSetup& setup, const RunControl& control) {
             result.evidence.peak_change_at_other_damping = *change;
         }
     }
-    result.evidence = judge(result);   // the repeats are part of the evidence
+    result.evidence = judge(result);  // the repeats are part of the evidence
     result.interrupted = interrupted;
     return result;
 }
@@ -181,13 +183,15 @@ TestResult run_test(const TestSetup& given, const RunControl& control) {
     TestSetup setup = given;
     if (control.observer != nullptr)
         if (const auto first = control.observer->begins()) {
-            if (!stages_of(setup.test).empty()) throw InputError({.key = "test.stages"}, "the test has stages of its own, and an observer begins others", "a test without stages, or an observer that does not begin any");
+            if (!stages_of(setup.test).empty())
+                throw InputError({.key = "test.stages"}, "the test has stages of its own, and an observer begins others",
+                                 "a test without stages, or an observer that does not begin any");
             setup.test.stages = {{{*first}}};
         }
     for (;;) {
         try {
             return run_with_repeats(setup, control);
-        } catch (const StateError& error) {   // from what was kept: without that there is none
+        } catch (const StateError& error) {  // from what was kept: without that there is none
             control.keeper->refuse(error.what());
         }
     }
@@ -196,7 +200,7 @@ TestResult run_test(const TestSetup& given, const RunControl& control) {
 void keep_result(const TestResult& result, const StatePut& put) {
     const StateBase nothing;
     StateWriter writer(put, nothing);
-    keep_course(writer, const_cast<TestResult&>(result));   // it only looks at it
+    keep_course(writer, const_cast<TestResult&>(result));  // it only looks at it
 }
 
 TestResult kept_result(const TestSetup& setup, std::span<const char> kept) {
@@ -209,12 +213,13 @@ TestResult kept_result(const TestSetup& setup, std::span<const char> kept) {
 
 TestPreview preview_test(const TestSetup& setup, const RunControl& control) {
     Experiment e(setup, control);
-    set_real_masses(e.assembly);   // replaced below
+    set_real_masses(e.assembly);  // replaced below
     const double real_omega2 = largest_omega2(e.assembly, e.team);
     choose_step(e);
     TestPreview preview;
     preview.grains = static_cast<int>(setup.specimen->cells.cells.size());
-    preview.bodies = static_cast<int>(std::count_if(e.assembly.bodies.begin(), e.assembly.bodies.end(), [](const Body& b) { return b.kind != BodyKind::plate; }));
+    preview.bodies = static_cast<int>(std::count_if(e.assembly.bodies.begin(), e.assembly.bodies.end(),
+                                                    [](const Body& b) { return b.kind != BodyKind::plate; }));
     preview.contacts = static_cast<int>(e.assembly.contacts.size());
     preview.contact_points = static_cast<int>(e.assembly.points.size());
     preview.nodes = e.assembly.nodes.count();

@@ -8,8 +8,9 @@ namespace {
 
 constexpr double kSmoothing = 0.1;    // travel times over which the growth is averaged: a burst of cracks is shorter than that
 constexpr double kFastestBack = 4.0;  // times the speed with which the platen would go forward if nothing failed
-constexpr double kArrest = 8.0;       // times the failure under way, relative to the limit: at half of the limit it goes back as fast as it may
-constexpr double kFails = 0.25;       // of the limit: with less the low stress is that of an unloaded body
+constexpr double kArrest =
+    8.0;  // times the failure under way, relative to the limit: at half of the limit it goes back as fast as it may
+constexpr double kFails = 0.25;  // of the limit: with less the low stress is that of an unloaded body
 
 }  // namespace
 

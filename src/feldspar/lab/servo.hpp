@@ -7,10 +7,10 @@
 
 namespace feldspar {
 
-/// At a growing platen displacement a brittle specimen falls by itself, dynamically, at any platen speed. The servo gives the speed that lets
-/// it fail slowly instead: it goes back as fast as the failing body asks for. What it keeps constant is the growth of one quantity relative to
-/// a scale, in a travel time of a wave: the work of fracture and friction relative to the elastic energy, or the lateral strain or the reading of a
-/// gauge relative to itself.
+/// At a growing platen displacement a brittle specimen falls by itself, dynamically, at any platen speed. The servo gives the
+/// speed that lets it fail slowly instead: it goes back as fast as the failing body asks for. What it keeps constant is the
+/// growth of one quantity relative to a scale, in a travel time of a wave: the work of fracture and friction relative to the
+/// elastic energy, or the lateral strain or the reading of a gauge relative to itself.
 class Servo {
 public:
     /// @param control      dissipation, lateral strain or a gauge; with displacement the servo is off
@@ -28,7 +28,8 @@ public:
     /// What it lets the platen do, m a step; negative: back. @param platen_travel_m  so far
     double speed(double platen_travel_m) const;
 
-    /// How fast the platen must go back so that the specimen stops to fail, m a step; 0 or more. Its speed() lets it fail slowly instead.
+    /// How fast the platen must go back so that the specimen stops to fail, m a step; 0 or more. Its speed() lets it fail slowly
+    /// instead.
     double arrest(double platen_travel_m) const;
 
     /// Whether the specimen fails so slowly that a low stress is that of an unloaded body, not of a failed one.
@@ -45,9 +46,9 @@ private:
     double share_, travel_time_;
     std::size_t gauge_;
     bool observed_ = false;
-    double lateral_origin_ = 0.0;   // lateral strain where loading began
-    double before_ = 0.0;           // the quantity in the row before
-    double growth_ = 0.0;           // relative to its scale, in a travel time, over the share: smoothed; 1 = at the limit
+    double lateral_origin_ = 0.0;  // lateral strain where loading began
+    double before_ = 0.0;          // the quantity in the row before
+    double growth_ = 0.0;          // relative to its scale, in a travel time, over the share: smoothed; 1 = at the limit
 };
 
 }  // namespace feldspar

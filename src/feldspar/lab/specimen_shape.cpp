@@ -1,10 +1,10 @@
 #include "feldspar/lab/specimen_shape.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -36,9 +36,10 @@ void note_section(const TestResult& result, TestProperties& p) {
     p.section_width_m = widths.narrowest;
     if (even(widths.narrowest, widths.widest)) return;
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    std::string remark = fmt::format("Stresses are taken over the narrowest section, {:.4g} mm wide; the widest is {:.4g} mm. The strain is "
-                                     "not uniform along the height, so moduli from the platens are not given",
-                                     1e3 * widths.narrowest, 1e3 * widths.widest);
+    std::string remark = fmt::format(
+        "Stresses are taken over the narrowest section, {:.4g} mm wide; the widest is {:.4g} mm. The strain is "
+        "not uniform along the height, so moduli from the platens are not given",
+        1e3 * widths.narrowest, 1e3 * widths.widest);
     p.E_secant_Pa = p.E_tangent_Pa = p.E_average_Pa = nan;
     // the gauge's stress is that of the narrowest section, which must be its own
     if (!even(widths.narrowest, widths.gauge_widest)) {
@@ -61,10 +62,11 @@ void look_at_buckling(const TestResult& result, QuasiStaticEvidence& evidence) {
     const double height = height_of(result.specimen->outline), critical = euler_stress_Pa(E, widths.narrowest, height);
     if (strength <= critical) return;
     evidence.grade = 'C';
-    evidence.verdict += fmt::format(" A column of this shape (height / width {:.3g}) would bend aside at {:.3g} MPa, Euler's stress for "
-                                    "platens that may slide, before it breaks at {:.3g} MPa: the number is not the strength of such a "
-                                    "column, and no grade above C is given. With this modulus and strength, height / width must stay below {:.3g}.",
-                                    height / widths.narrowest, 1e-6 * critical, 1e-6 * strength, slenderest(E, strength));
+    evidence.verdict += fmt::format(
+        " A column of this shape (height / width {:.3g}) would bend aside at {:.3g} MPa, Euler's stress for "
+        "platens that may slide, before it breaks at {:.3g} MPa: the number is not the strength of such a "
+        "column, and no grade above C is given. With this modulus and strength, height / width must stay below {:.3g}.",
+        height / widths.narrowest, 1e-6 * critical, 1e-6 * strength, slenderest(E, strength));
 }
 
 }  // namespace feldspar

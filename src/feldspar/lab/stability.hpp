@@ -8,7 +8,8 @@
 namespace feldspar {
 
 /// Largest eigenvalue of M^-1 K of the intact body with every contact closed, times dt^2 for dt = 1 (Lanczos, matrix-free: the
-/// stiffness is applied by the stages of the step themselves). @param body  at rest, without displacements; afterwards as before, without forces of nodes
+/// stiffness is applied by the stages of the step themselves). @param body  at rest, without displacements; afterwards as before,
+/// without forces of nodes
 double largest_omega2(Assembly& body, Team& team);
 
 /// omega^2 dt^2 that the scheme tolerates: 4 with viscous damping, 4 / (1 + alpha) with local damping.

@@ -9,7 +9,8 @@
 
 namespace feldspar {
 
-/// What the end of a stage looks at, in the present state: SI, stress and load positive in the sense of the loading. Not-a-number where the end has none.
+/// What the end of a stage looks at, in the present state: SI, stress and load positive in the sense of the loading. Not-a-number
+/// where the end has none.
 double stage_quantity(const Experiment& experiment, const StageSpec& stage);
 /// The same of a row of the history.
 double stage_quantity(const Experiment& experiment, const StageSpec& stage, const HistoryRow& row);
@@ -31,16 +32,16 @@ public:
     /// The stage begins in the state of this row.
     void begin(const HistoryRow& row);
 
-    /// To be asked of every row of the stage. @param largest_load_Pa  of the test so far  @param past_peak  the load has fallen below the largest one of
-    /// this stage  @param residual  R* of the typical body over its target
+    /// To be asked of every row of the stage. @param largest_load_Pa  of the test so far  @param past_peak  the load has fallen
+    /// below the largest one of this stage  @param residual  R* of the typical body over its target
     /// @return why the stage ends at this row, in words
     std::optional<std::string> ended(const HistoryRow& row, double largest_load_Pa, bool past_peak, double residual);
 
     /// Why the stage cannot go on and its end has not come; empty while it can.
     std::optional<std::string> stuck(const HistoryRow& row) const;
 
-    /// Whether a stage that has ended went farther than all before, under less load than a specimen that has not failed bears. @param stage_peak_Pa  largest
-    /// stress of the stage  @param failed_Pa  the one at which the test ends
+    /// Whether a stage that has ended went farther than all before, under less load than a specimen that has not failed bears.
+    /// @param stage_peak_Pa  largest stress of the stage  @param failed_Pa  the one at which the test ends
     bool failed(double stage_peak_Pa, double failed_Pa) const;
 
     /// To the next stage. @return false if there is none
@@ -61,8 +62,10 @@ public:
 
     template <class Archive>
     void keep(Archive& archive) {
-        auto& [experiment, group, pass, stage, begun_step, begun_value, begun_load, begun, value, travel, slope, top, loaded_before, loads, first_volume, largest_volume] = *this;
-        archive(group, pass, stage, begun_step, begun_value, begun_load, begun, value, travel, slope, top, loaded_before, loads, first_volume, largest_volume);
+        auto& [experiment, group, pass, stage, begun_step, begun_value, begun_load, begun, value, travel, slope, top,
+               loaded_before, loads, first_volume, largest_volume] = *this;
+        archive(group, pass, stage, begun_step, begun_value, begun_load, begun, value, travel, slope, top, loaded_before, loads,
+                first_volume, largest_volume);
     }
 
 private:
@@ -75,12 +78,12 @@ private:
     std::size_t stage_ = 0;
     long long begun_step_ = 0;
     double begun_value_ = 0.0, begun_load_Pa_ = 0.0;
-    std::vector<double> begun_Pa_;          // of the dead loads
-    double value_ = 0.0, travel_m_ = 0.0;   // in the last row
-    double slope_ = 0.0;                    // change of the value per loading motion between the last two rows, magnitude
-    HistoryRow top_;                        // at the end of the last loading, if there was one
+    std::vector<double> begun_Pa_;         // of the dead loads
+    double value_ = 0.0, travel_m_ = 0.0;  // in the last row
+    double slope_ = 0.0;                   // change of the value per loading motion between the last two rows, magnitude
+    HistoryRow top_;                       // at the end of the last loading, if there was one
     bool loaded_before_ = false, loads_now_ = false;
-    double first_volume_ = 0.0, largest_volume_ = 0.0;   // volumetric strain: where the test began, and the largest of the stage
+    double first_volume_ = 0.0, largest_volume_ = 0.0;  // volumetric strain: where the test began, and the largest of the stage
 };
 
 }  // namespace feldspar

@@ -1,18 +1,19 @@
 #include "feldspar/lab/stop_rule.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace feldspar {
 namespace {
 
-constexpr double kPastPeak = 0.98;        // share of the peak below which it is one
-constexpr double kPressedOn = 2.0;        // a disc that was not split by then, or does not let go, is pressed no farther
+constexpr double kPastPeak = 0.98;  // share of the peak below which it is one
+constexpr double kPressedOn = 2.0;  // a disc that was not split by then, or does not let go, is pressed no farther
 constexpr long long kStepsAfterPeak = 100;
-constexpr double kMostSteps = 2000.0;     // times the usual number of steps, after which a test ends; studies with much scatter have taken 60 times it, bars of two grains that soften slowly more than 200 times
-constexpr double kOfDeadLoads = 0.01;     // a largest load of less is what they leave out of balance, and no strength
+constexpr double kMostSteps = 2000.0;  // times the usual number of steps, after which a test ends; studies with much scatter have
+                                       // taken 60 times it, bars of two grains that soften slowly more than 200 times
+constexpr double kOfDeadLoads = 0.01;  // a largest load of less is what they leave out of balance, and no strength
 
 }  // namespace
 
@@ -35,8 +36,12 @@ std::optional<std::string> StopRule::spent() const {
         if (result_->steps < *numerics.maximum_steps) return std::nullopt;
         return fmt::format("the maximum number of steps ({}) is reached", *numerics.maximum_steps);
     }
-    if (numerics.kind != NumericsKind::adaptive || static_cast<double>(result_->steps) < kMostSteps * typical_steps(*e_)) return std::nullopt;
-    return fmt::format("it has made {} steps, {:g} times as many as such a test usually takes: its end may never come. numerics.maximum_steps allows more", result_->steps, kMostSteps);
+    if (numerics.kind != NumericsKind::adaptive || static_cast<double>(result_->steps) < kMostSteps * typical_steps(*e_))
+        return std::nullopt;
+    return fmt::format(
+        "it has made {} steps, {:g} times as many as such a test usually takes: its end may never come. numerics.maximum_steps "
+        "allows more",
+        result_->steps, kMostSteps);
 }
 
 std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bool unloading) {
@@ -67,7 +72,9 @@ std::optional<std::string> StopRule::ended(const HistoryRow& row, bool loads, bo
     return spent();
 }
 
-std::string StopRule::fallen() const { return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * e_->setup.test.stop_fraction); }
+std::string StopRule::fallen() const {
+    return fmt::format("the stress has fallen to {:.0f} % of the peak", 100.0 * e_->setup.test.stop_fraction);
+}
 
 void StopRule::look_for_split() {
     if (!splitting_) return;

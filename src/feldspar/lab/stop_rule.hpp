@@ -19,7 +19,8 @@ public:
     double peak() const { return peak_Pa_; }
     long long peak_step() const { return peak_step_; }
 
-    /// Whether the largest stress was the strength: the load has fallen below it, and a disc is split, for it dips and rises again before.
+    /// Whether the largest stress was the strength: the load has fallen below it, and a disc is split, for it dips and rises
+    /// again before.
     bool past_peak(double load_Pa) const;
 
     /// Largest load of the stage under way, Pa.
@@ -47,25 +48,26 @@ public:
 
     template <class Archive>
     void keep(Archive& archive) {
-        auto& [experiment, result, splitting, cracks_seen, gauge, peak_strain, peak, stage_peak, stage_step, peak_step] = *this;   // the first two are whose rule it is
+        auto& [experiment, result, splitting, cracks_seen, gauge, peak_strain, peak, stage_peak, stage_step, peak_step] =
+            *this;  // the first two are whose rule it is
         archive(splitting, cracks_seen, gauge, peak_strain, peak, stage_peak, stage_step, peak_step);
     }
 
 private:
-    std::optional<std::string> spent() const;   // that all steps have been made, in words
+    std::optional<std::string> spent() const;  // that all steps have been made, in words
     bool split() const { return splitting_ && splitting_->split(); }
     bool peak_counts() const;
     void look_for_split();
 
     const Experiment* e_;
     const TestResult* result_;
-    std::optional<SplittingCrack> splitting_;   // of a Brazilian test: a first dip does not end it
+    std::optional<SplittingCrack> splitting_;  // of a Brazilian test: a first dip does not end it
     std::size_t cracks_seen_ = 0;
-    int gauge_ = -1;   // that ends the test
+    int gauge_ = -1;  // that ends the test
     double peak_strain_ = 0.0;
     double peak_Pa_ = 0.0;
-    double stage_peak_Pa_ = 0.0;   // largest load of the stage under way
-    long long stage_step_ = 0;     // when it began
+    double stage_peak_Pa_ = 0.0;  // largest load of the stage under way
+    long long stage_step_ = 0;    // when it began
     long long peak_step_ = 0;
 };
 

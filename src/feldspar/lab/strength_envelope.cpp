@@ -14,9 +14,13 @@ double root_of_slope(double friction_angle_deg) { return std::tan(in_radians(45.
 
 }  // namespace
 
-double mohr_coulomb_UCS_Pa(double cohesion_Pa, double friction_angle_deg) { return 2.0 * cohesion_Pa * root_of_slope(friction_angle_deg); }
+double mohr_coulomb_UCS_Pa(double cohesion_Pa, double friction_angle_deg) {
+    return 2.0 * cohesion_Pa * root_of_slope(friction_angle_deg);
+}
 
-double mohr_coulomb_slope(double friction_angle_deg) { return root_of_slope(friction_angle_deg) * root_of_slope(friction_angle_deg); }
+double mohr_coulomb_slope(double friction_angle_deg) {
+    return root_of_slope(friction_angle_deg) * root_of_slope(friction_angle_deg);
+}
 
 EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa, const std::vector<double>& DTS_Pa) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -38,7 +42,8 @@ EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sig
 
     // (P13): (sigma_1 - sigma_3)^2 = mi sigma_ci sigma_3 + sigma_ci^2, a straight line in sigma_3
     std::vector<double> minor = sigma3_Pa, squares;
-    for (std::size_t i = 0; i < sigma3_Pa.size(); ++i) squares.push_back((sigma1_Pa[i] - sigma3_Pa[i]) * (sigma1_Pa[i] - sigma3_Pa[i]));
+    for (std::size_t i = 0; i < sigma3_Pa.size(); ++i)
+        squares.push_back((sigma1_Pa[i] - sigma3_Pa[i]) * (sigma1_Pa[i] - sigma3_Pa[i]));
     for (const double DTS : DTS_Pa) {
         minor.push_back(-DTS);
         squares.push_back(DTS * DTS);

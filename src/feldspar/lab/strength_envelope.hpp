@@ -17,7 +17,8 @@ double mohr_coulomb_slope(double friction_angle_deg);
 /// seed; the measured UCS is the strength at sigma_3 = 0, if there is one.
 /// @param sigma3_Pa  confining stress of each test, compression positive
 /// @param sigma1_Pa  total axial strength of each test, in the same order
-/// @param DTS_Pa     direct tensile strengths (positive), through which Hoek-Brown's parabola is to go too: sigma_3 = -DTS, sigma_1 = 0
+/// @param DTS_Pa     direct tensile strengths (positive), through which Hoek-Brown's parabola is to go too: sigma_3 = -DTS,
+/// sigma_1 = 0
 EnvelopeFit fit_envelopes(std::vector<double> sigma3_Pa, std::vector<double> sigma1_Pa, const std::vector<double>& DTS_Pa = {});
 
 }  // namespace feldspar

@@ -1,8 +1,7 @@
 #include "feldspar/lab/stress_fields.hpp"
 
-#include <cmath>
-
 #include <Eigen/Dense>
+#include <cmath>
 
 namespace feldspar {
 namespace {
@@ -15,14 +14,15 @@ Mat2 from_polar(double rr, double tt, double rt, double angle) {
     return {xx, xy, xy, yy};
 }
 
-// Airy's function f(r) cos n(angle - turn) with f = r^p + c r^-n + d r^(2 - n), r in radii: no traction at r = 1. For n = 1 the second of these is r^1, which
-// has no stress. n = 0 is the field of an equal stress on all sides, f = r^2 / 2 - ln r.
+// Airy's function f(r) cos n(angle - turn) with f = r^p + c r^-n + d r^(2 - n), r in radii: no traction at r = 1. For n = 1 the
+// second of these is r^1, which has no stress. n = 0 is the field of an equal stress on all sides, f = r^2 / 2 - ln r.
 StressField hole_field(double radius_m, int n, int p, double turn) {
     return [=](Vec2 place) {
         const double r = norm(place) / radius_m, angle = std::atan2(place.y, place.x);
         if (n == 0) return from_polar(1.0 - 1.0 / (r * r), 1.0 + 1.0 / (r * r), 0.0, angle);
         const double c = 0.5 * (p + n - 2), d = -1.0 - c;
-        const double rp = std::pow(r, p - 2), rn = std::pow(r, -n - 2), rd = std::pow(r, -n);   // powers over r^2, as stresses have them
+        const double rp = std::pow(r, p - 2), rn = std::pow(r, -n - 2),
+                     rd = std::pow(r, -n);  // powers over r^2, as stresses have them
         const double f = rp + c * rn + d * rd, slope = p * rp - n * c * rn + (2 - n) * d * rd;
         const double bend = p * (p - 1) * rp + n * (n + 1) * c * rn + (2 - n) * (1 - n) * d * rd;
         const double cosine = std::cos(n * (angle - turn)), sine = std::sin(n * (angle - turn));
@@ -33,7 +33,8 @@ StressField hole_field(double radius_m, int n, int p, double turn) {
 // The term of Williams' series that goes with r^(m / 2 - 1).
 StressField tip_field(Vec2 ahead, double extent_m, int m, bool opens) {
     return [=](Vec2 place) {
-        const double x = dot(place, ahead), y = dot(place, rot90(ahead)), angle = std::atan2(y, x), k = 0.5 * m - 1.0, sign = m % 2 == 0 ? 1.0 : -1.0;
+        const double x = dot(place, ahead), y = dot(place, rot90(ahead)), angle = std::atan2(y, x), k = 0.5 * m - 1.0,
+                     sign = m % 2 == 0 ? 1.0 : -1.0;
         // scaled so that the first has 1 / sqrt(2 pi r) ahead of the tip, the others are of its size at the extent
         const double size = std::pow(norm(place) / extent_m, k) / std::sqrt(2.0 * M_PI * extent_m);
         Mat2 s;
@@ -78,11 +79,13 @@ std::vector<StressField> fields_around_tip(Vec2 ahead, double extent_m) {
     std::vector<StressField> fields;
     for (int m = 1; m <= terms; ++m)
         for (const bool opens : {true, false})
-            if (opens || m != 2) fields.push_back(tip_field(ahead, extent_m, m, opens));   // the second that shears is a rotation, without stress
+            if (opens || m != 2)
+                fields.push_back(tip_field(ahead, extent_m, m, opens));  // the second that shears is a rotation, without stress
     return fields;
 }
 
-std::vector<StressTerm> fitted_value(std::span<const StressSample> samples, std::span<const StressField> fields, std::span<const double> wanted) {
+std::vector<StressTerm> fitted_value(std::span<const StressSample> samples, std::span<const StressField> fields,
+                                     std::span<const double> wanted) {
     struct Cell {
         std::int32_t cell;
         double area_m2;
@@ -90,18 +93,20 @@ std::vector<StressTerm> fitted_value(std::span<const StressSample> samples, std:
     };
     std::vector<Cell> cells;
     for (const StressSample& sample : samples) {
-        if (cells.empty() || cells.back().cell != sample.cell) cells.push_back({sample.cell, 0.0, std::vector<Mat2>(fields.size())});
+        if (cells.empty() || cells.back().cell != sample.cell)
+            cells.push_back({sample.cell, 0.0, std::vector<Mat2>(fields.size())});
         Cell& cell = cells.back();
         cell.area_m2 += sample.area_m2;
         for (std::size_t k = 0; k < fields.size(); ++k) {
             const Mat2 s = fields[k](sample.at);
             Mat2& sum = cell.fields[k];
-            sum = {sum.xx + sample.area_m2 * s.xx, sum.xy + sample.area_m2 * s.xy, sum.yx + sample.area_m2 * s.yx, sum.yy + sample.area_m2 * s.yy};
+            sum = {sum.xx + sample.area_m2 * s.xx, sum.xy + sample.area_m2 * s.xy, sum.yx + sample.area_m2 * s.yx,
+                   sum.yy + sample.area_m2 * s.yy};
         }
     }
     const auto size = static_cast<Eigen::Index>(fields.size());
     Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(size, size);
-    for (const Cell& cell : cells)   // sums over the cell: mean times mean times area
+    for (const Cell& cell : cells)  // sums over the cell: mean times mean times area
         for (Eigen::Index k = 0; k < size; ++k)
             for (Eigen::Index l = 0; l < size; ++l) moments(k, l) += product(cell.fields[k], cell.fields[l]) / cell.area_m2;
     const Eigen::VectorXd scale = moments.diagonal().cwiseSqrt();
@@ -116,7 +121,8 @@ std::vector<StressTerm> fitted_value(std::span<const StressSample> samples, std:
         Mat2 weight;
         for (Eigen::Index k = 0; k < size; ++k) {
             const Mat2& f = cell.fields[k];
-            weight = {weight.xx + factors(k) * f.xx, weight.xy + factors(k) * f.xy, weight.yx + factors(k) * f.yx, weight.yy + factors(k) * f.yy};
+            weight = {weight.xx + factors(k) * f.xx, weight.xy + factors(k) * f.xy, weight.yx + factors(k) * f.yx,
+                      weight.yy + factors(k) * f.yy};
         }
         terms.push_back({cell.cell, weight});
     }

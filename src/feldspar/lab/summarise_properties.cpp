@@ -1,10 +1,10 @@
 // summarise(): from the tests of several packings to the properties of the rock, each with its range (P11)-(P13).
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/counted.hpp"
@@ -85,10 +85,11 @@ std::string method(const std::vector<EnvelopeFit>& fits) {
     }
     const bool uniaxial = *sigma3.begin() == 0.0;
     return fmt::format(
-        "Mohr-Coulomb (sigma_1 = UCS_fitted + N sigma_3) and Hoek-Brown (intact, no tensile points) by least squares on the {}biaxial "
+        "Mohr-Coulomb (sigma_1 = UCS_fitted + N sigma_3) and Hoek-Brown (intact, no tensile points) by least squares on the "
+        "{}biaxial "
         "tests (sigma_3 = {:g} MPa) of each packing, sigma_3 from {:g} to {:g} MPa; then median and range over {} (seed{} {}).",
-        uniaxial ? "uniaxial and " : "", fmt::join(confined, ", "), *sigma3.begin() / 1e6, *sigma3.rbegin() / 1e6, counted(seeds.size(), "packing"),
-        seeds.size() == 1 ? "" : "s", fmt::join(seeds, ", "));
+        uniaxial ? "uniaxial and " : "", fmt::join(confined, ", "), *sigma3.begin() / 1e6, *sigma3.rbegin() / 1e6,
+        counted(seeds.size(), "packing"), seeds.size() == 1 ? "" : "s", fmt::join(seeds, ", "));
 }
 
 void add_envelopes(PropertySummary& summary, std::span<const TestResult> results) {
@@ -159,7 +160,8 @@ PropertySummary summarise(std::span<const TestResult> results) {
     for (const RockProperty& property : rock_properties()) {
         if (property.source == RockProperty::Source::test) add(summary, property.kept_name(), collect(results, property));
         if (property.source == RockProperty::Source::ratio)
-            add(summary, property.kept_name(), ratio(collect(results, *rock_property(property.above)), collect(results, *rock_property(property.below))));
+            add(summary, property.kept_name(),
+                ratio(collect(results, *rock_property(property.above)), collect(results, *rock_property(property.below))));
     }
     add_envelopes(summary, results);
     add_shear_envelopes(summary, results);

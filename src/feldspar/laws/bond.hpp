@@ -27,14 +27,15 @@
 
 namespace feldspar {
 
-/// A contact material made ready: everything is per area, so that points differ by their area alone. What a step would divide by is inverted.
+/// A contact material made ready: everything is per area, so that points differ by their area alone. What a step would divide by
+/// is inverted.
 /// @tparam Number  double: one law; a vector of doubles: a law a lane
 template <class Number>
 struct BondLawOf {
     Number Kn_Pa_m{};
     Number Ks_Pa_m{};
-    Number inverse_Kn{};    ///< m/Pa
-    Number inverse_Ks{};    ///< m/Pa; 0 without shear stiffness
+    Number inverse_Kn{};  ///< m/Pa
+    Number inverse_Ks{};  ///< m/Pa; 0 without shear stiffness
     Number sigma_nt_Pa{};
     Number tau_Pa{};
     Number mu{};
@@ -46,7 +47,7 @@ struct BondLawOf {
     FELDSPAR_LAW void set_stiffness(Number Kn, Number Ks) {
         Kn_Pa_m = Kn;
         Ks_Pa_m = Ks;
-        inverse_Kn = Kn > Number{} ? 1.0 / Kn : Number{};   // none in lanes without a contact
+        inverse_Kn = Kn > Number{} ? 1.0 / Kn : Number{};  // none in lanes without a contact
         inverse_Ks = Ks > Number{} ? 1.0 / Ks : Number{};
     }
 };
@@ -99,8 +100,8 @@ struct LawForm {
 template <class Number>
 struct LawConstants {
     Number Kn_Pa_m{}, Ks_Pa_m{};
-    Number x0_normal{}, x0_shear{};       ///< m, ends of the elastic branches
-    Number x_fl_normal{}, x_fl_shear{};   ///< m, 2 Gf over the strength
+    Number x0_normal{}, x0_shear{};      ///< m, ends of the elastic branches
+    Number x_fl_normal{}, x_fl_shear{};  ///< m, 2 Gf over the strength
     Number mu{};
 };
 
@@ -108,7 +109,8 @@ struct LawConstants {
 inline LawConstants<double> law_constants(const ContactMaterial& m) {
     const double Ks = m.eta * m.Kn_Pa_m;
     const auto over = [](double Gf, double strength) { return strength > 0.0 ? 2.0 * Gf / strength : 0.0; };
-    return {m.Kn_Pa_m, Ks, m.sigma_nt_Pa / m.Kn_Pa_m, m.tau_Pa / Ks, over(m.Gfn_J_m2, m.sigma_nt_Pa), over(m.Gfs_J_m2, m.tau_Pa), m.mu};
+    return {m.Kn_Pa_m, Ks, m.sigma_nt_Pa / m.Kn_Pa_m, m.tau_Pa / Ks, over(m.Gfn_J_m2, m.sigma_nt_Pa), over(m.Gfs_J_m2, m.tau_Pa),
+            m.mu};
 }
 
 /// The law of these constants.
@@ -136,16 +138,16 @@ struct BondStateOf {
     Real max_un_m{};
     Real max_us_m{};
     Real damage{};
-    Real fracture_J{};   ///< dissipated by softening and breaking
-    Real friction_J{};   ///< dissipated by sliding
+    Real fracture_J{};  ///< dissipated by softening and breaking
+    Real friction_J{};  ///< dissipated by sliding
 };
 using BondState = BondStateOf<double>;
 
 /// What an update tells besides the state.
 enum class BondEvent { none, broke_in_tension, broke_in_shear, broke_in_shear_losing_compression };
 
-/// How a point broke whose trial normal force is Fn_trial at the gap un. Unloading with the slope kn may have left compression at an open
-/// gap, which vanishes then.
+/// How a point broke whose trial normal force is Fn_trial at the gap un. Unloading with the slope kn may have left compression at
+/// an open gap, which vanishes then.
 FELDSPAR_LAW BondEvent how_it_broke(double Fn_trial_N, double un_m) {
     if (Fn_trial_N < 0.0) return BondEvent::broke_in_tension;
     return Fn_trial_N > 0.0 && un_m > 0.0 ? BondEvent::broke_in_shear_losing_compression : BondEvent::broke_in_shear;
@@ -165,8 +167,8 @@ FELDSPAR_HD inline double elastic_energy(const BondLawOf<double>& law, double ar
     return normal_energy(law, inverse_area, s.Fn_N, s.un_m, s.damage) + 0.5 * law.inverse_Ks * inverse_area * s.Fs_N * s.Fs_N;
 }
 
-/// Whether a point stays linear at these displacements: undamaged and below both elastic limits. A brittle direction may sit on its limit,
-/// which the damaged branch then tells.
+/// Whether a point stays linear at these displacements: undamaged and below both elastic limits. A brittle direction may sit on
+/// its limit, which the damaged branch then tells.
 template <class Number, class Real>
 FELDSPAR_LAW MaskOf<Real> is_linear(const BondLawOf<Number>& law, Real un, Real us, Real damage) {
     return (damage == Real{}) & (un <= law.normal.x0) & (NumberOf<Real>::absolute(us) <= law.shear.x0);
@@ -175,7 +177,7 @@ FELDSPAR_LAW MaskOf<Real> is_linear(const BondLawOf<Number>& law, Real un, Real 
 /// What the update of damaged points tells.
 template <class Real>
 struct BondUpdate {
-    MaskOf<Real> broke{};   ///< now
+    MaskOf<Real> broke{};  ///< now
     Real Fn_trial_N{};
 };
 
@@ -183,7 +185,8 @@ struct BondUpdate {
 template <class Number, class Real>
 FELDSPAR_LAW BondUpdate<Real> update_damaged(const BondLawOf<Number>& law, Real area, Real dun, Real dus, BondStateOf<Real>& s) {
     const Real none{}, one = number<Real>(1.0);
-    const Real kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area, inverse_area = 1.0 / area, inverse_ks = law.inverse_Ks * inverse_area;
+    const Real kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area, inverse_area = 1.0 / area,
+               inverse_ks = law.inverse_Ks * inverse_area;
     const Real normal_energy_before = normal_energy(law, inverse_area, s.Fn_N, s.un_m, s.damage);
     const Real Fn_before = s.Fn_N, Fs_before = s.Fs_N;
     const MaskOf<Real> broken_before = s.damage >= one, held_before = s.damage < one;
@@ -200,7 +203,8 @@ FELDSPAR_LAW BondUpdate<Real> update_damaged(const BondLawOf<Number>& law, Real 
     const Real tension_limit = (1.0 - damage) * law.sigma_nt_Pa * area;
     Real cohesion_limit = (1.0 - damage) * law.tau_Pa * area;
     if (maybe(law.normal.brittle)) damage = where(Fn_trial < -tension_limit, law.normal.brittle) ? one : damage;
-    if (maybe(law.shear.brittle)) damage = where(NumberOf<Real>::absolute(Fs_trial) > cohesion_limit + law.mu * pressed, law.shear.brittle) ? one : damage;
+    if (maybe(law.shear.brittle))
+        damage = where(NumberOf<Real>::absolute(Fs_trial) > cohesion_limit + law.mu * pressed, law.shear.brittle) ? one : damage;
     s.damage = broken_before ? s.damage : damage;
     Real Fn = larger(Fn_trial, -tension_limit);
     if (law.secant_unloading) Fn = (s.un_m > none) & (s.max_un_m > law.normal.x0) ? -tension_limit * s.un_m / s.max_un_m : Fn;
@@ -249,7 +253,7 @@ FELDSPAR_HD inline void free_gap(const BondLawOf<double>& law, double area_m2, d
 /// @param dun_m    gap increment, opening positive
 FELDSPAR_HD inline BondEvent update_bond(const BondLawOf<double>& law, double area_m2, double dun_m, double dus_m, BondState& s) {
     const double un = s.un_m + dun_m, us = s.us_m + dus_m;
-    if (is_linear(law, un, us, s.damage)) {   // what most points are most of the time
+    if (is_linear(law, un, us, s.damage)) {  // what most points are most of the time
         s.un_m = un;
         s.us_m = us;
         s.Fn_N = -(law.Kn_Pa_m * area_m2) * un;

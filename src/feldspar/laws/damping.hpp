@@ -4,8 +4,8 @@
 //   V        velocity                      F      sum of all forces but the damping
 //   L = v B  loading motion                w      V - L, the deviation; with L = 0 this is the paper's own damping
 //   drag  =  alpha |F| sign(w)  where w V > 0, else 0,      m dV/dt = F - drag
-// The condition leaves out what would drive the body instead of braking it: a node that moves more slowly than the loading motion, or
-// any node while the platen moves back. So the damping takes energy always.
+// The condition leaves out what would drive the body instead of braking it: a node that moves more slowly than the loading
+// motion, or any node while the platen moves back. So the damping takes energy always.
 //
 // Written for any number type that has comparisons and the conditional operator lane by lane: double, or a vector of doubles.
 #pragma once
@@ -22,8 +22,8 @@ FELDSPAR_LAW Real local_drag(Real V, Real loading, Real F, double alpha) {
     return w * V > none ? drag : none;
 }
 
-/// The velocity before a step that ended with the velocity V: the inverse of V = before + push (F - drag(before)), push = dt / m. Where the
-/// component has just turned, two velocities before lead to the same one after; then the one with more drag is taken.
+/// The velocity before a step that ended with the velocity V: the inverse of V = before + push (F - drag(before)), push = dt / m.
+/// Where the component has just turned, two velocities before lead to the same one after; then the one with more drag is taken.
 template <class Real>
 FELDSPAR_LAW Real before_local_drag(Real V, Real loading, Real F, Real push, double alpha) {
     const Real none{}, size = alpha * F, magnitude = F < none ? -size : size;

@@ -37,17 +37,20 @@ inline PlaneElasticity plane_elasticity(double E_Pa, double nu, PlaneState plane
 template <class Real>
 struct PolarSplit {
     Real a{}, b{}, p{}, q{};
-    Real r2_minus_1{};   ///< r: half the trace of the stretch
+    Real r2_minus_1{};  ///< r: half the trace of the stretch
 
-    FELDSPAR_LAW PolarSplit(Real a_, Real b_, Real p_, Real q_) : a(a_), b(b_), p(p_), q(q_), r2_minus_1(2.0 * a + (a * a + b * b)) {}
+    FELDSPAR_LAW PolarSplit(Real a_, Real b_, Real p_, Real q_)
+        : a(a_), b(b_), p(p_), q(q_), r2_minus_1(2.0 * a + (a * a + b * b)) {}
     FELDSPAR_LAW Real r_minus_1() const { return r2_minus_1 / (1.0 + NumberOf<Real>::square_root(1.0 + r2_minus_1)); }
 };
 
 /// @param G  the displacement gradient
-inline PolarSplit<double> polar_split(const Mat2& G) { return {0.5 * (G.xx + G.yy), 0.5 * (G.yx - G.xy), 0.5 * (G.xx - G.yy), 0.5 * (G.xy + G.yx)}; }
+inline PolarSplit<double> polar_split(const Mat2& G) {
+    return {0.5 * (G.xx + G.yy), 0.5 * (G.yx - G.xy), 0.5 * (G.xx - G.yy), 0.5 * (G.xy + G.yx)};
+}
 
-/// 1 - 1/r from x = r^2 - 1: the binomial series, whose next term is below 1e-17 of the result for |x| < 1/128. A compression of 150 MPa makes x
-/// about 1/200 in a grain of 25 GPa.
+/// 1 - 1/r from x = r^2 - 1: the binomial series, whose next term is below 1e-17 of the result for |x| < 1/128. A compression of
+/// 150 MPa makes x about 1/200 in a grain of 25 GPa.
 template <class Real>
 FELDSPAR_LAW Real one_minus_inverse_root(Real x) {
     constexpr double kLargest = 1.0 / 128.0;
@@ -72,7 +75,8 @@ struct PlaneStress {
     Real xx{}, xy{}, yx{}, yy{};
 };
 
-/// First Piola-Kirchhoff stress. @param volumetric  D11 + D12, times what the stress is wanted in @param deviatoric  D11 - D12, likewise
+/// First Piola-Kirchhoff stress. @param volumetric  D11 + D12, times what the stress is wanted in @param deviatoric  D11 - D12,
+/// likewise
 template <class Real>
 FELDSPAR_LAW PlaneStress<Real> first_piola_stress(Real volumetric, Real deviatoric, const PolarSplit<Real>& s) {
     const Real v = volumetric * one_minus_inverse_root(s.r2_minus_1);

@@ -28,8 +28,10 @@ struct SofteningEnvelopeOf {
         const Number none{}, L = x_fl - x0;
         e.x0 = x0;
         e.brittle = law == ContactLaw::brittle ? x0 == x0 : L <= none;
-        const Number x_y = law == ContactLaw::bilinear ? x0 + 0.375 * L : x0 + 0.75 * L;   // linear: on the straight line
-        const Number x_f = law == ContactLaw::bilinear ? x0 + 2.5 * L : law == ContactLaw::linear ? x_fl : x_y + 5.0 * (x_fl - x_y);
+        const Number x_y = law == ContactLaw::bilinear ? x0 + 0.375 * L : x0 + 0.75 * L;  // linear: on the straight line
+        const Number x_f = law == ContactLaw::bilinear ? x0 + 2.5 * L
+                           : law == ContactLaw::linear ? x_fl
+                                                       : x_y + 5.0 * (x_fl - x_y);
         e.x_y = e.brittle ? x0 : x_y;
         e.x_f = e.brittle ? x0 : x_f;
         e.first_slope = e.x_y > x0 ? 0.75 / (e.x_y - x0) : none;

@@ -17,17 +17,20 @@ using std::chrono::duration_cast;
 
 constexpr auto kBetweenLooks = std::chrono::milliseconds(300);
 constexpr auto kBetweenFrames = std::chrono::milliseconds(1000);
-constexpr double kTimesItsCost = 100.0;             // a look is followed by so many times what it took: it takes at most a hundredth of the time
-constexpr std::size_t kFirstPoints = 400, kNewPoints = 12;   // of a curve, at the first look and at each later one
-constexpr std::size_t kMostPoints = 2400;           // then every other one goes
+constexpr double kTimesItsCost =
+    100.0;  // a look is followed by so many times what it took: it takes at most a hundredth of the time
+constexpr std::size_t kFirstPoints = 400, kNewPoints = 12;  // of a curve, at the first look and at each later one
+constexpr std::size_t kMostPoints = 2400;                   // then every other one goes
 
 LivePoint point_of(const HistoryRow& row) {
-    return {static_cast<float>(row.axial_strain * 1e3), static_cast<float>(row.axial_stress_Pa * 1e-6), row.cracks_tensile, row.cracks_shear};
+    return {static_cast<float>(row.axial_strain * 1e3), static_cast<float>(row.axial_stress_Pa * 1e-6), row.cracks_tensile,
+            row.cracks_shear};
 }
 
 LiveCrack shown(const Crack& crack) {
     const auto mm = [](double m) { return static_cast<float>(m * 1e3); };
-    return {mm(crack.from.x), mm(crack.from.y), mm(crack.to.x), mm(crack.to.y), static_cast<std::uint8_t>(crack.mode), crack.grain_a, crack.grain_b};
+    return {mm(crack.from.x), mm(crack.from.y), mm(crack.to.x), mm(crack.to.y), static_cast<std::uint8_t>(crack.mode),
+            crack.grain_a,    crack.grain_b};
 }
 
 LiveFrame frame_of(const GrainMesh& mesh, const std::vector<Vec2>& displacement_m) {
@@ -45,7 +48,8 @@ LiveFrame frame_of(const GrainMesh& mesh, const std::vector<Vec2>& displacement_
     frame.scale_mm = step_m * 1e3;
     frame.steps.reserve(2 * x.size());
     for (const std::vector<double>* axis : {&x, &y})
-        for (const double u : *axis) frame.steps.push_back(static_cast<std::int16_t>(std::lround(std::isfinite(u) ? u / step_m : 0.0)));
+        for (const double u : *axis)
+            frame.steps.push_back(static_cast<std::int16_t>(std::lround(std::isfinite(u) ? u / step_m : 0.0)));
     return frame;
 }
 
@@ -55,15 +59,18 @@ void LiveBoard::Watch::see(const TestSight& sight) {
     const Clock::time_point start = Clock::now();
     wanted_ = false;
     const TestResult& result = sight.so_far();
-    const bool again = &result != std::exchange(of_, &result) || result.passages != passages_ || result.history.size() < rows_ || result.cracks.size() < cracks_;
+    const bool again = &result != std::exchange(of_, &result) || result.passages != passages_ || result.history.size() < rows_ ||
+                       result.cracks.size() < cracks_;
     if (again) rows_ = cracks_ = 0;
     passages_ = result.passages;
     std::vector<LivePoint> points;
-    const std::size_t fresh = result.history.size() - rows_, most = rows_ == 0 ? kFirstPoints : kNewPoints, stride = fresh / most + 1;
+    const std::size_t fresh = result.history.size() - rows_, most = rows_ == 0 ? kFirstPoints : kNewPoints,
+                      stride = fresh / most + 1;
     for (std::size_t row = rows_; row < result.history.size(); ++row)
         if (row % stride == 0 || row + 1 == result.history.size()) points.push_back(point_of(result.history[row]));
     std::vector<LiveCrack> cracks;
-    std::transform(result.cracks.begin() + static_cast<std::ptrdiff_t>(cracks_), result.cracks.end(), std::back_inserter(cracks), shown);
+    std::transform(result.cracks.begin() + static_cast<std::ptrdiff_t>(cracks_), result.cracks.end(), std::back_inserter(cracks),
+                   shown);
     rows_ = result.history.size();
     cracks_ = result.cracks.size();
     {
@@ -91,7 +98,10 @@ void LiveBoard::Watch::see(const TestSight& sight) {
     if (!first_) first_ = start;
     taken_s_ = taken_s_ + took_s;
     passed_s_ = duration<double>(end - *first_).count();
-    not_before_ = (end + std::max<Clock::duration>(kBetweenLooks, duration_cast<Clock::duration>(duration<double>(kTimesItsCost * took_s)))).time_since_epoch().count();
+    not_before_ =
+        (end + std::max<Clock::duration>(kBetweenLooks, duration_cast<Clock::duration>(duration<double>(kTimesItsCost * took_s))))
+            .time_since_epoch()
+            .count();
 }
 
 void LiveBoard::Watch::add_frame(const TestSight& sight, Clock::time_point now) {
@@ -173,7 +183,7 @@ void LiveBoard::ended(std::size_t number, const LiveResult& result) {
     if (test.state == LiveState::running) test.took_s = seconds_since(test.began);
     test.state = result.state;
     test.words = result.words;
-    test.progress.reset();   // the report has all of it
+    test.progress.reset();  // the report has all of it
     test.curve = {};
     test.cracks = {};
     test.frame.reset();
@@ -251,7 +261,8 @@ double LiveBoard::cost() const {
     return passed > 0.0 ? taken / passed : 0.0;
 }
 
-// Of the run, s; negative where nothing is known. What waits takes as long as those of its kind took, else as all that ended, else as those that run expect of themselves.
+// Of the run, s; negative where nothing is known. What waits takes as long as those of its kind took, else as all that ended,
+// else as those that run expect of themselves.
 double LiveBoard::seconds_left() const {
     struct Mean {
         double sum = 0.0;
@@ -269,7 +280,8 @@ double LiveBoard::seconds_left() const {
         }
         if (test->state != LiveState::running) continue;
         ++running;
-        if (test->progress && test->progress->seconds_left >= 0.0) of_running.add(seconds_since(test->began) + test->progress->seconds_left);
+        if (test->progress && test->progress->seconds_left >= 0.0)
+            of_running.add(seconds_since(test->began) + test->progress->seconds_left);
     }
     const auto expected = [&](const Test& test) {
         if (const auto kind = of_kind.find(test.plan.kind); kind != of_kind.end()) return kind->second.value();
@@ -282,9 +294,12 @@ double LiveBoard::seconds_left() const {
             left = expected(*test);
             if (left < 0.0) return -1.0;
         } else if (test->state == LiveState::running) {
-            if (test->progress && test->progress->seconds_left >= 0.0) left = test->progress->seconds_left;
-            else if (const double whole = expected(*test); whole >= 0.0) left = std::max(0.0, whole - seconds_since(test->began));
-            else return -1.0;
+            if (test->progress && test->progress->seconds_left >= 0.0)
+                left = test->progress->seconds_left;
+            else if (const double whole = expected(*test); whole >= 0.0)
+                left = std::max(0.0, whole - seconds_since(test->began));
+            else
+                return -1.0;
         }
         work += left;
         longest = std::max(longest, left);

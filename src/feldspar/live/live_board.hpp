@@ -1,4 +1,5 @@
-// What is going on in a run, for those who look at it while it runs: plain data that the run puts here and that pages take from here (live_stream.hpp).
+// What is going on in a run, for those who look at it while it runs: plain data that the run puts here and that pages take from
+// here (live_stream.hpp).
 #pragma once
 
 #include <atomic>
@@ -20,9 +21,9 @@ namespace feldspar {
 
 /// A test that is to be run.
 struct LivePlan {
-    std::string label;         ///< "biaxial at 4 MPa, seed 1"
-    std::string kind;          ///< tests of one kind take about equally long: "biaxial at 4 MPa"
-    std::string stress_axis;   ///< what stands at the axes of its curve, without units
+    std::string label;        ///< "biaxial at 4 MPa, seed 1"
+    std::string kind;         ///< tests of one kind take about equally long: "biaxial at 4 MPa"
+    std::string stress_axis;  ///< what stands at the axes of its curve, without units
     std::string strain_axis;
 };
 
@@ -30,32 +31,32 @@ enum class LiveState { waiting, running, writing, ended, failed };
 
 /// A point of a curve, as it is shown.
 struct LivePoint {
-    float strain = 0.0F;   ///< 10^-3, compression positive
-    float stress = 0.0F;   ///< MPa
-    int tensile = 0;       ///< cracks until then
+    float strain = 0.0F;  ///< 10^-3, compression positive
+    float stress = 0.0F;  ///< MPa
+    int tensile = 0;      ///< cracks until then
     int shear = 0;
 };
 
 struct LiveCrack {
-    float x0 = 0.0F, y0 = 0.0F, x1 = 0.0F, y1 = 0.0F;   ///< its ends, mm, undeformed
-    std::uint8_t mode = 0;                              ///< 0 tensile, 1 shear
-    int grain_a = 0, grain_b = 0;                       ///< between which it is
+    float x0 = 0.0F, y0 = 0.0F, x1 = 0.0F, y1 = 0.0F;  ///< its ends, mm, undeformed
+    std::uint8_t mode = 0;                             ///< 0 tensile, 1 shear
+    int grain_a = 0, grain_b = 0;                      ///< between which it is
 };
 
 /// Displacements of the corners of all grains, grain by grain: all x, then all y.
 struct LiveFrame {
     std::vector<std::int16_t> steps;
-    double scale_mm = 1.0;   ///< of a step
+    double scale_mm = 1.0;  ///< of a step
 };
 
 /// What is to be said of a test that has ended.
 struct LiveResult {
     LiveState state = LiveState::ended;
-    std::string words;   ///< "114 MPa, grade B", or why it failed
+    std::string words;  ///< "114 MPa, grade B", or why it failed
 };
 
-/// The places of all calls: the run's on its own thread, but a test's watch on the test's; the pages' on any. Whoever looks costs the tests nothing but what they are
-/// asked for at most a few times a second: that takes at most a hundredth of their time.
+/// The places of all calls: the run's on its own thread, but a test's watch on the test's; the pages' on any. Whoever looks costs
+/// the tests nothing but what they are asked for at most a few times a second: that takes at most a hundredth of their time.
 class LiveBoard {
 public:
     /// @param name  of the run   @param stop  is set when the user ends the run
@@ -106,7 +107,7 @@ private:
     friend class LiveStream;
     class Watch;
     struct Test;
-    void news();   // with the lock
+    void news();  // with the lock
     double seconds_left() const;
 
     const std::string name_;
@@ -117,10 +118,10 @@ private:
     std::vector<std::unique_ptr<Test>> tests_;
     std::string busy_;
     std::filesystem::path report_;
-    int reports_ = 0;        // how often it was written
+    int reports_ = 0;  // how often it was written
     bool over_ = false;
     std::string over_words_;
-    bool ending_ = false;    // by the user
+    bool ending_ = false;  // by the user
     std::atomic<int> watchers_{0};
 };
 

@@ -22,8 +22,10 @@ std::string live_page(const std::string& report, const std::string& name, const 
     std::string page = report.empty() ? html_page(name, nlohmann::ordered_json::object(), "") : report;
     const nlohmann::ordered_json live = {{"name", name}, {"over", over}, {"report", !report.empty()}};
     const std::string end = "</body>";
-    put(page, end, page.rfind(end), std::string("<style>\n") + asset_live_css + "</style>\n<script type=\"application/json\" id=\"live\">" + script_json(live) + "</script>\n<script>\n" + asset_live_js + "</script>\n" + end);
-    const std::string policy = "default-src 'none';";   // it may ask where it comes from, and nobody else
+    put(page, end, page.rfind(end),
+        std::string("<style>\n") + asset_live_css + "</style>\n<script type=\"application/json\" id=\"live\">" +
+            script_json(live) + "</script>\n<script>\n" + asset_live_js + "</script>\n" + end);
+    const std::string policy = "default-src 'none';";  // it may ask where it comes from, and nobody else
     put(page, policy, 0, policy + " connect-src 'self';");
     return page;
 }

@@ -37,8 +37,10 @@ template <class Thing, class Value>
 Json column(const std::vector<Thing>& list, Value Thing::*member) {
     Json values = Json::array();
     for (const Thing& thing : list) {
-        if constexpr (std::is_floating_point_v<Value>) values.push_back(rounded(thing.*member));
-        else values.push_back(static_cast<int>(thing.*member));
+        if constexpr (std::is_floating_point_v<Value>)
+            values.push_back(rounded(thing.*member));
+        else
+            values.push_back(static_cast<int>(thing.*member));
     }
     return values;
 }
@@ -56,22 +58,34 @@ Json outline_json(const GrainMesh& mesh) {
     for (std::size_t g = 0; g < mesh.vertex_count.size(); ++g) {
         for (int k = 0; k < mesh.vertex_count[g]; ++k) {
             const Vec2 node = mesh.nodes[static_cast<std::size_t>(mesh.node_begin[g] + k)];
-            for (const double steps : {(node.x - low.x) / step, (node.y - low.y) / step}) points.push_back(static_cast<std::uint16_t>(std::lround(steps)));
+            for (const double steps : {(node.x - low.x) / step, (node.y - low.y) / step})
+                points.push_back(static_cast<std::uint16_t>(std::lround(steps)));
         }
         begin.push_back(static_cast<int>(points.size() / 2));
     }
-    return {{"x0", low.x * 1e3}, {"y0", low.y * 1e3}, {"scale", step * 1e3}, {"width", (high.x - low.x) * 1e3}, {"height", (high.y - low.y) * 1e3}, {"begin", packed(begin)}, {"points", packed(points)}};
+    return {{"x0", low.x * 1e3},
+            {"y0", low.y * 1e3},
+            {"scale", step * 1e3},
+            {"width", (high.x - low.x) * 1e3},
+            {"height", (high.y - low.y) * 1e3},
+            {"begin", packed(begin)},
+            {"points", packed(points)}};
 }
 
 }  // namespace
 
 const char* name(LiveState state) {
     switch (state) {
-        case LiveState::waiting: return "waiting";
-        case LiveState::running: return "running";
-        case LiveState::writing: return "writing";
-        case LiveState::ended: return "ended";
-        case LiveState::failed: return "failed";
+        case LiveState::waiting:
+            return "waiting";
+        case LiveState::running:
+            return "running";
+        case LiveState::writing:
+            return "writing";
+        case LiveState::ended:
+            return "ended";
+        case LiveState::failed:
+            return "failed";
     }
     return "";
 }
@@ -86,7 +100,7 @@ std::string LiveStream::next(std::chrono::milliseconds at_most) {
     // Under the lock only what is new is copied; the text is made behind it.
     struct News {
         std::size_t n = 0;
-        LiveBoard::Test copy;   // of what is new, and without its watch
+        LiveBoard::Test copy;  // of what is new, and without its watch
         std::shared_ptr<const Specimen> specimen;
         std::size_t points_from = 0, cracks_from = 0;
         bool curve = false, cracks = false, frame = false;
@@ -124,15 +138,24 @@ std::string LiveStream::next(std::chrono::milliseconds at_most) {
             one.cracks_from = std::exchange(seen.cracks, test.cracks.size());
             one.copy.curve.assign(test.curve.begin() + static_cast<std::ptrdiff_t>(one.points_from), test.curve.end());
             one.copy.cracks.assign(test.cracks.begin() + static_cast<std::ptrdiff_t>(one.cracks_from), test.cracks.end());
-            if (!seen.outline && test.specimen && test.specimen->mesh.vertex_count.size() <= kMostShownGrains) one.specimen = test.specimen;
+            if (!seen.outline && test.specimen && test.specimen->mesh.vertex_count.size() <= kMostShownGrains)
+                one.specimen = test.specimen;
             seen.outline = seen.outline || test.specimen;
             one.frame = test.frame && test.frame != seen.frame;
             one.copy.frame = seen.frame = test.frame;
         }
         const double left = board_.seconds_left();
-        run = {{"name", board_.name_}, {"busy", board_.busy_}, {"tests", board_.tests_.size()}, {"running", running}, {"ended", ended}, {"failed", failed},
-               {"seconds_left", left >= 0.0 ? rounded(left) : Json(nullptr)}, {"reports", board_.reports_},
-               {"over", board_.over_ ? Json(board_.over_words_) : Json(nullptr)}, {"ending", board_.ending_}, {"cost", rounded(cost)}};
+        run = {{"name", board_.name_},
+               {"busy", board_.busy_},
+               {"tests", board_.tests_.size()},
+               {"running", running},
+               {"ended", ended},
+               {"failed", failed},
+               {"seconds_left", left >= 0.0 ? rounded(left) : Json(nullptr)},
+               {"reports", board_.reports_},
+               {"over", board_.over_ ? Json(board_.over_words_) : Json(nullptr)},
+               {"ending", board_.ending_},
+               {"cost", rounded(cost)}};
         at_end_ = board_.over_;
     }
     Json tests = Json::array();
@@ -140,14 +163,23 @@ std::string LiveStream::next(std::chrono::milliseconds at_most) {
         const LiveBoard::Test& test = one.copy;
         Json json = {{"n", one.n}, {"label", test.plan.label}, {"state", name(test.state)}, {"words", test.words}};
         if (test.progress) json["progress"] = progress_json(*test.progress);
-        if (!std::exchange(seen_[one.n].axes, true)) json["axes"] = {{"stress", test.plan.stress_axis}, {"strain", test.plan.strain_axis}};
+        if (!std::exchange(seen_[one.n].axes, true))
+            json["axes"] = {{"stress", test.plan.stress_axis}, {"strain", test.plan.strain_axis}};
         if (one.curve)
-            json["curve"] = {{"from", one.points_from}, {"strain", column(test.curve, &LivePoint::strain)}, {"stress", column(test.curve, &LivePoint::stress)},
-                             {"tensile", column(test.curve, &LivePoint::tensile)}, {"shear", column(test.curve, &LivePoint::shear)}};
+            json["curve"] = {{"from", one.points_from},
+                             {"strain", column(test.curve, &LivePoint::strain)},
+                             {"stress", column(test.curve, &LivePoint::stress)},
+                             {"tensile", column(test.curve, &LivePoint::tensile)},
+                             {"shear", column(test.curve, &LivePoint::shear)}};
         if (one.cracks)
-            json["cracks"] = {{"from", one.cracks_from}, {"x0", column(test.cracks, &LiveCrack::x0)}, {"y0", column(test.cracks, &LiveCrack::y0)},
-                              {"x1", column(test.cracks, &LiveCrack::x1)}, {"y1", column(test.cracks, &LiveCrack::y1)}, {"mode", column(test.cracks, &LiveCrack::mode)},
-                              {"a", column(test.cracks, &LiveCrack::grain_a)}, {"b", column(test.cracks, &LiveCrack::grain_b)}};
+            json["cracks"] = {{"from", one.cracks_from},
+                              {"x0", column(test.cracks, &LiveCrack::x0)},
+                              {"y0", column(test.cracks, &LiveCrack::y0)},
+                              {"x1", column(test.cracks, &LiveCrack::x1)},
+                              {"y1", column(test.cracks, &LiveCrack::y1)},
+                              {"mode", column(test.cracks, &LiveCrack::mode)},
+                              {"a", column(test.cracks, &LiveCrack::grain_a)},
+                              {"b", column(test.cracks, &LiveCrack::grain_b)}};
         if (one.specimen) json["outline"] = outline_json(one.specimen->mesh);
         if (one.frame) json["frame"] = {{"scale", test.frame->scale_mm}, {"steps", packed(test.frame->steps)}};
         tests.push_back(std::move(json));

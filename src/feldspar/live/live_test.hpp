@@ -5,7 +5,7 @@
 
 namespace feldspar {
 
-inline constexpr std::size_t kMostShownGrains = 40'000;   ///< of a specimen with more there is only the curve
+inline constexpr std::size_t kMostShownGrains = 40'000;  ///< of a specimen with more there is only the curve
 
 /// Looks at a running test when it is asked to, and leaves on the board what is new.
 class LiveBoard::Watch final : public TestWatch {
@@ -36,8 +36,8 @@ private:
     std::atomic<Clock::rep> not_before_{0};
     std::atomic<double> taken_s_{0.0}, passed_s_{0.0};
     // Of the test's thread alone:
-    const TestResult* of_ = nullptr;      // whose record it was: a test may be repeated
-    std::size_t rows_ = 0, cracks_ = 0;   // seen
+    const TestResult* of_ = nullptr;     // whose record it was: a test may be repeated
+    std::size_t rows_ = 0, cracks_ = 0;  // seen
     int passages_ = 1;
     std::optional<Clock::time_point> first_;
     Clock::time_point next_frame_{};
@@ -51,12 +51,12 @@ struct LiveBoard::Test {
     std::optional<TestProgress> progress;
     std::chrono::steady_clock::time_point began;
     double took_s = 0.0;
-    std::uint64_t version = 0;                   // of the board at its last change
-    int curve_round = 0, crack_round = 0;        // grow when what was shown holds no longer
+    std::uint64_t version = 0;             // of the board at its last change
+    int curve_round = 0, crack_round = 0;  // grow when what was shown holds no longer
     std::vector<LivePoint> curve;
     std::vector<LiveCrack> cracks;
-    std::shared_ptr<const Specimen> specimen;    // while it runs
-    std::shared_ptr<const LiveFrame> frame;      // the last one
+    std::shared_ptr<const Specimen> specimen;  // while it runs
+    std::shared_ptr<const LiveFrame> frame;    // the last one
     std::unique_ptr<Watch> watch;
 };
 

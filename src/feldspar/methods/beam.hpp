@@ -1,4 +1,5 @@
-// A bent beam: its measures, and the closed forms that turn loads into stresses and toughness (docs/theory/properties.md, (P36)-(P40)).
+// A bent beam: its measures, and the closed forms that turn loads into stresses and toughness (docs/theory/properties.md,
+// (P36)-(P40)).
 #pragma once
 
 #include "feldspar/methods/test_spec.hpp"
@@ -8,32 +9,34 @@ namespace feldspar {
 
 /// A beam that lies along x: on two rollers below, loaded by one above in the middle.
 struct Beam {
-    double height_m = 0.0;        ///< h
-    double span_m = 0.0;          ///< S, between the supports
-    double thickness_m = 0.0;     ///< t
-    double notch_m = 0.0;         ///< a, from below in the middle of the span; 0: none
-    double notch_width_m = 0.0;   ///< at its mouth
-    bool otherwise_cut = false;   ///< holes, or notches elsewhere: the closed forms do not hold
-    double middle_m = 0.0;        ///< x of the middle of the span
-    double bottom_m = 0.0;        ///< y of the lower side
+    double height_m = 0.0;       ///< h
+    double span_m = 0.0;         ///< S, between the supports
+    double thickness_m = 0.0;    ///< t
+    double notch_m = 0.0;        ///< a, from below in the middle of the span; 0: none
+    double notch_width_m = 0.0;  ///< at its mouth
+    bool otherwise_cut = false;  ///< holes, or notches elsewhere: the closed forms do not hold
+    double middle_m = 0.0;       ///< x of the middle of the span
+    double bottom_m = 0.0;       ///< y of the lower side
 
     double top_m() const { return bottom_m + height_m; }
     double ligament_m() const { return height_m - notch_m; }
     bool notched() const { return notch_m > 0.0; }
 };
 
-/// The beam that a specimen is in a test. @throws InputError  if it is none: no flat lower or upper side, a span that is longer than the beam,
-/// a height that is not below the span, or a notch that leaves no ligament or does not lie in the middle of the span
+/// The beam that a specimen is in a test. @throws InputError  if it is none: no flat lower or upper side, a span that is longer
+/// than the beam, a height that is not below the span, or a notch that leaves no ligament or does not lie in the middle of the
+/// span
 Beam beam_of(const Outline& outline, double thickness_m, const TestSpec& test);
 
 /// What is cut out of a specimen that is bent.
 struct NotchFromBelow {
-    double depth_m = 0.0;         ///< 0: none
+    double depth_m = 0.0;  ///< 0: none
     double width_m = 0.0;
-    bool otherwise_cut = false;   ///< holes, or notches that do not rise upright from the lower side in the middle
+    bool otherwise_cut = false;  ///< holes, or notches that do not rise upright from the lower side in the middle
 };
 
-/// Looks for a notch that rises from the lower side at x = `middle_m`, y = `bottom_m`. @throws InputError  if it goes through to `height_m` above
+/// Looks for a notch that rises from the lower side at x = `middle_m`, y = `bottom_m`. @throws InputError  if it goes through to
+/// `height_m` above
 NotchFromBelow notch_from_below(const Outline& outline, double middle_m, double bottom_m, double height_m);
 
 /// Largest stress of a plain beam under a point load over 3PS/(2 t h^2) (P36): the load's own stresses take some of it away.

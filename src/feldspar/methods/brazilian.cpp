@@ -26,7 +26,7 @@ FixtureSpec jaw(const MethodInput& in, bool top) {
     plate.contact = plate_contact(in);
     plate.touch = Touch::under_circle;
     plate.axis = disc.centre;
-    plate.flat_label = top ? top_label : bottom_label;   // which the edges of a whole disc do not have
+    plate.flat_label = top ? top_label : bottom_label;  // which the edges of a whole disc do not have
     if (in.test.plates == PlateShape::curved) plate.radius_m = in.test.jaw_radius * disc.radius_m;
     return plate;
 }

@@ -1,10 +1,11 @@
-// A test of the user's own: the fixtures and gauges of the job. It defines no property of the rock, only its curves, cracks, fields and energies.
+// A test of the user's own: the fixtures and gauges of the job. It defines no property of the rock, only its curves, cracks,
+// fields and energies.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -38,28 +39,39 @@ double extent_m(const MethodInput& in, bool across) {
 
 double length_m(const MethodInput& in) { return in.test.custom.length_m.value_or(extent_m(in, false)); }
 
-double section_m2(const MethodInput& in) { return in.test.custom.width_m.value_or(extent_m(in, true)) * in.specimen.spec.thickness_m; }
+double section_m2(const MethodInput& in) {
+    return in.test.custom.width_m.value_or(extent_m(in, true)) * in.specimen.spec.thickness_m;
+}
 
 void check(const Outline& outline, double, const TestSpec& test) {
     bool moves = false;
-    Vec2 held;   // components in which something is held
+    Vec2 held;  // components in which something is held
     for (const FixtureSpec& fixture : test.custom.fixtures) {
         const std::string& label = fixture.part.label;
         if (!label.empty() && std::ranges::find(outline.edge_labels, label) == outline.edge_labels.end()) {
             std::string known;
             for (const std::string& one : outline.edge_labels)
                 if (known.find("\"" + one + "\"") == std::string::npos) known += (known.empty() ? "\"" : ", \"") + one + "\"";
-            throw InputError({.key = "test.fixture"}, fmt::format("the fixture \"{}\" is on \"{}\", which no edge of the outline is called", fixture.name, label), known);
+            throw InputError(
+                {.key = "test.fixture"},
+                fmt::format("the fixture \"{}\" is on \"{}\", which no edge of the outline is called", fixture.name, label),
+                known);
         }
         moves = moves || fixture.moves();
         if (fixture.kind == FixtureKind::plate)
-            held += (fixture.pressed ? Vec2{} : Vec2{std::abs(fixture.normal.x), std::abs(fixture.normal.y)}) + (fixture.contact.mu > 0.0 ? Vec2{std::abs(fixture.normal.y), std::abs(fixture.normal.x)} : Vec2{});
-        if (fixture.kind == FixtureKind::nodes) held += Vec2{fixture.imposes_x || fixture.pins_middle ? 1.0 : 0.0, fixture.imposes_y || fixture.pins_middle ? 1.0 : 0.0};
+            held += (fixture.pressed ? Vec2{} : Vec2{std::abs(fixture.normal.x), std::abs(fixture.normal.y)}) +
+                    (fixture.contact.mu > 0.0 ? Vec2{std::abs(fixture.normal.y), std::abs(fixture.normal.x)} : Vec2{});
+        if (fixture.kind == FixtureKind::nodes)
+            held +=
+                Vec2{fixture.imposes_x || fixture.pins_middle ? 1.0 : 0.0, fixture.imposes_y || fixture.pins_middle ? 1.0 : 0.0};
     }
-    if (!moves) throw InputError({.key = "test.fixture"}, "no fixture moves, so nothing loads the specimen", "motion = [0, -1] of one fixture at least");
+    if (!moves)
+        throw InputError({.key = "test.fixture"}, "no fixture moves, so nothing loads the specimen",
+                         "motion = [0, -1] of one fixture at least");
     for (const auto& [component, axis] : {std::pair{held.x, "x"}, {held.y, "y"}})
         if (!(component > 1e-6))
-            throw InputError({.key = "test.fixture"}, fmt::format("nothing holds the specimen along {}: it is free to move away as a whole", axis),
+            throw InputError({.key = "test.fixture"},
+                             fmt::format("nothing holds the specimen along {}: it is free to move away as a whole", axis),
                              "a fixture that holds it there: friction (mu) of a plate, pin = true, or kind = \"boundary\"");
 }
 
@@ -76,7 +88,8 @@ const TestMethod custom{
     .reading = Reading::curve,
     .specimen = {.plates = true, .fixtures_of_job = true},
     .loading = {.control = LoadControl::dissipation},
-    .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 150.0, .seconds = 40.0, .fixed_speed_strain = 2e-3},
+    .rate =
+        {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 150.0, .seconds = 40.0, .fixed_speed_strain = 2e-3},
     .verdict = {.error_a = 1e-2, .imbalance_a = 2e-2, .imbalance_b = 4e-2},
     .job = {.title = "A test of your own: here a beam on four rollers.",
             .gives = "a test of your own: curves, cracks, fields, energies, and no property of the rock",

@@ -1,5 +1,7 @@
-// Direct shear: a specimen in a box of two halves, one of which moves along the other under a normal stress, or behind a spring (constant normal
-// stiffness). After Muralha, Grasselli, Tatone, Bluemel, Chryssanthakis and Jiang 2014 (ISRM).
+// Direct shear: a specimen in a box of two halves, one of which moves along the other under a normal stress, or behind a spring
+// (constant normal stiffness). After Muralha, Grasselli, Tatone, Bluemel, Chryssanthakis and Jiang 2014 (ISRM).
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,8 +9,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/error.hpp"
@@ -40,17 +40,20 @@ ShearBox shear_box(std::span<const Vec2> outline, const TestSpec& test, double u
     return box;
 }
 
-ShearBox shear_box(const MethodInput& in) { return shear_box(in.specimen.outline.vertices, in.test, in.specimen.quality.mean_diameter_m); }
+ShearBox shear_box(const MethodInput& in) {
+    return shear_box(in.specimen.outline.vertices, in.test, in.specimen.quality.mean_diameter_m);
+}
 
 FixtureSpec side(const MethodInput& in, bool left, bool upper) {
     const ShearBox box = shear_box(in);
-    const double far = 10.0 * (box.length_m() + box.around.upper.y - box.around.lower.y);   // beyond every edge
+    const double far = 10.0 * (box.length_m() + box.around.upper.y - box.around.lower.y);  // beyond every edge
     FixtureSpec wall;
     wall.name = std::string(upper ? "upper" : "lower") + (left ? " left" : " right");
     wall.kind = FixtureKind::plate;
     wall.normal = {left ? -1.0 : 1.0, 0.0};
     wall.part.facing = wall.normal;
-    wall.part.inside = upper ? std::array{Vec2{-far, box.middle_m + 0.5 * box.gap_m}, Vec2{far, far}} : std::array{Vec2{-far, -far}, Vec2{far, box.middle_m - 0.5 * box.gap_m}};
+    wall.part.inside = upper ? std::array{Vec2{-far, box.middle_m + 0.5 * box.gap_m}, Vec2{far, far}}
+                             : std::array{Vec2{-far, -far}, Vec2{far, box.middle_m - 0.5 * box.gap_m}};
     wall.contact = plate_contact(in);
     if (upper) wall.motion = {1.0, 0.0};
     return wall;
@@ -71,7 +74,8 @@ FixtureSpec end(const MethodInput& in, bool top) {
 }
 
 std::vector<FixtureSpec> halves(const MethodInput& in) {
-    return {side(in, true, true), side(in, false, true), side(in, true, false), side(in, false, false), end(in, false), end(in, true)};
+    return {side(in, true, true),   side(in, false, true), side(in, true, false),
+            side(in, false, false), end(in, false),        end(in, true)};
 }
 
 double length_m(const MethodInput& in) { return shear_box(in).length_m(); }
@@ -95,19 +99,24 @@ std::vector<GaugeSpec> gauges(const MethodInput&) {
 void check(const Outline& outline, double, const TestSpec& test) {
     for (const char* label : {top_label, bottom_label})
         if (std::ranges::find(outline.edge_labels, label) == outline.edge_labels.end())
-            throw InputError({.key = "test.kind"}, fmt::format("the specimen has no edge labelled \"{}\", on which a shear box presses", label),
+            throw InputError({.key = "test.kind"},
+                             fmt::format("the specimen has no edge labelled \"{}\", on which a shear box presses", label),
                              "shape = \"rectangle\", or a polygon with edges labelled \"top\" and \"bottom\" and upright sides");
     const ShearBox box = shear_box(outline.vertices, test, 0.0);
     const double height_m = box.around.upper.y - box.around.lower.y;
-    constexpr double kLeastHalf = 0.25;   // of the height, that each half of the box must hold
+    constexpr double kLeastHalf = 0.25;  // of the height, that each half of the box must hold
     if (box.gap_m > (1.0 - 2.0 * kLeastHalf) * height_m)
-        throw InputError({.key = "test.gap"}, fmt::format("a gap of {:.4g} mm leaves little of a specimen {:.4g} mm high to hold", 1e3 * box.gap_m, 1e3 * height_m),
-                         fmt::format("at most {:.4g} mm", 1e3 * (1.0 - 2.0 * kLeastHalf) * height_m));
+        throw InputError(
+            {.key = "test.gap"},
+            fmt::format("a gap of {:.4g} mm leaves little of a specimen {:.4g} mm high to hold", 1e3 * box.gap_m, 1e3 * height_m),
+            fmt::format("at most {:.4g} mm", 1e3 * (1.0 - 2.0 * kLeastHalf) * height_m));
     for (std::size_t k = 0; k < outline.vertices.size(); ++k) {
         const Vec2 a = outline.vertices[k], b = outline.vertices[(k + 1) % outline.vertices.size()];
         const bool upright = std::abs(b.x - a.x) <= 1e-6 * height_m, level = std::abs(b.y - a.y) <= 1e-6 * height_m;
         if (!upright && !level && std::abs(b.y - a.y) > std::abs(b.x - a.x))
-            throw InputError({.key = "test.kind"}, "a side of the specimen is not upright, so the halves of a shear box do not fit it", "shape = \"rectangle\", or a polygon with upright sides");
+            throw InputError({.key = "test.kind"},
+                             "a side of the specimen is not upright, so the halves of a shear box do not fit it",
+                             "shape = \"rectangle\", or a polygon with upright sides");
     }
 }
 
@@ -122,7 +131,8 @@ public:
         dilation_ = gauge_number(r_.gauges, kGauges[0]);
         normal_ = gauge_number(r_.gauges, kGauges[1]);
         for (std::size_t i = 0; i < r_.history.size(); ++i)
-            if (r_.history[i].phase != Phase::consolidation && first_ == kNoRow) first_ = i > 0 ? i - 1 : i;   // the row under the normal stress alone
+            if (r_.history[i].phase != Phase::consolidation && first_ == kNoRow)
+                first_ = i > 0 ? i - 1 : i;  // the row under the normal stress alone
     }
     static constexpr std::size_t kNoRow = static_cast<std::size_t>(-1);
 
@@ -142,7 +152,9 @@ public:
     }
 
 private:
-    static double value(const HistoryRow& row, int gauge) { return static_cast<std::size_t>(gauge) < row.gauges.size() ? row.gauges[static_cast<std::size_t>(gauge)] : 0.0; }
+    static double value(const HistoryRow& row, int gauge) {
+        return static_cast<std::size_t>(gauge) < row.gauges.size() ? row.gauges[static_cast<std::size_t>(gauge)] : 0.0;
+    }
 
     const TestResult& r_;
     std::size_t peak_row_, first_ = kNoRow;
@@ -168,7 +180,7 @@ double at_the_end(const MethodReading& r, Value value) {
     if (record.empty() || !r.peak_reached) return kNone;
     const double whole = record.at(record.rows() - 1).shear_m;
     if (whole < kFarBeyond * record.at(record.peak()).shear_m) return kNone;
-    double sum = 0.0, way = 0.0;   // rows come closer where more happens: they count by their way
+    double sum = 0.0, way = 0.0;  // rows come closer where more happens: they count by their way
     for (std::size_t row = record.peak() + 1; row < record.rows(); ++row) {
         const OnPlane before = record.at(row - 1), now = record.at(row);
         const double step = now.shear_m - before.shear_m;
@@ -179,8 +191,12 @@ double at_the_end(const MethodReading& r, Value value) {
     return way > 0.0 ? sum / way : kNone;
 }
 
-double residual_strength_Pa(const MethodReading& r) { return at_the_end(r, [](const OnPlane& p) { return p.shear_Pa; }); }
-double residual_normal_Pa(const MethodReading& r) { return at_the_end(r, [](const OnPlane& p) { return p.normal_Pa; }); }
+double residual_strength_Pa(const MethodReading& r) {
+    return at_the_end(r, [](const OnPlane& p) { return p.shear_Pa; });
+}
+double residual_normal_Pa(const MethodReading& r) {
+    return at_the_end(r, [](const OnPlane& p) { return p.normal_Pa; });
+}
 
 // (P61): slope of the dilation over the way, by least squares where the shear stress is within 5 % of its peak.
 double dilation_angle_deg(const MethodReading& r) {
@@ -225,8 +241,15 @@ constexpr MethodProperty kProperties[]{
 };
 
 constexpr MethodKey kKeys[]{
-    {.name = "normal_stiffness", .dimension = Dimension::stiffness_gradient, .range = not_negative, .usual = "the normal stress stays", .meaning = "of the spring behind the upper plate: the normal stress grows by so much as the specimen dilates"},
-    {.name = "gap", .dimension = Dimension::length, .usual = "the mean grain diameter", .meaning = "free height between the halves of the box"},
+    {.name = "normal_stiffness",
+     .dimension = Dimension::stiffness_gradient,
+     .range = not_negative,
+     .usual = "the normal stress stays",
+     .meaning = "of the spring behind the upper plate: the normal stress grows by so much as the specimen dilates"},
+    {.name = "gap",
+     .dimension = Dimension::length,
+     .usual = "the mean grain diameter",
+     .meaning = "free height between the halves of the box"},
 };
 
 }  // namespace
@@ -245,15 +268,17 @@ const TestMethod direct_shear{
     .properties_table = "direct_shear",
     .properties = kProperties,
     .keys = kKeys,
-    .job = {.title = "Direct shear on the packing of each seed.",
-            .gives = "one half of the specimen moved along the other under a normal stress: shear strength, residual strength, dilation",
-            .keys = R"(normal_stress = ["2 MPa", "5 MPa"] # one test for each; two or more give cohesion and friction angle
+    .job =
+        {.title = "Direct shear on the packing of each seed.",
+         .gives =
+             "one half of the specimen moved along the other under a normal stress: shear strength, residual strength, dilation",
+         .keys = R"(normal_stress = ["2 MPa", "5 MPa"] # one test for each; two or more give cohesion and friction angle
 # normal_stiffness = "5 GPa/m"      # the normal stress grows by so much as the specimen dilates (constant normal stiffness)
 # gap = "3 mm"                      # free height between the halves of the box; the mean grain diameter unless given
 # The residual strength needs three times the way of the peak: see maximum_strain, in shares of the length.
 )",
-            .width = R"(width = "80 mm"                     # length of the plane that is sheared)",
-            .height = R"(height = "40 mm"                    # half of it in each half of the box)"},
+         .width = R"(width = "80 mm"                     # length of the plane that is sheared)",
+         .height = R"(height = "40 mm"                    # half of it in each half of the box)"},
 };
 
 }  // namespace feldspar::methods

@@ -9,9 +9,10 @@ namespace feldspar {
 
 /// What presses on the flats.
 struct FlatLoading {
-    double hardness = 0.0;   ///< stiffness of the plate per area times half the width of a flat, over the disc's E, >= 0; 0 presses uniformly
-    double eta = 0.0;        ///< shear over normal stiffness of the plate, >= 0
-    double mu = 0.0;         ///< friction of the plate, >= 0
+    double hardness =
+        0.0;  ///< stiffness of the plate per area times half the width of a flat, over the disc's E, >= 0; 0 presses uniformly
+    double eta = 0.0;  ///< shear over normal stiffness of the plate, >= 0
+    double mu = 0.0;   ///< friction of the plate, >= 0
 };
 
 /// k in sigma_t = k 2P / (pi D t): Griffith's stress in the centre of an elastic disc. Exactly 1 for a whole disc.
@@ -20,6 +21,7 @@ struct FlatLoading {
 double flat_coefficient(double angle_rad, const FlatLoading& loading);
 
 /// The same for a Brazilian test.
-double flat_coefficient(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact, const TestSpec& test);
+double flat_coefficient(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain,
+                        const ContactMaterial& contact, const TestSpec& test);
 
 }  // namespace feldspar

@@ -1,4 +1,5 @@
-// A plate with a round hole in compression, with free sides or a pressure on them: stress at the hole's edge, first cracks, breakouts.
+// A plate with a round hole in compression, with free sides or a pressure on them: stress at the hole's edge, first cracks,
+// breakouts.
 #include "feldspar/methods/method.hpp"
 #include "feldspar/methods/platens.hpp"
 #include "feldspar/methods/round_hole.hpp"
@@ -42,14 +43,21 @@ std::vector<GaugeSpec> gauges(const MethodInput& in) {
         stress.points = {{hole.centre + hole.radius_m * out, {}}, {hole.centre - hole.radius_m * out, {}}};
         return stress;
     };
-    return {gauge(side_stress_gauge, "stress along the edge of the hole at its sides, mean of both, from the elastic field around it", {1.0, 0.0}),
-            gauge(pole_stress_gauge, "stress along the edge of the hole at its poles, above and below, mean of both, from the elastic field around it", {0.0, 1.0})};
+    return {
+        gauge(side_stress_gauge, "stress along the edge of the hole at its sides, mean of both, from the elastic field around it",
+              {1.0, 0.0}),
+        gauge(pole_stress_gauge,
+              "stress along the edge of the hole at its poles, above and below, mean of both, from the elastic field around it",
+              {0.0, 1.0})};
 }
 
-// Measured over three packings: 4 to 8 % low at the sides and 14 to 17 % at the poles, and no nearer with more grains (docs/decisions, stress at a hole).
+// Measured over three packings: 4 to 8 % low at the sides and 14 to 17 % at the poles, and no nearer with more grains
+// (docs/decisions, stress at a hole).
 std::vector<std::string> remarks(const MethodReading& r) {
     if (r.result.model.kind != GrainKind::inner_particles) return {};
-    return {"The stress at the hole's edge is not known well enough from inner particles to be printed: its gauges read up to a sixth too little."};
+    return {
+        "The stress at the hole's edge is not known well enough from inner particles to be printed: its gauges read up to a "
+        "sixth too little."};
 }
 
 constexpr const char* kGauges[]{side_stress_gauge, pole_stress_gauge};

@@ -9,7 +9,8 @@
 namespace feldspar {
 namespace {
 
-// A laboratory wraps the disc in a layer of masking tape, about 0.25 mm of a modulus near 0.4 GPa (docs/decisions, fixture of the Brazilian test).
+// A laboratory wraps the disc in a layer of masking tape, about 0.25 mm of a modulus near 0.4 GPa (docs/decisions, fixture of the
+// Brazilian test).
 constexpr double tape_Kn_Pa_m = 1.6e12;
 
 template <class Such>
@@ -59,8 +60,11 @@ std::vector<std::string_view> short_method_names() {
 std::optional<MethodId> find_method_called(std::string_view word) {
     if (const auto found = find_method(word)) return found;
     const auto capital = [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; };
-    const auto same = [&](std::string_view name) { return std::ranges::equal(word, name, [&](char a, char b) { return capital(a) == capital(b); }); };
-    const auto found = std::ranges::find_if(test_methods(), [&](MethodId id) { return !word.empty() && same(id.definition().strength.name); });
+    const auto same = [&](std::string_view name) {
+        return std::ranges::equal(word, name, [&](char a, char b) { return capital(a) == capital(b); });
+    };
+    const auto found =
+        std::ranges::find_if(test_methods(), [&](MethodId id) { return !word.empty() && same(id.definition().strength.name); });
     return found == test_methods().end() ? std::nullopt : std::optional(*found);
 }
 
@@ -69,7 +73,8 @@ MethodId method_of_strength(std::string_view name) {
 }
 
 MethodId method_of_confined_strength() {
-    return the_one([](MethodId id) { return id.definition().loading.on_envelope && id.definition().specimen.confined; }, "a confined strength");
+    return the_one([](MethodId id) { return id.definition().loading.on_envelope && id.definition().specimen.confined; },
+                   "a confined strength");
 }
 
 TestSpec usual_test(MethodId kind, bool flattened) {

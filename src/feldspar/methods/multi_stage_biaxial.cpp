@@ -1,5 +1,6 @@
-// Multi-stage biaxial compression: one specimen under rising pressures. Under each but the last it is loaded until its volumetric strain turns, under
-// the last to failure (after Kovari, Tisa, Einstein and Franklin 1983, ISRM). What it shows is read by lab/multi_stage.
+// Multi-stage biaxial compression: one specimen under rising pressures. Under each but the last it is loaded until its volumetric
+// strain turns, under the last to failure (after Kovari, Tisa, Einstein and Franklin 1983, ISRM). What it shows is read by
+// lab/multi_stage.
 #include "feldspar/methods/method.hpp"
 #include "feldspar/methods/platens.hpp"
 
@@ -31,9 +32,11 @@ const TestMethod multi_stage_biaxial{
     .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true, .failure_state = {{0.0, 1.0}}},
     .rate = {.travel_times = 300.0, .seconds = 20.0},
     .verdict = {},
-    .job = {.title = "A strength envelope from one specimen.",
-            .gives = "one specimen under rising pressures: loaded under each until it dilates, under the last to failure",
-            .keys = R"(sigma3 = ["2 MPa", "5 MPa", "10 MPa"]   # strengths under all but the last are estimated; cohesion and friction angle from them
+    .job =
+        {.title = "A strength envelope from one specimen.",
+         .gives = "one specimen under rising pressures: loaded under each until it dilates, under the last to failure",
+         .keys =
+             R"(sigma3 = ["2 MPa", "5 MPa", "10 MPa"]   # strengths under all but the last are estimated; cohesion and friction angle from them
 
 # What no laboratory can do: the same packings under one pressure each, for comparison.
 # [[test]]

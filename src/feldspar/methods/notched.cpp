@@ -9,9 +9,10 @@ namespace feldspar {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kHalf = 0.5;            // of the largest load: where the stiffness is read
-constexpr double kWholeCurve = 0.11;     // share of the largest load below which a record has the whole work of fracture (it ends at 0.1)
-constexpr double kTipReach = 1.0;        // mean grains
+constexpr double kHalf = 0.5;  // of the largest load: where the stiffness is read
+constexpr double kWholeCurve =
+    0.11;  // share of the largest load below which a record has the whole work of fracture (it ends at 0.1)
+constexpr double kTipReach = 1.0;  // mean grains
 
 }  // namespace
 
@@ -52,9 +53,10 @@ double main_crack_m(const MethodReading& reading, Vec2 tip) {
     return chain_of_cracks_m(reading.result.cracks, tip, grain_m, kTipReach * grain_m);
 }
 
-// Dijkstra over the ends of the cracks: from one end of a crack to its other, and from an end to those within a quarter of a grain.
+// Dijkstra over the ends of the cracks: from one end of a crack to its other, and from an end to those within a quarter of a
+// grain.
 double chain_of_cracks_m(std::span<const Crack> cracks, Vec2 tip, double grain_m, double reach_m) {
-    constexpr double kBridged = 0.25;   // as in the crack that splits a disc (P26)
+    constexpr double kBridged = 0.25;  // as in the crack that splits a disc (P26)
     const std::size_t ends = 2 * cracks.size();
     const auto place = [&](std::size_t end) { return end % 2 == 0 ? cracks[end / 2].from : cracks[end / 2].to; };
     std::vector<double> way(ends, std::numeric_limits<double>::infinity());

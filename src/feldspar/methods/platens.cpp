@@ -13,7 +13,8 @@ FixtureSpec platen(const MethodInput& in, bool top) {
     FixtureSpec platen;
     platen.name = platen.part.label = top ? top_label : bottom_label;
     platen.motion = {0.0, top ? -method_of(in.test).loading.sign : 0.0};
-    if (in.model.kind == GrainKind::flexible && !(in.test.plate_mu.value_or(0.0) > 0.0)) {   // without friction a row of nodes is such a plate
+    if (in.model.kind == GrainKind::flexible &&
+        !(in.test.plate_mu.value_or(0.0) > 0.0)) {  // without friction a row of nodes is such a plate
         platen.kind = FixtureKind::nodes;
         platen.imposes_y = true;
         platen.pins_middle = !top;
@@ -31,7 +32,7 @@ FixtureSpec membrane(const MethodInput& in, bool left) {
     side.kind = FixtureKind::membrane;
     side.normal = {left ? -1.0 : 1.0, 0.0};
     side.part.facing = side.normal;
-    side.part.least_cosine = 0.0;   // a side that is not vertical is refused, not left out
+    side.part.least_cosine = 0.0;  // a side that is not vertical is refused, not left out
     side.part.remaining = true;
     side.contact = {in.contact.Kn_Pa_m, in.contact.eta, 0.0, false};
     side.plates = in.test.membrane_plates;

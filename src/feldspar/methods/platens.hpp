@@ -10,8 +10,9 @@ namespace feldspar {
 /// How the plates of a test touch its specimen, as the job or the method says.
 PlateContact plate_contact(const MethodInput& in);
 
-/// Platens on the ends labelled "top", which moves, and "bottom": rows of nodes of flexible grains, plates elsewhere, and where they have friction. Under a confining pressure
-/// also what carries it: the other edges themselves, or membranes of plates (rigid grains and inner particles).
+/// Platens on the ends labelled "top", which moves, and "bottom": rows of nodes of flexible grains, plates elsewhere, and where
+/// they have friction. Under a confining pressure also what carries it: the other edges themselves, or membranes of plates (rigid
+/// grains and inner particles).
 std::vector<FixtureSpec> between_platens(const MethodInput& in);
 
 /// Of the specimen, along the load, m.

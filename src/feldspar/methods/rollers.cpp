@@ -22,7 +22,8 @@ FixtureSpec roller(const MethodInput& in, const char* name, Vec2 at, double radi
 }
 
 std::vector<FixtureSpec> three_rollers(const MethodInput& in, const RollerPlaces& places) {
-    return {roller(in, "loading roller", places.above, places.radius_m, true), roller(in, "left support", places.left, places.radius_m, false),
+    return {roller(in, "loading roller", places.above, places.radius_m, true),
+            roller(in, "left support", places.left, places.radius_m, false),
             roller(in, "right support", places.right, places.radius_m, false)};
 }
 

@@ -10,7 +10,7 @@ namespace feldspar {
 /// Where the rollers of a bending test touch its specimen, m.
 struct RollerPlaces {
     Vec2 above, left, right;
-    double radius_m = 0.0;   ///< of all three
+    double radius_m = 0.0;  ///< of all three
 };
 
 /// The loading roller, which comes down and keeps the specimen from sliding away by its friction, and two supports that roll.

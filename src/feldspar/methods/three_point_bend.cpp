@@ -1,4 +1,5 @@
-// Three-point bending of a plain or notched beam: flexural strength and modulus, or toughness and work of fracture (ASTM C880, E399; RILEM TC50-FMC).
+// Three-point bending of a plain or notched beam: flexural strength and modulus, or toughness and work of fracture (ASTM C880,
+// E399; RILEM TC50-FMC).
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,13 +13,15 @@
 namespace feldspar::methods {
 namespace {
 
-constexpr double kRoller = 0.1;         // radius of the rollers over the beam's height
+constexpr double kRoller = 0.1;  // radius of the rollers over the beam's height
 
 Beam beam(const MethodInput& in) { return beam_of(in.specimen.outline, in.specimen.spec.thickness_m, in.test); }
 
 std::vector<FixtureSpec> rollers(const MethodInput& in) {
     const Beam b = beam(in);
-    return three_rollers(in, {{b.middle_m, b.top_m()}, {b.middle_m - 0.5 * b.span_m, b.bottom_m}, {b.middle_m + 0.5 * b.span_m, b.bottom_m},
+    return three_rollers(in, {{b.middle_m, b.top_m()},
+                              {b.middle_m - 0.5 * b.span_m, b.bottom_m},
+                              {b.middle_m + 0.5 * b.span_m, b.bottom_m},
                               in.test.own_value("roller_radius").value_or(kRoller * b.height_m)});
 }
 
@@ -45,9 +48,13 @@ std::vector<GaugeSpec> gauges(const MethodInput& in) {
     const Vec2 left = {b.middle_m - beside, read}, right = {b.middle_m + beside, read};
     GaugeSpec deflection;
     deflection.name = "deflection";
-    deflection.meaning = b.notched() ? "of the lower side on both sides of the notch, downwards, against the axis above the supports"
-                                     : "of the axis in the middle of the span, downwards, against the axis above the supports";
-    deflection.points = {{left, {0.0, -0.5}}, {right, {0.0, -0.5}}, {{b.middle_m - 0.5 * b.span_m, axis}, {0.0, 0.5}}, {{b.middle_m + 0.5 * b.span_m, axis}, {0.0, 0.5}}};
+    deflection.meaning = b.notched()
+                             ? "of the lower side on both sides of the notch, downwards, against the axis above the supports"
+                             : "of the axis in the middle of the span, downwards, against the axis above the supports";
+    deflection.points = {{left, {0.0, -0.5}},
+                         {right, {0.0, -0.5}},
+                         {{b.middle_m - 0.5 * b.span_m, axis}, {0.0, 0.5}},
+                         {{b.middle_m + 0.5 * b.span_m, axis}, {0.0, 0.5}}};
     if (!b.notched()) return {deflection};
     GaugeSpec opening;
     opening.name = "CMOD";
@@ -87,7 +94,8 @@ double K_Ic_Pa_sqrt_m(const MethodReading& r) {
     const auto b = beam_of_record(r);
     if (!b || !b->notched()) return nan;
     const double largest_N = load_N(r, r.result.history[r.peak_row]);
-    return largest_N * b->span_m / (b->thickness_m * std::pow(b->height_m, 1.5)) * notch_factor(b->notch_m / b->height_m, b->height_m / b->span_m);
+    return largest_N * b->span_m / (b->thickness_m * std::pow(b->height_m, 1.5)) *
+           notch_factor(b->notch_m / b->height_m, b->height_m / b->span_m);
 }
 
 // The beam of a record, if it has a notch.
@@ -119,10 +127,12 @@ double notch_m(const MethodReading& r) {
 }
 
 constexpr MethodProperty kProperties[]{
-    {"flexural_strength", units::stress, "(P36)", flexural_strength_Pa, "Flexural strength, three-point bending", "\u03c3f", "flexural_strength"},
+    {"flexural_strength", units::stress, "(P36)", flexural_strength_Pa, "Flexural strength, three-point bending", "\u03c3f",
+     "flexural_strength"},
     {"E_bending", units::modulus, "(P37), (P39)", E_Pa, "Young's modulus, three-point bending", "E bending", "E"},
     {"K_Ic", units::toughness, "(P38)", K_Ic_Pa_sqrt_m, "Fracture toughness, notched three-point bending", "KIc", "K_Ic"},
-    {"work_of_fracture", units::fracture_work, "(P40)", work_of_fracture, "Work of fracture, notched three-point bending", "GF", "work_of_fracture"},
+    {"work_of_fracture", units::fracture_work, "(P40)", work_of_fracture, "Work of fracture, notched three-point bending", "GF",
+     "work_of_fracture"},
     {"softening_length", units::length, "(P40)", softening_length, "Softening length of the contacts"},
     {"crack_path", units::pure, "(P40)", crack_path, "Length of all cracks over the ligament"},
     {"main_crack", units::pure, "(P40)", main_crack, "Length of the crack from the notch over the ligament"},
@@ -130,8 +140,14 @@ constexpr MethodProperty kProperties[]{
 };
 
 constexpr MethodKey kKeys[]{
-    {.name = "span", .dimension = Dimension::length, .usual = "4 times the beam's height, at most 0.9 of its length", .meaning = "distance of the two supports"},
-    {.name = "roller_radius", .dimension = Dimension::length, .usual = "a tenth of the beam's height", .meaning = "radius of the three rollers"},
+    {.name = "span",
+     .dimension = Dimension::length,
+     .usual = "4 times the beam's height, at most 0.9 of its length",
+     .meaning = "distance of the two supports"},
+    {.name = "roller_radius",
+     .dimension = Dimension::length,
+     .usual = "a tenth of the beam's height",
+     .meaning = "radius of the three rollers"},
 };
 
 constexpr const char* kGauges[]{"deflection", "CMOD"};
@@ -147,20 +163,23 @@ const TestMethod three_point_bend{
     .reading = Reading::curve,
     .specimen = {.plate_mu = kRollerHolds, .plates = true},
     .loading = {.control = LoadControl::dissipation, .stop_fraction = 0.1, .tensile = true},
-    .rate = {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 150.0, .seconds = 60.0, .fixed_speed_strain = 2e-3},
+    .rate =
+        {.residual_target = 3.0, .residual_share = 1.0 / 3.0, .travel_times = 150.0, .seconds = 60.0, .fixed_speed_strain = 2e-3},
     .verdict = {.error_a = 1e-2, .imbalance_a = 2e-2, .imbalance_b = 4e-2},
     .properties_table = "bending",
     .properties = kProperties,
     .keys = kKeys,
-    .job = {.title = "Three-point bending of a beam on the packing of each seed.",
-            .gives = "a beam that lies along x: flexural strength and modulus; with a notch K_Ic and work of fracture",
-            .keys = R"(# span = "200 mm"                   # distance of the two supports; 4 times the height unless given, at most 0.9 of the length
+    .job =
+        {.title = "Three-point bending of a beam on the packing of each seed.",
+         .gives = "a beam that lies along x: flexural strength and modulus; with a notch K_Ic and work of fracture",
+         .keys =
+             R"(# span = "200 mm"                   # distance of the two supports; 4 times the height unless given, at most 0.9 of the length
 # roller_radius = "5 mm"            # of the three rollers; a tenth of the height unless given
 # control = "dissipation"           # behind the peak; also "displacement", or a gauge: "CMOD" of a notched beam, "deflection"
 # until = { gauge = "CMOD", at = "0.3 mm" }   # ends the test there
 )",
-            .width = beam_width_line,
-            .height = beam_height_line},
+         .width = beam_width_line,
+         .height = beam_height_line},
 };
 
 }  // namespace feldspar::methods

@@ -12,7 +12,8 @@ const TestMethod uniaxial_compression{
     .start = {},
     .reading = Reading::column,
     .specimen = {},
-    .loading = {.control = LoadControl::dissipation, .widens = true, .bends = true, .on_envelope = true, .failure_state = {{0.0, 1.0}}},
+    .loading =
+        {.control = LoadControl::dissipation, .widens = true, .bends = true, .on_envelope = true, .failure_state = {{0.0, 1.0}}},
     .rate = {},
     .verdict = {},
     .strength = {"UCS", "Uniaxial compressive strength"},

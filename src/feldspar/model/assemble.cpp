@@ -21,7 +21,7 @@ namespace feldspar {
 namespace {
 
 constexpr Vec2 kFree{1.0, 1.0};
-constexpr Vec2 kTurn{1.0, 0.0};   // of a turn only x moves
+constexpr Vec2 kTurn{1.0, 0.0};  // of a turn only x moves
 
 Triangle make_triangle(std::span<const Vec2> X, const SideNodes& node, double thickness_m) {
     const Vec2 e1 = X[node[1]] - X[node[0]], e2 = X[node[2]] - X[node[0]];
@@ -92,9 +92,12 @@ void add_flexible_grains(Assembly& assembly, const Specimen& specimen) {
     const GrainMesh& mesh = specimen.mesh;
     assembly.bodies.resize(mesh.vertex_count.size());
     add_nodes(assembly, mesh);
-    const auto in_assembly = [&](const auto& t) { return SideNodes{assembly.node_of_mesh[t[0]], assembly.node_of_mesh[t[1]], assembly.node_of_mesh[t[2]]}; };
+    const auto in_assembly = [&](const auto& t) {
+        return SideNodes{assembly.node_of_mesh[t[0]], assembly.node_of_mesh[t[1]], assembly.node_of_mesh[t[2]]};
+    };
     assembly.triangles.reserve(mesh.triangles.size());
-    for (const auto& t : mesh.triangles) assembly.triangles.push_back(make_triangle(assembly.nodes.reference, in_assembly(t), assembly.thickness_m));
+    for (const auto& t : mesh.triangles)
+        assembly.triangles.push_back(make_triangle(assembly.nodes.reference, in_assembly(t), assembly.thickness_m));
     for (int g = 0; g < std::ssize(assembly.bodies); ++g) {
         Body& body = assembly.bodies[g];
         body.kind = BodyKind::flexible;
@@ -124,7 +127,7 @@ void add_rigid_grains(Assembly& assembly, const Specimen& specimen) {
         Body body = rigid_body(assembly, g, centre, specimen.packing.radii_m[g]);
         const std::vector<Vec2> corners = corners_of_cell(specimen.cells, g);
         body.volume_m3 = signed_area(corners) * assembly.thickness_m;
-        double polar = 0.0;   // of the triangles between the centre and the edges
+        double polar = 0.0;  // of the triangles between the centre and the edges
         for (std::size_t k = 0; k < corners.size(); ++k) {
             const Vec2 a = corners[k] - centre, b = corners[(k + 1) % corners.size()] - centre;
             polar += cross(a, b) * (dot(a, a) + dot(a, b) + dot(b, b)) / 12.0;
@@ -135,11 +138,11 @@ void add_rigid_grains(Assembly& assembly, const Specimen& specimen) {
     }
 }
 
-// Particles by strips of the specimen from the bottom to the top, and from left to right in each, whatever grain they are of: contacts join what is
-// near in this order, and bands can be narrow (model/bands.hpp).
+// Particles by strips of the specimen from the bottom to the top, and from left to right in each, whatever grain they are of:
+// contacts join what is near in this order, and bands can be narrow (model/bands.hpp).
 std::vector<int> particles_in_strips(const Filling& filling) {
     const double strip = 3.0 * *std::max_element(filling.radii_m.begin(), filling.radii_m.end());
-    std::vector<std::pair<double, double>> place;   // number of the strip, and where in it
+    std::vector<std::pair<double, double>> place;  // number of the strip, and where in it
     for (const Vec2 centre : filling.centres) place.push_back({std::floor(centre.y / strip), centre.x});
     std::vector<int> order(filling.centres.size());
     std::iota(order.begin(), order.end(), 0);
@@ -151,7 +154,7 @@ std::vector<int> particles_in_strips(const Filling& filling) {
 void add_inner_particles(Assembly& assembly, const Specimen& specimen) {
     const Filling& filling = specimen.filling;
     std::vector<int> grain(filling.centres.size());
-    std::vector<double> volume_over_squares;   // of each grain
+    std::vector<double> volume_over_squares;  // of each grain
     for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
         double squares = 0.0;
         for (int p = filling.particle_begin[g]; p < filling.particle_begin[g + 1]; ++p) {
@@ -176,8 +179,8 @@ void place_on_line(const Assembly& assembly, Contact& contact, Vec2 p0, Vec2 p1)
     const Vec2 xa = assembly.centre(contact.a.body), xb = assembly.centre(contact.b.body);
     const double d = norm(xb - xa), length = norm(p1 - p0);
     const Vec2 n = (1.0 / d) * (xb - xa), t = (1.0 / length) * (p1 - p0);
-    const double s = cross(p0 - xa, t) / cross(n, t);   // where the line of centres meets the edge's line
-    contact.offset_m = s - 0.5 * d;                     // = (RA - RB)/2 + dv
+    const double s = cross(p0 - xa, t) / cross(n, t);  // where the line of centres meets the edge's line
+    contact.offset_m = s - 0.5 * d;                    // = (RA - RB)/2 + dv
     contact.tangent = {dot(t, n), dot(t, rot90(n))};
 }
 
@@ -216,7 +219,7 @@ void add_bonded_contact(Assembly& assembly, ContactKind kind, int ga, int ka, in
         assembly.add_point(0.5 * (from + to), 2.0 * area / 3.0);
         assembly.add_point(to, area / 6.0);
     } else {
-        contact.points = 1;   // PCM
+        contact.points = 1;  // PCM
         contact.offset_m = plane_between_circles(assembly, contact);
         assembly.add_point(0.0, area);
     }
@@ -235,16 +238,17 @@ void lay_out_bonds(Assembly& assembly) {
 }
 
 void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, ContactKind kind) {
-    std::unordered_map<std::uint64_t, std::pair<int, int>> owner;   // directed edge -> (cell, edge of the cell)
-    owner.reserve(std::accumulate(cells.cells.begin(), cells.cells.end(), std::size_t{0}, [](std::size_t sum, const Cell& cell) { return sum + cell.vertices.size(); }));
+    std::unordered_map<std::uint64_t, std::pair<int, int>> owner;  // directed edge -> (cell, edge of the cell)
+    owner.reserve(std::accumulate(cells.cells.begin(), cells.cells.end(), std::size_t{0},
+                                  [](std::size_t sum, const Cell& cell) { return sum + cell.vertices.size(); }));
     for (int g = 0; g < std::ssize(cells.cells); ++g) {
         const Cell& cell = cells.cells[g];
         const int nv = static_cast<int>(cell.vertices.size());
         for (int k = 0; k < nv; ++k) owner[dart(cell.vertices[k], cell.vertices[(k + 1) % nv])] = {g, k};
     }
     struct Facing {
-        int place;       // sum of those of the two grains, in the order of packs or rigid bodies
-        double height;   // twice that of the edge's middle
+        int place;      // sum of those of the two grains, in the order of packs or rigid bodies
+        double height;  // twice that of the edge's middle
         int ga, ka, gb, kb;
     };
     std::vector<Facing> facing;
@@ -260,11 +264,14 @@ void add_contacts_of_grains(Assembly& assembly, const Tessellation& cells, Conta
             const int from = cell.vertices[k], to = cell.vertices[(k + 1) % nv];
             const auto other = owner.find(dart(to, from));
             if (other == owner.end()) throw NumericalError("the tessellation is not conforming");
-            facing.push_back({place[g] + place[other->second.first], cells.vertices[from].y + cells.vertices[to].y, g, k, other->second.first, other->second.second});
+            facing.push_back({place[g] + place[other->second.first], cells.vertices[from].y + cells.vertices[to].y, g, k,
+                              other->second.first, other->second.second});
         }
     }
     // From bottom to top, as the packs of grains are: a contiguous share is a band of the specimen (model/bands.hpp).
-    std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) { return std::pair{l.place, l.height} < std::pair{r.place, r.height}; });
+    std::stable_sort(facing.begin(), facing.end(), [](const Facing& l, const Facing& r) {
+        return std::pair{l.place, l.height} < std::pair{r.place, r.height};
+    });
     const std::size_t points_each = kind == ContactKind::lobatto3 ? 3 : 1;
     assembly.contacts.reserve(facing.size());
     assembly.origins.reserve(facing.size());
@@ -305,7 +312,7 @@ void add_across_contact(Assembly& assembly, const AcrossContact& across, Contact
     place_on_line(assembly, contact, across.from, across.to);
     if (normal == ContactNormal::edge || smooth) {
         const Vec2 line = across.to - across.from;
-        contact.edge_normal = (-1.0 / norm(line)) * rot90(line);   // out of A's cell, which lies to the left of its edges
+        contact.edge_normal = (-1.0 / norm(line)) * rot90(line);  // out of A's cell, which lies to the left of its edges
     }
     set_closing_distance(assembly, contact);
     contact.first_point = static_cast<std::int32_t>(assembly.points.size());
@@ -315,10 +322,10 @@ void add_across_contact(Assembly& assembly, const AcrossContact& across, Contact
     add_contact(assembly, contact, {across.edge_a, across.edge_b, across.from, across.to});
 }
 
-// From the first particles to the last, so that a sweep over the contacts goes through the particles once; those inside grains and those
-// across edges in turn, a full pack of either.
+// From the first particles to the last, so that a sweep over the contacts goes through the particles once; those inside grains
+// and those across edges in turn, a full pack of either.
 void add_contacts_of_particles(Assembly& assembly, const Tessellation& cells, Filling filling, ContactNormal normal) {
-    const auto in_order = [&](auto& all) {   // and from now on between bodies
+    const auto in_order = [&](auto& all) {  // and from now on between bodies
         for (auto& contact : all) {
             contact.a = assembly.body_of_particle[contact.a];
             contact.b = assembly.body_of_particle[contact.b];
@@ -330,7 +337,8 @@ void add_contacts_of_particles(Assembly& assembly, const Tessellation& cells, Fi
     auto inside = filling.inside.begin();
     auto across = filling.across.begin();
     while (inside != filling.inside.end() || across != filling.across.end()) {
-        const bool inside_first = across == filling.across.end() || (inside != filling.inside.end() && inside->a + inside->b < across->a + across->b);
+        const bool inside_first =
+            across == filling.across.end() || (inside != filling.inside.end() && inside->a + inside->b < across->a + across->b);
         for (int lane = 0; lane < kMostLanes; ++lane) {
             if (inside_first && inside != filling.inside.end()) add_inside_contact(assembly, *inside++);
             if (!inside_first && across != filling.across.end()) {
@@ -358,7 +366,8 @@ void remember_shapes(Assembly& assembly, const Contact& contact) {
 // Where a point of the undeformed edge of this body is now.
 Vec2 now(const Assembly& assembly, const Body& body, const SideNodes& node, int end, Vec2 X) {
     if (body.kind == BodyKind::flexible) return assembly.nodes.position(node[end]);
-    return assembly.nodes.position(body.centre_node) + turned(X - assembly.nodes.reference[body.centre_node], assembly.rotation(body));
+    return assembly.nodes.position(body.centre_node) +
+           turned(X - assembly.nodes.reference[body.centre_node], assembly.rotation(body));
 }
 
 // The edge of a grain that is closest to x, and its length; a disc hangs by its centre and is as wide as its diameter.
@@ -391,8 +400,12 @@ ClosestEdge closest_edge(const Assembly& assembly, int index, Vec2 x) {
 namespace {
 
 // The arrays of nodes, or of bonds, that are as long as there are of them.
-auto arrays_of(Nodes& n) { return std::tie(n.reference, n.displacement, n.velocity, n.force, n.inverse_mass, n.loading_mode, n.mass); }
-auto arrays_of(Bonds& b) { return std::tie(b.un_m, b.us_m, b.Fn_N, b.Fs_N, b.max_un_m, b.max_us_m, b.damage, b.fracture_J, b.friction_J); }
+auto arrays_of(Nodes& n) {
+    return std::tie(n.reference, n.displacement, n.velocity, n.force, n.inverse_mass, n.loading_mode, n.mass);
+}
+auto arrays_of(Bonds& b) {
+    return std::tie(b.un_m, b.us_m, b.Fn_N, b.Fs_N, b.max_un_m, b.max_us_m, b.damage, b.fracture_J, b.friction_J);
+}
 
 template <class Arrays, class Work>
 void for_each_array(Arrays&& arrays, Work work) {
@@ -421,7 +434,9 @@ void release_spare_memory(Assembly& a) {
     for_each_array(arrays_of(a.nodes), release);
     for_each_array(arrays_of(a.bonds), release);
     for_each_array(std::tie(a.triangles, a.bodies, a.edges, a.contacts, a.origins, a.points, a.initial_shapes), release);
-    for_each_array(std::tie(a.packs.offset, a.packs.tangent_x, a.packs.tangent_y, a.packs.line_a, a.packs.line_b, a.packs.contacts), release);
+    for_each_array(
+        std::tie(a.packs.offset, a.packs.tangent_x, a.packs.tangent_y, a.packs.line_a, a.packs.line_b, a.packs.contacts),
+        release);
 }
 
 }  // namespace
@@ -465,7 +480,8 @@ void set_grains(Assembly& assembly, const Texture& texture, const ModelSpec& mod
         const GrainMaterial grain = texture.grain(body.grain);
         body.density_kg_m3 = grain.density_kg_m3;
         if (model.kind != GrainKind::flexible) continue;
-        if (rock.grains_differ() || assembly.elasticity.empty()) assembly.elasticity.push_back(plane_elasticity(grain.E_Pa, grain.nu, model.plane));
+        if (rock.grains_differ() || assembly.elasticity.empty())
+            assembly.elasticity.push_back(plane_elasticity(grain.E_Pa, grain.nu, model.plane));
     }
 }
 
@@ -482,7 +498,8 @@ void open(Assembly& assembly, const Contact& contact, double opening_m) {
 // Laws of their own for the contacts between grains, and inside grains of minerals whose stiffness is not that of the others.
 void set_contacts(Assembly& assembly, const Texture& texture, const ContactMaterial& contact, const Heterogeneity& rock) {
     if (!rock.contacts_differ()) return;
-    assembly.own_laws.form = {contact.law, contact.shear_measure == ShearMeasure::beyond_friction, contact.tension_unloading == TensionUnloading::secant};
+    assembly.own_laws.form = {contact.law, contact.shear_measure == ShearMeasure::beyond_friction,
+                              contact.tension_unloading == TensionUnloading::secant};
     const bool own_inside = !rock.minerals.phases.empty();
     std::vector<std::int16_t> dilation_of(rock.joints.size(), -1);
     for (std::size_t j = 0; j < rock.joints.size(); ++j) {
@@ -499,7 +516,8 @@ void set_contacts(Assembly& assembly, const Texture& texture, const ContactMater
             if (!own_inside) continue;
             constexpr double kNever = std::numeric_limits<double>::infinity();
             const ContactMaterial inside = texture.between(texture.phases()[a], texture.phases()[a]);
-            made.own_law = assembly.own_laws.add({inside.Kn_Pa_m, inside.eta * inside.Kn_Pa_m, kNever, kNever, kNever, kNever, 0.0});
+            made.own_law =
+                assembly.own_laws.add({inside.Kn_Pa_m, inside.eta * inside.Kn_Pa_m, kNever, kNever, kNever, kNever, 0.0});
         } else {
             const GrainContact joined = texture.contact(a, b, origin.from, origin.to);
             made.own_law = assembly.own_laws.add(law_constants(joined.material));
@@ -511,7 +529,8 @@ void set_contacts(Assembly& assembly, const Texture& texture, const ContactMater
 
 }  // namespace
 
-Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact, const Heterogeneity& rock) {
+Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainMaterial& grain, const ContactMaterial& contact,
+                  const Heterogeneity& rock) {
     Assembly assembly;
     const Texture texture(specimen, grain, contact, rock);
     assembly.thickness_m = specimen.spec.thickness_m;
@@ -528,7 +547,8 @@ Assembly assemble(const Specimen& specimen, const ModelSpec& model, const GrainM
             break;
         case GrainKind::inner_particles:
             if (specimen.filling.particle_begin.empty())
-                throw InputError({.key = "specimen.grains.particles_per_grain"}, "the grains of this specimen are not filled with particles",
+                throw InputError({.key = "specimen.grains.particles_per_grain"},
+                                 "the grains of this specimen are not filled with particles",
                                  "a number of particles per grain, such as 26");
             add_inner_particles(assembly, specimen);
             add_contacts_of_particles(assembly, specimen.cells, specimen.filling, model.normal);
@@ -580,7 +600,8 @@ void index_contacts(Assembly& assembly) {
 
 namespace {
 
-// A new contact in a rock whose contacts are not alike: stiffness and friction are the means of those of the contacts that the two bodies have.
+// A new contact in a rock whose contacts are not alike: stiffness and friction are the means of those of the contacts that the
+// two bodies have.
 std::int32_t law_between(Assembly& assembly, int body_a, int body_b) {
     LawConstants<double> mean;
     int count = 0;

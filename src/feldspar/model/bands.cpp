@@ -26,9 +26,9 @@ struct Span {
 };
 
 struct Spans {
-    std::vector<Span> contacts;   // of each pack of contacts
-    std::vector<Span> plates;     // of each body that is a plate
-    Span platen;                  // of the loading platen, if it is a row of nodes
+    std::vector<Span> contacts;  // of each pack of contacts
+    std::vector<Span> plates;    // of each body that is a plate
+    Span platen;                 // of the loading platen, if it is a row of nodes
 };
 
 // The unit of a body: packs of grains first, rigid bodies behind them; -1 of a loose one.
@@ -58,14 +58,15 @@ std::vector<Span> spans_of_contact_packs(const Assembly& assembly) {
     return spans;
 }
 
-// Orders the packs of contacts by the place of what they join, in which order assemble() makes them; those of contacts made later come to
-// where they are.
+// Orders the packs of contacts by the place of what they join, in which order assemble() makes them; those of contacts made later
+// come to where they are.
 void order_contact_packs(Assembly& assembly, std::vector<Span>& spans) {
     std::vector<ContactPack>& packs = assembly.packs.contacts;
     std::vector<std::int32_t> place;
     for (std::size_t p = 0; p < packs.size(); ++p) {
         const Contact& first = assembly.contacts[packs[p].first_contact];
-        place.push_back(first.plate ? spans[p].first + spans[p].last : unit_of(assembly, first.a.body) + unit_of(assembly, first.b.body));
+        place.push_back(first.plate ? spans[p].first + spans[p].last
+                                    : unit_of(assembly, first.a.body) + unit_of(assembly, first.b.body));
     }
     std::vector<std::size_t> order(packs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -107,7 +108,7 @@ Cuts cut(std::int32_t units, const std::vector<Span>& spans, const Span& platen_
 
 // Bytes in five bands, in seven, ...: two a step, and one; `begin` is of the units of each band, and the end of the last.
 std::vector<double> windows(double bytes, const std::vector<std::int32_t>& begin) {
-    constexpr int kMostSteps = 10;   // a block of steps
+    constexpr int kMostSteps = 10;  // a block of steps
     std::vector<double> all;
     for (std::size_t bands = 5; bands <= 2 * kMostSteps + 1 && bands < begin.size(); bands += 2) {
         std::int32_t widest = 0;
@@ -121,17 +122,21 @@ std::vector<double> windows(double bytes, const std::vector<std::int32_t>& begin
 double bytes_of_a_step(const Assembly& assembly) {
     const Packs& packs = assembly.packs;
     const auto bytes = [](const auto& v) { return static_cast<double>(v.size() * sizeof(v[0])); };
-    constexpr double kBytesOfAPack = sizeof(ContactPack) + kMostLanes * (3 * sizeof(double) + 2 * sizeof(std::uint32_t));   // offset, tangent, lines
+    constexpr double kBytesOfAPack =
+        sizeof(ContactPack) + kMostLanes * (3 * sizeof(double) + 2 * sizeof(std::uint32_t));  // offset, tangent, lines
     const double contacts = kBytesOfAPack * static_cast<double>(packs.contacts.size());
     const double rigid = packs.rigid_end > 0 ? bytes(packs.rigid) + bytes(packs.rigid_forces) : 0.0;
-    return 5.0 * bytes(assembly.nodes.velocity) + bytes(assembly.nodes.mass) + bytes(packs.scale) + bytes(packs.lines) + bytes(packs.inverse_cross) +
-           4.0 * bytes(packs.along) + contacts + rigid;
+    return 5.0 * bytes(assembly.nodes.velocity) + bytes(assembly.nodes.mass) + bytes(packs.scale) + bytes(packs.lines) +
+           bytes(packs.inverse_cross) + 4.0 * bytes(packs.along) + contacts + rigid;
 }
 
 }  // namespace
 
 int Bands::steps(int threads) const {
-    const auto most = [&](double cache_bytes) { return 1 + static_cast<int>(std::upper_bound(window_bytes.begin(), window_bytes.end(), cache_bytes) - window_bytes.begin()); };
+    const auto most = [&](double cache_bytes) {
+        return 1 +
+               static_cast<int>(std::upper_bound(window_bytes.begin(), window_bytes.end(), cache_bytes) - window_bytes.begin());
+    };
     if (const int own = most(kOwnCacheBytes); threads == 1 && own > 1 && bytes > kOwnCacheBytes) return own;
     return bytes > kSharedCacheBytes ? most(kSharedCacheBytes) : 1;
 }
@@ -141,7 +146,7 @@ void cut_into_bands(Assembly& assembly) {
     std::vector<Span> spans = spans_of_contact_packs(assembly);
     order_contact_packs(assembly, spans);
     const auto grains = static_cast<std::int32_t>(packs.grains.size()), units = grains + packs.rigid_end;
-    Span row;   // with nodes of the fixtures that load
+    Span row;  // with nodes of the fixtures that load
     int loading = 0;
     for (const Fixture& fixture : assembly.fixtures) {
         if (!fixture.moves()) continue;
@@ -149,14 +154,16 @@ void cut_into_bands(Assembly& assembly) {
         for (const int node : fixture.nodes) row.add(pack_of_node(packs, node));
     }
     const auto is_plate = [&](int body) { return assembly.bodies[body].kind == BodyKind::plate; };
-    const bool all_have_units = std::all_of(packs.loose_bodies.begin(), packs.loose_bodies.end(), is_plate);   // or a band by its contacts
+    const bool all_have_units =
+        std::all_of(packs.loose_bodies.begin(), packs.loose_bodies.end(), is_plate);  // or a band by its contacts
     // The work of what loads is taken where one band ends: several fixtures may lie in several bands, so there is only one then.
-    const Cuts cuts = all_have_units && loading <= 1 ? cut(units, spans, row) : Cuts{{0, units}, {0, static_cast<std::int32_t>(spans.size())}};
+    const Cuts cuts =
+        all_have_units && loading <= 1 ? cut(units, spans, row) : Cuts{{0, units}, {0, static_cast<std::int32_t>(spans.size())}};
 
     Bands& bands = packs.bands;
     bands = {};
     bands.ranges.resize(cuts.units.size() - 1);
-    std::vector<int> band_of(assembly.bodies.size(), 0);   // of plates: that of the first contacts
+    std::vector<int> band_of(assembly.bodies.size(), 0);  // of plates: that of the first contacts
     for (std::size_t b = bands.ranges.size(); b-- > 0;) {
         PackRanges& band = bands.ranges[b];
         band.contacts = {cuts.contacts[b], cuts.contacts[b + 1]};

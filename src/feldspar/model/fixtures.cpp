@@ -1,12 +1,12 @@
 #include "feldspar/model/fixtures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -20,10 +20,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Where the outline can be pressed: a grain's edge on it, or an inner particle's share of that edge. Counter-clockwise.
 struct OutlineSite {
     int body = 0;
-    int grain_edge = -1;   // into Assembly::edges
+    int grain_edge = -1;  // into Assembly::edges
     SideNodes node{};
     Vec2 from, to;
-    int label = 0;   // into Outline::edge_labels
+    int label = 0;  // into Outline::edge_labels
 
     Vec2 outward() const { return (-1.0 / norm(to - from)) * rot90(to - from); }
     double length() const { return norm(to - from); }
@@ -32,11 +32,16 @@ struct OutlineSite {
 std::vector<OutlineSite> outline_sites(const Assembly& assembly, const Specimen& specimen) {
     std::vector<OutlineSite> sites;
     const std::vector<Cell>& cells = specimen.cells.cells;
-    if (assembly.edges.empty()) {   // the bodies are the particles
+    if (assembly.edges.empty()) {  // the bodies are the particles
         for (const OutlineShare& share : specimen.filling.outline) {
             const std::int32_t particle = assembly.body_of_particle[share.particle];
             const Body& body = assembly.bodies[particle];
-            sites.push_back({particle, -1, {body.node(0), body.node(1), -1}, share.from, share.to, cells[share.cell].outline_edges[share.edge]});
+            sites.push_back({particle,
+                             -1,
+                             {body.node(0), body.node(1), -1},
+                             share.from,
+                             share.to,
+                             cells[share.cell].outline_edges[share.edge]});
         }
         std::stable_sort(sites.begin(), sites.end(), [](const OutlineSite& l, const OutlineSite& r) { return l.body < r.body; });
         return sites;
@@ -62,7 +67,7 @@ struct Extent {
 // Coordinate along a plate with this normal: x for horizontal plates.
 struct Along {
     Vec2 direction;
-    explicit Along(Vec2 normal) : direction(rot90(normal)) {   // to the right, or up
+    explicit Along(Vec2 normal) : direction(rot90(normal)) {  // to the right, or up
         if (direction.x < 0.0 || (direction.x == 0.0 && direction.y < 0.0)) direction = -direction;
     }
     double operator()(Vec2 place) const { return dot(place, direction); }
@@ -96,7 +101,8 @@ int add_plate(Assembly& assembly, Vec2 place, Vec2 normal, Vec2 free) {
 }
 
 // A contact of the site with a plate at the point `touch` of the site's edge; `gap_m` is left between them.
-void add_plate_contact(Assembly& assembly, const OutlineSite& site, int plate, Vec2 touch, double area_m2, double gap_m, std::int32_t material, bool glued = false) {
+void add_plate_contact(Assembly& assembly, const OutlineSite& site, int plate, Vec2 touch, double area_m2, double gap_m,
+                       std::int32_t material, bool glued = false) {
     const Vec2 normal = assembly.bodies[plate].normal, arm = touch - assembly.centre(site.body);
     Contact contact;
     contact.a = side_of(assembly, site.body, site.node, site.grain_edge);
@@ -133,10 +139,14 @@ public:
 
     void operator()(const FixtureSpec& spec) {
         switch (spec.kind) {
-            case FixtureKind::nodes: return attach_nodes(spec);
-            case FixtureKind::plate: return attach_plate(spec);
-            case FixtureKind::membrane: return attach_membrane(spec);
-            case FixtureKind::pressure: return attach_pressure(spec);
+            case FixtureKind::nodes:
+                return attach_nodes(spec);
+            case FixtureKind::plate:
+                return attach_plate(spec);
+            case FixtureKind::membrane:
+                return attach_membrane(spec);
+            case FixtureKind::pressure:
+                return attach_pressure(spec);
         }
     }
 
@@ -151,14 +161,16 @@ public:
             body.pressure_end = here + 1;
             assembly_.pressure_edges.push_back(edge);
             const Array<Vec2>& X = assembly_.nodes.reference;
-            const double area = (edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(X[edge.node_b] - X[edge.node_a])) * assembly_.thickness_m;
+            const double area =
+                (edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(X[edge.node_b] - X[edge.node_a])) * assembly_.thickness_m;
             assembly_.dead_loads[edge.load].resultant_m2 += -area * edge.outward;
             areas[edge.load] += area;
         }
-        constexpr double kRounding = 1e-9;   // opposite sides cancel but for their rounding
+        constexpr double kRounding = 1e-9;  // opposite sides cancel but for their rounding
         for (std::size_t i = 0; i < areas.size(); ++i)
             for (double Vec2::*c : {&Vec2::x, &Vec2::y})
-                if (std::abs(assembly_.dead_loads[i].resultant_m2.*c) < kRounding * areas[i]) assembly_.dead_loads[i].resultant_m2.*c = 0.0;
+                if (std::abs(assembly_.dead_loads[i].resultant_m2.*c) < kRounding * areas[i])
+                    assembly_.dead_loads[i].resultant_m2.*c = 0.0;
     }
 
 private:
@@ -175,7 +187,9 @@ private:
         if (part.facing != Vec2{} && dot(site.outward(), part.facing) < part.least_cosine) return false;
         if (part.inside) {
             const Vec2 middle = 0.5 * (site.from + site.to), a = (*part.inside)[0], b = (*part.inside)[1];
-            if (middle.x < std::min(a.x, b.x) || middle.x > std::max(a.x, b.x) || middle.y < std::min(a.y, b.y) || middle.y > std::max(a.y, b.y)) return false;
+            if (middle.x < std::min(a.x, b.x) || middle.x > std::max(a.x, b.x) || middle.y < std::min(a.y, b.y) ||
+                middle.y > std::max(a.y, b.y))
+                return false;
         }
         return !part.at || distance_to_segment(*part.at, site.from, site.to) <= part.reach_m;
     }
@@ -192,7 +206,9 @@ private:
 
     void require(bool found, const FixtureSpec& spec) const {
         if (found) return;
-        if (!spec.part.label.empty()) throw InputError({}, fmt::format("the outline has no edge labelled \"{}\", which the fixture \"{}\" needs", spec.part.label, spec.name));
+        if (!spec.part.label.empty())
+            throw InputError({}, fmt::format("the outline has no edge labelled \"{}\", which the fixture \"{}\" needs",
+                                             spec.part.label, spec.name));
         throw InputError({}, fmt::format("no grain on the boundary lies where the fixture \"{}\" is", spec.name));
     }
 
@@ -207,8 +223,10 @@ private:
     // Rigid bodies have no nodes on the boundary: those of their sites are centre and turn.
     void require_flexible(const FixtureSpec& spec) const {
         if (assembly_.node_of_mesh.empty())
-            throw InputError({.key = "test.fixture"}, fmt::format("the fixture \"{}\" takes the nodes on the boundary, which only flexible grains have", spec.name),
-                             "a plate, roller or jaw for rigid grains and inner particles");
+            throw InputError(
+                {.key = "test.fixture"},
+                fmt::format("the fixture \"{}\" takes the nodes on the boundary, which only flexible grains have", spec.name),
+                "a plate, roller or jaw for rigid grains and inner particles");
     }
 
     void attach_nodes(const FixtureSpec& spec) {
@@ -234,7 +252,8 @@ private:
         double Vec2::*const c = along_x ? &Vec2::x : &Vec2::y;
         double centre = 0.0;
         for (const int node : nodes) centre += X[node].*c / static_cast<double>(nodes.size());
-        const auto held = std::min_element(nodes.begin(), nodes.end(), [&](int i, int j) { return std::abs(X[i].*c - centre) < std::abs(X[j].*c - centre); });
+        const auto held = std::min_element(nodes.begin(), nodes.end(),
+                                           [&](int i, int j) { return std::abs(X[i].*c - centre) < std::abs(X[j].*c - centre); });
         assembly_.nodes.inverse_mass[*held].*c = 0.0;
     }
 
@@ -248,7 +267,8 @@ private:
     }
 
     std::int32_t add_load(const FixtureSpec& spec) {
-        assembly_.dead_loads.push_back({.name = spec.name, .given_Pa = spec.pressure_Pa, .stiffness_Pa_m = spec.spring_Pa_m, .outward = spec.normal});
+        assembly_.dead_loads.push_back(
+            {.name = spec.name, .given_Pa = spec.pressure_Pa, .stiffness_Pa_m = spec.spring_Pa_m, .outward = spec.normal});
         return static_cast<std::int32_t>(assembly_.dead_loads.size()) - 1;
     }
 
@@ -261,10 +281,12 @@ private:
         pressed_.push_back({plate, {node, node, spec.normal, length_m, load}});
     }
 
-    // How far a curved surface has come towards the specimen (hollow) or gone back from it (round), at `c` along the plate; none where a round one ends.
+    // How far a curved surface has come towards the specimen (hollow) or gone back from it (round), at `c` along the plate; none
+    // where a round one ends.
     std::optional<double> bend(const FixtureSpec& spec, const Along& along, double c) const {
         if (spec.radius_m == 0.0) return 0.0;
-        const double from_axis = c - along(*spec.axis), radius = std::abs(spec.radius_m), under = radius * radius - from_axis * from_axis;
+        const double from_axis = c - along(*spec.axis), radius = std::abs(spec.radius_m),
+                     under = radius * radius - from_axis * from_axis;
         if (!(under >= 0.0)) return std::nullopt;
         const double sagitta = radius - std::sqrt(under);
         return spec.radius_m > 0.0 ? sagitta : -sagitta;
@@ -287,7 +309,8 @@ private:
                 if (best == sites_.size() || distance_along(site, along, c) < distance_along(sites_[best], along, c)) best = i;
             }
             if (best == sites_.size() || on_flat) continue;
-            touches.push_back({sites_[best], at_coordinate(sites_[best], along, c), 2.0 * assembly_.bodies[body].radius_m * assembly_.thickness_m});
+            touches.push_back({sites_[best], at_coordinate(sites_[best], along, c),
+                               2.0 * assembly_.bodies[body].radius_m * assembly_.thickness_m});
             taken_[best] = true;
         }
         return touches;
@@ -310,12 +333,16 @@ private:
             if (laws_[i] == spec.contact) return role_of(i);
         const std::int32_t role = role_of(laws_.size());
         if (role >= contact_roles)
-            throw InputError({}, fmt::format("plates of more than {} kinds, in stiffness and friction", contact_roles - at_more_plates + 1), "fewer kinds of plates");
+            throw InputError(
+                {}, fmt::format("plates of more than {} kinds, in stiffness and friction", contact_roles - at_more_plates + 1),
+                "fewer kinds of plates");
         laws_.push_back(spec.contact);
         assembly_.laws[role] = law_at(spec.contact);
         return role;
     }
-    static std::int32_t role_of(std::size_t law) { return law == 0 ? static_cast<std::int32_t>(at_plates) : at_more_plates + static_cast<std::int32_t>(law) - 1; }
+    static std::int32_t role_of(std::size_t law) {
+        return law == 0 ? static_cast<std::int32_t>(at_plates) : at_more_plates + static_cast<std::int32_t>(law) - 1;
+    }
 
     void attach_plate(const FixtureSpec& spec) {
         const Along along(spec.normal);
@@ -333,10 +360,12 @@ private:
         require(any, spec);
         const std::int32_t material = law_of(spec);
         const Vec2 free = spec.pressed ? Vec2{std::abs(spec.normal.x), std::abs(spec.normal.y)} : Vec2{};
-        const int plate = add_plate(assembly_, level * spec.normal + 0.5 * (extent.lower + extent.upper) * along.direction, spec.normal, free);
+        const int plate =
+            add_plate(assembly_, level * spec.normal + 0.5 * (extent.lower + extent.upper) * along.direction, spec.normal, free);
         for (const TouchedSite& touch : touches)
             if (const auto out = bend(spec, along, along(touch.place)))
-                add_plate_contact(assembly_, touch.site, plate, touch.place, touch.area_m2, level - *out - dot(spec.normal, touch.place), material, spec.contact.glued);
+                add_plate_contact(assembly_, touch.site, plate, touch.place, touch.area_m2,
+                                  level - *out - dot(spec.normal, touch.place), material, spec.contact.glued);
         if (spec.pressed) press_plate(spec, plate, whole_length(touches, along));
         Fixture& fixture = add_fixture(spec);
         fixture.imposed = Vec2{1.0, 1.0} - free;
@@ -359,11 +388,13 @@ private:
     }
 
     // A plate with no body behind it would press on nothing.
-    void require_a_body_behind_each_plate(const std::vector<std::size_t>& side, const Along& along, const Extent& extent, int plates) const {
+    void require_a_body_behind_each_plate(const std::vector<std::size_t>& side, const Along& along, const Extent& extent,
+                                          int plates) const {
         int most = plates;
         while (most > 1 && !each_plate_has_a_body(side, along, extent, most)) --most;
         if (most < plates)
-            throw InputError({.key = "membrane_plates"}, fmt::format("{} plates a side are too many: one of them would have no grain behind it", plates),
+            throw InputError({.key = "membrane_plates"},
+                             fmt::format("{} plates a side are too many: one of them would have no grain behind it", plates),
                              fmt::format("{} plates a side for this specimen", most));
     }
 
@@ -376,7 +407,10 @@ private:
         for (const std::size_t s : side) {
             for (const Vec2 end : {sites_[s].from, sites_[s].to}) extent.include(along(end));
             if (std::abs(dot(sites_[s].outward(), along.direction)) > 1e-6)
-                throw InputError({}, fmt::format("the side \"{}\" is not vertical, but the membrane of rigid grains and inner particles moves only horizontally", label_of(sites_[s])),
+                throw InputError({},
+                                 fmt::format("the side \"{}\" is not vertical, but the membrane of rigid grains and inner "
+                                             "particles moves only horizontally",
+                                             label_of(sites_[s])),
                                  "a rectangle, or flexible grains");
         }
         require_a_body_behind_each_plate(side, along, extent, spec.plates);
@@ -393,7 +427,8 @@ private:
             const OutlineSite& site = sites_[s];
             const double c = beside_centre(assembly_, site, along);
             const Vec2 touch = dot(site.from, spec.normal) * spec.normal + c * along.direction;
-            add_plate_contact(assembly_, site, first + plate_at(c, extent, spec.plates), touch, site.length() * assembly_.thickness_m, 0.0, at_membranes);
+            add_plate_contact(assembly_, site, first + plate_at(c, extent, spec.plates), touch,
+                              site.length() * assembly_.thickness_m, 0.0, at_membranes);
         }
     }
 
@@ -424,7 +459,8 @@ double labelled_width_m(const Specimen& specimen, const std::string& label) {
     for (const Cell& cell : specimen.cells.cells)
         for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
             if (cell.neighbours[k] >= 0 || specimen.outline.edge_labels[cell.outline_edges[k]] != label) continue;
-            for (const int v : {cell.vertices[k], cell.vertices[(k + 1) % cell.vertices.size()]}) width.include(specimen.cells.vertices[v].x);
+            for (const int v : {cell.vertices[k], cell.vertices[(k + 1) % cell.vertices.size()]})
+                width.include(specimen.cells.vertices[v].x);
         }
     return width.upper > width.lower ? width.upper - width.lower : 0.0;
 }

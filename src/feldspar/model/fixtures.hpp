@@ -10,8 +10,9 @@
 
 namespace feldspar {
 
-/// Puts the fixtures to the boundary, in their order. A plate starts at first touch: curved ones differ from flat ones in the gaps that are left
-/// there. @throws InputError  if a part catches no edge, a membrane's side is not straight along its plates, or one of its plates has no body behind it
+/// Puts the fixtures to the boundary, in their order. A plate starts at first touch: curved ones differ from flat ones in the
+/// gaps that are left there. @throws InputError  if a part catches no edge, a membrane's side is not straight along its plates,
+/// or one of its plates has no body behind it
 void attach(Assembly& assembly, const Specimen& specimen, std::span<const FixtureSpec> fixtures);
 
 /// Extent of the boundary with this label along x, undeformed, m; 0 without any.

@@ -1,10 +1,10 @@
 #include "feldspar/model/joints.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
@@ -69,7 +69,9 @@ Beside nearest(const std::vector<Vec2>& trace, Vec2 x) {
 
 }  // namespace
 
-std::vector<std::vector<Vec2>> traces_of(const JointSpec& joint, const Specimen& specimen) { return joint.set ? draw(*joint.set, joint.name, specimen) : joint.lines_m; }
+std::vector<std::vector<Vec2>> traces_of(const JointSpec& joint, const Specimen& specimen) {
+    return joint.set ? draw(*joint.set, joint.name, specimen) : joint.lines_m;
+}
 
 JointEdges::JointEdges(const Specimen& specimen, const JointSpec& joint) {
     const std::vector<Cell>& cells = specimen.cells.cells;
@@ -86,56 +88,71 @@ JointEdges::JointEdges(const Specimen& specimen, const JointSpec& joint) {
                     if (cells[c].seams[k] == n && cells[c].neighbours[k] > c) pairs_.insert({c, cells[c].neighbours[k]});
         }
         if (pairs_.empty())
-            throw InputError({.key = "material.joint.cut"}, fmt::format("the specimen has no cut \"{}\" whose faces are joined", joint.cut), known.empty() ? "a notch of width 0 with joined = true" : known);
+            throw InputError({.key = "material.joint.cut"},
+                             fmt::format("the specimen has no cut \"{}\" whose faces are joined", joint.cut),
+                             known.empty() ? "a notch of width 0 with joined = true" : known);
         return;
     }
     const auto centre = [&](int c) { return specimen.mesh.nodes[specimen.mesh.centre_node[c]]; };
     for (const std::vector<Vec2>& trace : traces_of(joint, specimen)) {
         Box reach = bounding_box(trace);
         const double margin = specimen.quality.cell_sizes.maximum_m;
-        const auto is_near = [&](Vec2 x) { return x.x > reach.lower.x - margin && x.x < reach.upper.x + margin && x.y > reach.lower.y - margin && x.y < reach.upper.y + margin; };
+        const auto is_near = [&](Vec2 x) {
+            return x.x > reach.lower.x - margin && x.x < reach.upper.x + margin && x.y > reach.lower.y - margin &&
+                   x.y < reach.upper.y + margin;
+        };
         for (int c = 0; c < std::ssize(cells); ++c) {
             if (!is_near(centre(c))) continue;
             const int edges = static_cast<int>(cells[c].vertices.size());
             for (int k = 0; k < edges; ++k) {
                 const int other = cells[c].neighbours[k];
                 if (other <= c) continue;
-                const Vec2 middle = 0.5 * (specimen.cells.vertices[cells[c].vertices[k]] + specimen.cells.vertices[cells[c].vertices[(k + 1) % edges]]);
+                const Vec2 middle = 0.5 * (specimen.cells.vertices[cells[c].vertices[k]] +
+                                           specimen.cells.vertices[cells[c].vertices[(k + 1) % edges]]);
                 const Beside beside = nearest(trace, middle);
                 if (beside.beyond || beside.distance > margin) continue;
-                if ((cross(beside.along, centre(c) - beside.from) > 0.0) != (cross(beside.along, centre(other) - beside.from) > 0.0)) pairs_.insert({c, other});
+                if ((cross(beside.along, centre(c) - beside.from) > 0.0) !=
+                    (cross(beside.along, centre(other) - beside.from) > 0.0))
+                    pairs_.insert({c, other});
             }
         }
     }
     if (pairs_.empty() && !joint.set) {
         const Box box = bounding_box(specimen.mesh.nodes);
-        throw InputError({.key = "joint"}, fmt::format("no grain edge lies along the joint \"{}\"", joint.name),
-                         fmt::format("a trace within x = {:.4g} ... {:.4g} mm, y = {:.4g} ... {:.4g} mm that is longer than a grain", 1e3 * box.lower.x, 1e3 * box.upper.x, 1e3 * box.lower.y, 1e3 * box.upper.y));
+        throw InputError(
+            {.key = "joint"}, fmt::format("no grain edge lies along the joint \"{}\"", joint.name),
+            fmt::format("a trace within x = {:.4g} ... {:.4g} mm, y = {:.4g} ... {:.4g} mm that is longer than a grain",
+                        1e3 * box.lower.x, 1e3 * box.upper.x, 1e3 * box.lower.y, 1e3 * box.upper.y));
     }
 }
 
-void require_no_loose_grain(const Specimen& specimen, const std::vector<JointSpec>& joints, const std::vector<const JointEdges*>& edges) {
+void require_no_loose_grain(const Specimen& specimen, const std::vector<JointSpec>& joints,
+                            const std::vector<const JointEdges*>& edges) {
     const std::vector<Cell>& cells = specimen.cells.cells;
     for (int c = 0; c < std::ssize(cells); ++c) {
         bool held = false;
         std::string names;
         for (const int other : cells[c].neighbours) {
             if (other < 0) {
-                held = true;   // on the boundary: plates and pressures may hold it
+                held = true;  // on the boundary: plates and pressures may hold it
                 continue;
             }
             bool open = false;
             for (std::size_t j = 0; j < joints.size(); ++j) {
                 if (!edges[j]->holds(c, other)) continue;
                 open = joints[j].without_strength();
-                if (open && names.find("\"" + joints[j].name + "\"") == std::string::npos) names += (names.empty() ? "\"" : ", \"") + joints[j].name + "\"";
+                if (open && names.find("\"" + joints[j].name + "\"") == std::string::npos)
+                    names += (names.empty() ? "\"" : ", \"") + joints[j].name + "\"";
             }
             held = held || !open;
         }
         if (held) continue;
         const Vec2 place = specimen.mesh.nodes[specimen.mesh.centre_node[c]];
-        throw InputError({.key = "joint"}, fmt::format("joints without strength ({}) cut the grain at ({:.4g} mm, {:.4g} mm) off from all its neighbours", names, 1e3 * place.x, 1e3 * place.y),
-                         "joints two grains or more apart from each other, or some strength in one of them");
+        throw InputError(
+            {.key = "joint"},
+            fmt::format("joints without strength ({}) cut the grain at ({:.4g} mm, {:.4g} mm) off from all its neighbours", names,
+                        1e3 * place.x, 1e3 * place.y),
+            "joints two grains or more apart from each other, or some strength in one of them");
     }
 }
 

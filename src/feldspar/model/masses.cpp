@@ -1,12 +1,11 @@
 // Masses that make a step stable, and real ones: docs/theory/motion-and-mass.md.
 #include "feldspar/model/masses.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <vector>
-
-#include <Eigen/Dense>
 
 #include "feldspar/model/attachment.hpp"
 
@@ -37,7 +36,9 @@ double largest_eigenvalue(const Eigen::Matrix3d& tensor) {
 
 // What a side weighs in the Cauchy-Schwarz bound: the sum of |N| of a triangle, 1 for a rigid body or a free plate, 0 for a
 // plate whose motion is imposed.
-double size(const Assembly&, const ContactSide&, const TriangleAttachment::Weights& N) { return std::abs(N[0]) + std::abs(N[1]) + std::abs(N[2]); }
+double size(const Assembly&, const ContactSide&, const TriangleAttachment::Weights& N) {
+    return std::abs(N[0]) + std::abs(N[1]) + std::abs(N[2]);
+}
 double size(const Assembly&, const ContactSide&, RigidAttachment::Weights) { return 1.0; }
 double size(const Assembly& assembly, const ContactSide& side, PlateAttachment::Weights) {
     return assembly.nodes.inverse_mass[side.node[0]] == Vec2{} ? 0.0 : 1.0;
@@ -95,11 +96,11 @@ std::vector<Vec2> finite_element_row_sums(const Assembly& assembly) {
     return sums;
 }
 
-
 // Row sums of a rigid body's exact stiffness: its own 3 x 3 block, and those that couple it with its neighbours.
 class RigidRows {
 public:
-    explicit RigidRows(const Assembly& assembly) : own_(assembly.bodies.size(), Eigen::Matrix3d::Zero()), coupled_(assembly.bodies.size(), Eigen::Vector3d::Zero()) {
+    explicit RigidRows(const Assembly& assembly)
+        : own_(assembly.bodies.size(), Eigen::Matrix3d::Zero()), coupled_(assembly.bodies.size(), Eigen::Vector3d::Zero()) {
         for (const Contact& contact : assembly.contacts) add(assembly, contact);
     }
     /// Of the two translations, and of the turn.
@@ -121,7 +122,8 @@ private:
                         own_[contact.b.body] += k * b * b.transpose();
                         ab += k * a * b.transpose();
                     } else {
-                        coupled_[contact.a.body] += size(assembly, contact.b, Nb) * k * a.cwiseAbs() * (std::abs(d.x) + std::abs(d.y));
+                        coupled_[contact.a.body] +=
+                            size(assembly, contact.b, Nb) * k * a.cwiseAbs() * (std::abs(d.x) + std::abs(d.y));
                     }
                 }
             }
@@ -145,7 +147,8 @@ void set_mass(Nodes& nodes, int node, double mass) {
 template <class Visit>
 void add_springs(const Assembly& assembly, Visit visit) {
     for (const PressureEdge& edge : assembly.pressure_edges)
-        if (const double k = assembly.dead_loads[edge.load].stiffness_Pa_m; k > 0.0) visit(edge.node_a, k * edge.plate_length_m * assembly.thickness_m, edge.outward);
+        if (const double k = assembly.dead_loads[edge.load].stiffness_Pa_m; k > 0.0)
+            visit(edge.node_a, k * edge.plate_length_m * assembly.thickness_m, edge.outward);
 }
 
 // Paper, equations (20)-(21).
@@ -161,7 +164,8 @@ void set_masses_by_rows(Assembly& assembly, double factor) {
                 for (int i = 0; i < 3; ++i) K[contact.b.node[i]] += 2.0 * (kn + ks) * std::abs(Nb[i]);
             if constexpr (std::is_same_v<WB, PlateAttachment::Weights>) K[contact.b.node[0]] += 2.0 * (kn + ks);
         });
-    if (std::any_of(assembly.bodies.begin(), assembly.bodies.end(), [](const Body& body) { return body.kind == BodyKind::rigid; })) {
+    if (std::any_of(assembly.bodies.begin(), assembly.bodies.end(),
+                    [](const Body& body) { return body.kind == BodyKind::rigid; })) {
         const RigidRows rigid(assembly);
         for (int b = 0; b < std::ssize(assembly.bodies); ++b) {
             if (assembly.bodies[b].kind != BodyKind::rigid) continue;
@@ -251,7 +255,8 @@ std::vector<double> real_masses(const Assembly& assembly) {
     std::vector<double> mass(assembly.nodes.reference.size(), 0.0);
     for (const Body& body : assembly.bodies) {
         for (int t = body.triangle_begin; t < body.triangle_end; ++t)
-            for (const int node : assembly.triangles[t].node) mass[node] += body.density_kg_m3 * assembly.triangles[t].volume_m3 / 3.0;
+            for (const int node : assembly.triangles[t].node)
+                mass[node] += body.density_kg_m3 * assembly.triangles[t].volume_m3 / 3.0;
         if (body.kind != BodyKind::rigid) continue;
         mass[body.centre_node] = body.density_kg_m3 * body.volume_m3;
         mass[body.centre_node + 1] = body.density_kg_m3 * body.volume_m3 * body.gyration_m2 / (body.radius_m * body.radius_m);
@@ -264,7 +269,7 @@ std::vector<double> real_masses(const Assembly& assembly) {
 Array<Vec2> weights(const Assembly& assembly, Vec2 gravity_m_s2) {
     std::vector<double> mass = real_masses(assembly);
     for (const Body& body : assembly.bodies)
-        if (body.kind == BodyKind::rigid) mass[body.centre_node + 1] = 0.0;   // gravity turns nothing
+        if (body.kind == BodyKind::rigid) mass[body.centre_node + 1] = 0.0;  // gravity turns nothing
     Array<Vec2> weight(mass.size());
     for (std::size_t n = 0; n < mass.size(); ++n) weight[n] = mass[n] * gravity_m_s2;
     return weight;
@@ -294,7 +299,8 @@ double add_contact_mass(Assembly& assembly, const Contact& contact, double facto
         if constexpr (std::is_same_v<Weights, TriangleAttachment::Weights>) {
             for (int i = 0; i < 3; ++i) kinetic += add_mass(nodes, side.node[i], 0.25 * factor * k * std::abs(N[i]));
         } else if constexpr (std::is_same_v<Weights, RigidAttachment::Weights>) {
-            for (const int node : {side.node[0], side.node[1]}) kinetic += add_mass(nodes, node, 0.25 * factor * k * (1.0 + dot(N, N)));
+            for (const int node : {side.node[0], side.node[1]})
+                kinetic += add_mass(nodes, node, 0.25 * factor * k * (1.0 + dot(N, N)));
         } else {
             kinetic += add_mass(nodes, side.node[0], 0.25 * factor * k);
         }

@@ -8,9 +8,9 @@
 
 namespace feldspar {
 
-/// Masses by the tensor bound m = 0.25 factor lambda_max(T) or, for the paper's scheme, 0.25 factor K by row sums. A rigid body has
-/// one mass for its three degrees of freedom, the turn being an arc at its radius.
-/// Writes mass, and inverse_mass where the motion is not imposed.
+/// Masses by the tensor bound m = 0.25 factor lambda_max(T) or, for the paper's scheme, 0.25 factor K by row sums. A rigid body
+/// has one mass for its three degrees of freedom, the turn being an arc at its radius. Writes mass, and inverse_mass where the
+/// motion is not imposed.
 enum class MassBound { tensor, row_sum };
 void set_scaled_masses(Assembly& assembly, MassBound bound, double factor);
 
@@ -23,8 +23,8 @@ Array<Vec2> weights(const Assembly& assembly, Vec2 gravity_m_s2);
 
 /// |N_i| sum|N_j| of the six shape functions of a contact point between flexible bodies: what its stiffness counts for at each
 /// node. @param b_moves  false if side B is a plate whose motion is imposed
-inline void stiffness_shares(const std::array<double, 3>& Na, const std::array<double, 3>& Nb, bool b_moves, std::array<double, 3>& a,
-                             std::array<double, 3>& b) {
+inline void stiffness_shares(const std::array<double, 3>& Na, const std::array<double, 3>& Nb, bool b_moves,
+                             std::array<double, 3>& a, std::array<double, 3>& b) {
     double sum = 0.0;
     for (int i = 0; i < 3; ++i) sum += std::abs(Na[i]) + (b_moves ? std::abs(Nb[i]) : 0.0);
     for (int i = 0; i < 3; ++i) {

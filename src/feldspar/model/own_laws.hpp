@@ -1,4 +1,5 @@
-// Laws that contacts have of their own: of rocks whose contacts are not alike. Quantity by quantity, so that a pack of contacts reads a vector of each.
+// Laws that contacts have of their own: of rocks whose contacts are not alike. Quantity by quantity, so that a pack of contacts
+// reads a vector of each.
 #pragma once
 
 #include <cstdint>

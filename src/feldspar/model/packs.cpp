@@ -1,5 +1,7 @@
 #include "feldspar/model/packs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -7,8 +9,6 @@
 #include <optional>
 #include <tuple>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/model/assembly.hpp"
@@ -23,20 +23,23 @@ struct Topology {
     int start = 0;
 };
 
-// Recognises the fixed topology of specimen theory, section 4: each edge with its own triangle and two behind it, but for the collapsed edge.
+// Recognises the fixed topology of specimen theory, section 4: each edge with its own triangle and two behind it, but for the
+// collapsed edge.
 std::optional<Topology> topology_of(const GrainMesh& mesh, int g) {
     const int nv = mesh.vertex_count[g], nodes = mesh.node_begin[g + 1] - mesh.node_begin[g];
     const int triangles = mesh.triangle_begin[g + 1] - mesh.triangle_begin[g];
     if (nv > kMostVertices) return std::nullopt;
     Topology topology{nv, nodes == 2 * nv, 0};
     if (nodes != 2 * nv + 1 - topology.collapsed || triangles != 3 * nv - 2 * topology.collapsed) return std::nullopt;
-    const auto owned = [&](int k) {   // triangles from this edge's to the next one's
+    const auto owned = [&](int k) {  // triangles from this edge's to the next one's
         const int end = k + 1 < nv ? mesh.edge_triangle[mesh.edge_begin[g] + k + 1] : mesh.triangle_begin[g + 1];
         return end - mesh.edge_triangle[mesh.edge_begin[g] + k];
     };
     for (int k = 0; k < nv; ++k) {
-        if (topology.collapsed && owned(k) == 1) topology.start = (k + 1) % nv;
-        else if (owned(k) != 3) return std::nullopt;
+        if (topology.collapsed && owned(k) == 1)
+            topology.start = (k + 1) % nv;
+        else if (owned(k) != 3)
+            return std::nullopt;
     }
     const int centre = mesh.node_begin[g] + nv;
     for (int k = 0; k < nv; ++k) {
@@ -45,7 +48,9 @@ std::optional<Topology> topology_of(const GrainMesh& mesh, int g) {
         const int from = mesh.node_begin[g] + k, to = mesh.node_begin[g] + next;
         if (mesh.triangles[t] != std::array{from, to, ring}) return std::nullopt;
         if (owned(k) == 1) continue;
-        if (mesh.triangles[t + 1] != std::array{to, ring_next, ring} || mesh.triangles[t + 2] != std::array{centre, ring, ring_next}) return std::nullopt;
+        if (mesh.triangles[t + 1] != std::array{to, ring_next, ring} ||
+            mesh.triangles[t + 2] != std::array{centre, ring, ring_next})
+            return std::nullopt;
     }
     return topology;
 }
@@ -56,26 +61,32 @@ bool has_own_normal(const Contact& contact) { return contact.edge_normal != Vec2
 bool alike(const Assembly& assembly, int c) {
     const Contact &l = assembly.contacts[c], &r = assembly.contacts[c + 1];
     const bool laws = l.own_law < 0 ? r.own_law < 0 : r.own_law == l.own_law + 1;
-    return laws && l.points == r.points && l.material == r.material && l.flexible == r.flexible && has_own_normal(l) == has_own_normal(r) && l.plate == r.plate &&
-           (!l.plate || l.b.body == r.b.body);
+    return laws && l.points == r.points && l.material == r.material && l.flexible == r.flexible &&
+           has_own_normal(l) == has_own_normal(r) && l.plate == r.plate && (!l.plate || l.b.body == r.b.body);
 }
 
-bool is_central(const Assembly& assembly, const Contact& contact) { return contact.points == 1 && assembly.points[contact.first_point].along_m == 0.0; }
+bool is_central(const Assembly& assembly, const Contact& contact) {
+    return contact.points == 1 && assembly.points[contact.first_point].along_m == 0.0;
+}
 
-bool is_loose(const Contact& contact) { return contact.plate || contact.initial_shape || contact.smooth || contact.dilation >= 0; }
+bool is_loose(const Contact& contact) {
+    return contact.plate || contact.initial_shape || contact.smooth || contact.dilation >= 0;
+}
 
 }  // namespace
 
 std::vector<GrainPack> pack_grains(const GrainMesh& mesh) {
-    std::map<std::pair<int, bool>, std::vector<std::pair<int, int>>> groups;   // of each topology: grain and start
+    std::map<std::pair<int, bool>, std::vector<std::pair<int, int>>> groups;  // of each topology: grain and start
     const int grains = static_cast<int>(mesh.vertex_count.size());
     for (int g = 0; g < grains; ++g)
-        if (const auto topology = topology_of(mesh, g)) groups[{topology->vertices, topology->collapsed}].push_back({g, topology->start});
+        if (const auto topology = topology_of(mesh, g))
+            groups[{topology->vertices, topology->collapsed}].push_back({g, topology->start});
     const auto height = [&](int g) { return mesh.nodes[mesh.centre_node[g]].y; };
     std::vector<GrainPack> packs;
     std::vector<double> heights;
     for (auto& [topology, members] : groups) {
-        std::stable_sort(members.begin(), members.end(), [&](const auto& l, const auto& r) { return height(l.first) < height(r.first); });
+        std::stable_sort(members.begin(), members.end(),
+                         [&](const auto& l, const auto& r) { return height(l.first) < height(r.first); });
         for (std::size_t i = 0; i < members.size(); i += kMostLanes) {
             GrainPack pack;
             pack.vertices = topology.first;
@@ -115,7 +126,8 @@ void index_grain_packs(Assembly& assembly) {
     packs.pack_of_body.assign(assembly.bodies.size(), -1);
     packs.forces.assign(packs.grains.size(), PackForces::own);
     const bool alike = assembly.elasticity.size() <= 1;
-    for (auto* constants : {&packs.volumetric, &packs.deviatoric}) constants->assign(alike ? 0 : kMostLanes * packs.grains.size(), 0.0);
+    for (auto* constants : {&packs.volumetric, &packs.deviatoric})
+        constants->assign(alike ? 0 : kMostLanes * packs.grains.size(), 0.0);
     int lines = 0;
     for (std::size_t p = 0; p < packs.grains.size(); ++p) {
         const GrainPack& pack = packs.grains[p];
@@ -150,14 +162,15 @@ void index_grain_packs(Assembly& assembly) {
     packs.loose_bodies.clear();
     for (int b = 0; b < std::ssize(assembly.bodies); ++b) {
         if (assembly.bodies[b].kind == BodyKind::rigid) {
-            packs.rigid_end = b + 1;   // rigid bodies come first, plates behind them
+            packs.rigid_end = b + 1;  // rigid bodies come first, plates behind them
         } else if (packs.pack_of_body[b] < 0) {
             packs.loose_bodies.push_back(b);
         }
     }
     const std::size_t all_lines = static_cast<std::size_t>(lines) + assembly.bodies.size();
-    if (all_lines * sizeof(SideLine) > std::numeric_limits<std::uint32_t>::max())   // contacts find their lines by 32 bits
-        throw InputError({}, fmt::format("{} edges of grains and rigid bodies are more than a specimen may have", all_lines), "67 million", "larger grains, or a smaller specimen");
+    if (all_lines * sizeof(SideLine) > std::numeric_limits<std::uint32_t>::max())  // contacts find their lines by 32 bits
+        throw InputError({}, fmt::format("{} edges of grains and rigid bodies are more than a specimen may have", all_lines),
+                         "67 million", "larger grains, or a smaller specimen");
     packs.lines.assign(all_lines, {});
     packs.inverse_cross.assign(static_cast<std::size_t>(lines), 0.0);
 }
@@ -187,8 +200,11 @@ void find_contact_packs(Assembly& assembly) {
             return true;
         };
         const int spacing = first.points > 1 ? assembly.points[first.first_point + 1].state - pack.first_state : kMostLanes;
-        while (pack.lanes < spacing && c + pack.lanes < contacts && alike(assembly, c + pack.lanes - 1) && stands(pack.lanes, spacing)) ++pack.lanes;
-        pack.central = std::all_of(&assembly.contacts[c], &assembly.contacts[c] + pack.lanes, [&](const Contact& contact) { return is_central(assembly, contact); });
+        while (pack.lanes < spacing && c + pack.lanes < contacts && alike(assembly, c + pack.lanes - 1) &&
+               stands(pack.lanes, spacing))
+            ++pack.lanes;
+        pack.central = std::all_of(&assembly.contacts[c], &assembly.contacts[c] + pack.lanes,
+                                   [&](const Contact& contact) { return is_central(assembly, contact); });
         packs.contacts.push_back(pack);
         c += pack.lanes;
     }
@@ -198,8 +214,11 @@ void index_rigid_bodies(Assembly& assembly) {
     Packs& packs = assembly.packs;
     const std::size_t contacts = assembly.contacts.size();
     packs.rigid_forces.assign(packs.rigid_end > 0 ? contacts + 1 : 0, {});
-    if (packs.rigid_forces.size() * sizeof(RigidForces) > std::numeric_limits<std::uint32_t>::max())   // bodies find them by 32 bits
-        throw InputError({}, fmt::format("{} contacts of rigid grains or inner particles are more than a specimen may have", contacts), "134 million", "larger grains, or a smaller specimen");
+    if (packs.rigid_forces.size() * sizeof(RigidForces) >
+        std::numeric_limits<std::uint32_t>::max())  // bodies find them by 32 bits
+        throw InputError(
+            {}, fmt::format("{} contacts of rigid grains or inner particles are more than a specimen may have", contacts),
+            "134 million", "larger grains, or a smaller specimen");
     const auto bytes_to = [](std::size_t contact) { return static_cast<std::uint32_t>(sizeof(RigidForces) * contact); };
     packs.rigid.clear();
     packs.more_of_rigid.clear();
@@ -237,7 +256,7 @@ void index_contact_packs(Assembly& assembly) {
     // Slots of the contacts on each edge: none, one, or several that share it.
     const std::size_t edges = packs.inverse_cross.size();
     std::vector<std::int32_t> only(edges, -1), pack_of_line(edges, -1);
-    std::map<std::int32_t, std::vector<std::int32_t>> several;   // by line
+    std::map<std::int32_t, std::vector<std::int32_t>> several;  // by line
     for (int c = 0; c < contacts; ++c) {
         const Contact& contact = assembly.contacts[c];
         if (contact.dropped || !contact.flexible) continue;
@@ -269,7 +288,8 @@ void index_contact_packs(Assembly& assembly) {
         packs.shared_slots.insert(packs.shared_slots.end(), slots.begin(), slots.end());
         packs.shared_edges.push_back({pack_of_line[line], line, begin, static_cast<std::int32_t>(packs.shared_slots.size())});
     }
-    std::stable_sort(packs.shared_edges.begin(), packs.shared_edges.end(), [](const SharedEdge& l, const SharedEdge& r) { return l.pack < r.pack; });
+    std::stable_sort(packs.shared_edges.begin(), packs.shared_edges.end(),
+                     [](const SharedEdge& l, const SharedEdge& r) { return l.pack < r.pack; });
 
     packs.along.resize(assembly.bonds.un_m.size());
     packs.area.resize(assembly.bonds.un_m.size());
@@ -286,7 +306,7 @@ void index_contact_packs(Assembly& assembly) {
     for (ContactPack& pack : packs.contacts) {
         const bool own_normal = has_own_normal(assembly.contacts[pack.first_contact]);
         if (own_normal) pack.first_normal = static_cast<std::int32_t>(packs.normal_x.size());
-        for (int lane = 0; lane < kMostLanes; ++lane) {   // lanes beyond the last repeat it: harmless to read
+        for (int lane = 0; lane < kMostLanes; ++lane) {  // lanes beyond the last repeat it: harmless to read
             const Contact& contact = assembly.contacts[pack.first_contact + std::min(lane, pack.lanes - 1)];
             packs.offset.push_back(contact.offset_m);
             packs.tangent_x.push_back(contact.tangent.x);
@@ -295,7 +315,8 @@ void index_contact_packs(Assembly& assembly) {
                 packs.normal_x.push_back(contact.edge_normal.x);
                 packs.normal_y.push_back(contact.edge_normal.y);
             }
-            const std::int32_t a = packs.line_of(assembly, contact.a.body, contact.a.edge), b = packs.line_of(assembly, contact.b.body, contact.b.edge);
+            const std::int32_t a = packs.line_of(assembly, contact.a.body, contact.a.edge),
+                               b = packs.line_of(assembly, contact.b.body, contact.b.edge);
             packs.line_a.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(a)));
             packs.line_b.push_back(static_cast<std::uint32_t>(sizeof(SideLine) * static_cast<std::size_t>(b)));
         }
@@ -311,7 +332,7 @@ void sort_out_contacts(Assembly& assembly, int p) {
     ContactPack& pack = packs.contacts[p];
     const double* damage = &assembly.bonds.damage[pack.first_state];
     pack.intact = std::all_of(damage, damage + pack.lanes * pack.points, [](double D) { return D == 0.0; });
-    if (pack.rigid && pack.plain) return;   // only flexible sides fall back from one block to the next
+    if (pack.rigid && pack.plain) return;  // only flexible sides fall back from one block to the next
     pack.active = 0;
     pack.plain = pack.lanes == kMostLanes;
     for (int lane = 0; lane < pack.lanes; ++lane) {
@@ -320,14 +341,16 @@ void sort_out_contacts(Assembly& assembly, int p) {
         if (takes_part) pack.active = static_cast<std::uint8_t>(pack.active | 1U << lane);
         if (!contact.dropped && !takes_part) packs.loose_contacts.push_back(pack.first_contact + lane);
         const std::size_t at = static_cast<std::size_t>(kMostLanes * p + lane);
-        pack.plain = pack.plain && takes_part && !packs.shared[packs.line_a[at] / sizeof(SideLine)] && !packs.shared[packs.line_b[at] / sizeof(SideLine)];
+        pack.plain = pack.plain && takes_part && !packs.shared[packs.line_a[at] / sizeof(SideLine)] &&
+                     !packs.shared[packs.line_b[at] / sizeof(SideLine)];
     }
 }
 
 }  // namespace
 
 int pack_of_node(const Packs& packs, int node) {
-    const auto behind = std::upper_bound(packs.grains.begin(), packs.grains.end(), node, [](int n, const GrainPack& pack) { return n < pack.first_node; });
+    const auto behind = std::upper_bound(packs.grains.begin(), packs.grains.end(), node,
+                                         [](int n, const GrainPack& pack) { return n < pack.first_node; });
     if (behind == packs.grains.begin()) return -1;
     const GrainPack& pack = *(behind - 1);
     return node < pack.first_node + pack.nodes() * pack.lanes ? static_cast<int>(&pack - packs.grains.data()) : -1;

@@ -40,9 +40,11 @@ StateHash hash_state(const Assembly& assembly) {
             motion.add(D12);
         }
     for (const Contact& contact : assembly.contacts) {
-        if (contact.own_law >= 0) {   // what was drawn
+        if (contact.own_law >= 0) {  // what was drawn
             const LawConstants<double> law = assembly.own_laws.at(contact.own_law);
-            for (const double value : {law.Kn_Pa_m, law.Ks_Pa_m, law.x0_normal, law.x0_shear, law.x_fl_normal, law.x_fl_shear, law.mu}) bonds.add(value);
+            for (const double value :
+                 {law.Kn_Pa_m, law.Ks_Pa_m, law.x0_normal, law.x0_shear, law.x_fl_normal, law.x_fl_shear, law.mu})
+                bonds.add(value);
         }
         breaks.add(contact.a.body);
         breaks.add(contact.b.body);
@@ -52,7 +54,8 @@ StateHash hash_state(const Assembly& assembly) {
     for (int p = 0; p < static_cast<int>(assembly.points.size()); ++p) {
         const ContactPoint& point = assembly.points[p];
         const BondState bond = assembly.bond(p);
-        for (const double value : {bond.un_m, bond.us_m, bond.Fn_N, bond.Fs_N, bond.max_un_m, bond.max_us_m, bond.damage}) bonds.add(value);
+        for (const double value : {bond.un_m, bond.us_m, bond.Fn_N, bond.Fs_N, bond.max_un_m, bond.max_us_m, bond.damage})
+            bonds.add(value);
         for (const double value : {bond.fracture_J, bond.friction_J}) work.add(value);
         breaks.add(point.broken_step);
         breaks.add(point.broke_in_tension);

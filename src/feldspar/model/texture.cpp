@@ -1,15 +1,15 @@
 #include "feldspar/model/texture.hpp"
 
+#include <fmt/format.h>
+#include <xxhash.h>
+
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <numeric>
 #include <string_view>
-
-#include <boost/math/distributions/normal.hpp>
-#include <fmt/format.h>
-#include <xxhash.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
@@ -24,18 +24,19 @@ namespace {
 // Uniform in (0, 1) from the seed, the purpose and a key: the same wherever and whenever it is asked for.
 double hashed_uniform(std::uint64_t seed, std::string_view purpose, std::uint64_t key) {
     const std::array<std::uint64_t, 3> words{seed, XXH3_64bits(purpose.data(), purpose.size()), key};
-    const std::uint64_t bits = XXH3_64bits(words.data(), sizeof words) >> 11;   // 53 bits
+    const std::uint64_t bits = XXH3_64bits(words.data(), sizeof words) >> 11;  // 53 bits
     return (static_cast<double>(bits) + 0.5) * 0x1p-53;
 }
 
 double standard_normal_at(double u) { return boost::math::quantile(boost::math::normal(), u); }
 double normal_share_below(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
 
-// A Gaussian random field of mean 0 and variance 1 whose covariance is exp(-r^2 / (2 length^2)): a sum of plane waves of random direction and phase.
+// A Gaussian random field of mean 0 and variance 1 whose covariance is exp(-r^2 / (2 length^2)): a sum of plane waves of random
+// direction and phase.
 class GaussianField {
 public:
     GaussianField(std::uint64_t seed, const std::string& name, double length_m) {
-        constexpr int kWaves = 600;   // kurtosis of the sum: 3 - 1.5 / 600
+        constexpr int kWaves = 600;  // kurtosis of the sum: 3 - 1.5 / 600
         RandomStream random(seed, name);
         for (int i = 0; i < kWaves; ++i) {
             const double kx = random.normal() / length_m, ky = random.normal() / length_m;
@@ -61,13 +62,16 @@ double share_below(const Distribution& d, double f) {
     if (!(f > 0.0) && d.kind != DistributionKind::normal) return 0.0;
     if (std::isinf(f)) return f > 0.0 ? 1.0 : 0.0;
     switch (d.kind) {
-        case DistributionKind::weibull: return -std::expm1(-std::pow(f * std::tgamma(1.0 + 1.0 / d.weibull_modulus), d.weibull_modulus));
+        case DistributionKind::weibull:
+            return -std::expm1(-std::pow(f * std::tgamma(1.0 + 1.0 / d.weibull_modulus), d.weibull_modulus));
         case DistributionKind::log_normal: {
             const double s = log_deviation(d.variation);
             return normal_share_below((std::log(f) + 0.5 * s * s) / s);
         }
-        case DistributionKind::normal: return normal_share_below((f - 1.0) / d.variation);
-        case DistributionKind::none: break;
+        case DistributionKind::normal:
+            return normal_share_below((f - 1.0) / d.variation);
+        case DistributionKind::none:
+            break;
     }
     return f >= 1.0 ? 1.0 : 0.0;
 }
@@ -78,8 +82,10 @@ std::vector<double> areas_of_cells(const Specimen& specimen) {
     return areas;
 }
 
-// Gives grains, in the order given, to phases so that the areas come out as wanted: by chance, in proportion to what each phase still lacks.
-std::vector<int> at_random(const MineralSpec& minerals, const std::vector<double>& area, const std::vector<int>& order, const std::vector<double>& chance) {
+// Gives grains, in the order given, to phases so that the areas come out as wanted: by chance, in proportion to what each phase
+// still lacks.
+std::vector<int> at_random(const MineralSpec& minerals, const std::vector<double>& area, const std::vector<int>& order,
+                           const std::vector<double>& chance) {
     const double total = std::accumulate(area.begin(), area.end(), 0.0);
     std::vector<double> lacks;
     for (const Mineral& phase : minerals.phases) lacks.push_back(phase.share * total);
@@ -103,8 +109,10 @@ std::vector<int> at_random(const MineralSpec& minerals, const std::vector<double
     return phase;
 }
 
-// One phase after the other takes the grains where its own random field is highest, until it has its share; the last one takes the rest.
-std::vector<int> in_clusters(const MineralSpec& minerals, std::uint64_t seed, const std::vector<double>& area, const std::vector<Vec2>& centre) {
+// One phase after the other takes the grains where its own random field is highest, until it has its share; the last one takes
+// the rest.
+std::vector<int> in_clusters(const MineralSpec& minerals, std::uint64_t seed, const std::vector<double>& area,
+                             const std::vector<Vec2>& centre) {
     const double total = std::accumulate(area.begin(), area.end(), 0.0);
     std::vector<int> phase(area.size(), static_cast<int>(minerals.phases.size()) - 1), free(area.size());
     std::iota(free.begin(), free.end(), 0);
@@ -131,24 +139,31 @@ bool contains(const std::vector<Vec2>& convex, Vec2 x) {
 }
 
 // The phase that has most of a cell's pixels, of equals the first. A cell without a pixel of its own takes the one at its centre.
-std::vector<int> by_map(const PhaseMap& map, const MineralSpec& minerals, const Specimen& specimen, const std::vector<int>& unit, const std::vector<Vec2>& centre_of) {
+std::vector<int> by_map(const PhaseMap& map, const MineralSpec& minerals, const Specimen& specimen, const std::vector<int>& unit,
+                        const std::vector<Vec2>& centre_of) {
     Box box = bounding_box(specimen.mesh.nodes);
     const Vec2 size = box.upper - box.lower;
     const double pixel_x = size.x / map.width, pixel_y = size.y / map.height;
     if (std::abs(pixel_x / pixel_y - 1.0) > 0.02)
         throw InputError({.key = "material.minerals.map"},
-                         fmt::format("the map \"{}\" has {} x {} pixels, but the specimen is {:.4g} mm wide and {:.4g} mm high", minerals.map_file, map.width, map.height, 1e3 * size.x, 1e3 * size.y),
-                         "a picture whose sides are as those of the specimen, within 2 %", fmt::format("cut it to {} x {} pixels", map.width, std::lround(map.width * size.y / size.x)));
+                         fmt::format("the map \"{}\" has {} x {} pixels, but the specimen is {:.4g} mm wide and {:.4g} mm high",
+                                     minerals.map_file, map.width, map.height, 1e3 * size.x, 1e3 * size.y),
+                         "a picture whose sides are as those of the specimen, within 2 %",
+                         fmt::format("cut it to {} x {} pixels", map.width, std::lround(map.width * size.y / size.x)));
     const auto at = [&](int column, int row) { return map.phase[static_cast<std::size_t>(row) * map.width + column]; };
     std::vector<std::vector<int>> votes(centre_of.size(), std::vector<int>(minerals.phases.size(), 0));
     for (int c = 0; c < std::ssize(specimen.cells.cells); ++c) {
         const std::vector<Vec2> corners = corners_of_cell(specimen.cells, c);
         const Box of_cell = bounding_box(corners);
-        const int left = std::max(0, static_cast<int>((of_cell.lower.x - box.lower.x) / pixel_x)), right = std::min(map.width - 1, static_cast<int>((of_cell.upper.x - box.lower.x) / pixel_x));
-        const int top = std::max(0, static_cast<int>((box.upper.y - of_cell.upper.y) / pixel_y)), bottom = std::min(map.height - 1, static_cast<int>((box.upper.y - of_cell.lower.y) / pixel_y));
+        const int left = std::max(0, static_cast<int>((of_cell.lower.x - box.lower.x) / pixel_x)),
+                  right = std::min(map.width - 1, static_cast<int>((of_cell.upper.x - box.lower.x) / pixel_x));
+        const int top = std::max(0, static_cast<int>((box.upper.y - of_cell.upper.y) / pixel_y)),
+                  bottom = std::min(map.height - 1, static_cast<int>((box.upper.y - of_cell.lower.y) / pixel_y));
         for (int row = top; row <= bottom; ++row)
             for (int column = left; column <= right; ++column)
-                if (contains(corners, {box.lower.x + (column + 0.5) * pixel_x, box.upper.y - (row + 0.5) * pixel_y}) && at(column, row) >= 0) ++votes[unit[c]][at(column, row)];
+                if (contains(corners, {box.lower.x + (column + 0.5) * pixel_x, box.upper.y - (row + 0.5) * pixel_y}) &&
+                    at(column, row) >= 0)
+                    ++votes[unit[c]][at(column, row)];
     }
     std::vector<int> phase;
     for (std::size_t u = 0; u < votes.size(); ++u) {
@@ -158,9 +173,12 @@ std::vector<int> by_map(const PhaseMap& map, const MineralSpec& minerals, const 
             continue;
         }
         const Vec2 centre = centre_of[u];
-        const int column = std::clamp(static_cast<int>((centre.x - box.lower.x) / pixel_x), 0, map.width - 1), row = std::clamp(static_cast<int>((box.upper.y - centre.y) / pixel_y), 0, map.height - 1);
+        const int column = std::clamp(static_cast<int>((centre.x - box.lower.x) / pixel_x), 0, map.width - 1),
+                  row = std::clamp(static_cast<int>((box.upper.y - centre.y) / pixel_y), 0, map.height - 1);
         if (at(column, row) < 0)
-            throw InputError({.key = "material.minerals.map"}, fmt::format("no pixel of the map \"{}\" gives a mineral to the grain at ({:.4g} mm, {:.4g} mm)", minerals.map_file, 1e3 * centre.x, 1e3 * centre.y),
+            throw InputError({.key = "material.minerals.map"},
+                             fmt::format("no pixel of the map \"{}\" gives a mineral to the grain at ({:.4g} mm, {:.4g} mm)",
+                                         minerals.map_file, 1e3 * centre.x, 1e3 * centre.y),
                              "a map that covers the specimen with colours of its legend");
         phase.push_back(at(column, row));
     }
@@ -182,7 +200,8 @@ Texture::Texture(const Specimen& specimen, const GrainMaterial& grain, const Con
     if (!rock.minerals.phases.empty()) give_phases();
     for (const Scattered quantity : scattered_quantities)
         if (const Distribution& d = rock.scatter[quantity]; d.scatters() && d.correlation_length_m > 0.0)
-            fields_->of[static_cast<std::size_t>(quantity)] = std::make_unique<GaussianField>(specimen.seed, std::string("field of ") + name(quantity), d.correlation_length_m);
+            fields_->of[static_cast<std::size_t>(quantity)] =
+                std::make_unique<GaussianField>(specimen.seed, std::string("field of ") + name(quantity), d.correlation_length_m);
     for (const JointSpec& joint : rock.joints) fields_->joints.push_back(std::make_unique<JointEdges>(specimen, joint));
     std::vector<const JointEdges*> edges;
     for (const auto& joint : fields_->joints) edges.push_back(joint.get());
@@ -193,16 +212,23 @@ void Texture::give_phases() {
     const MineralSpec& minerals = rock_->minerals;
     const Specimen& specimen = *specimen_;
     const int cells = static_cast<int>(specimen.cells.cells.size());
-    if (!specimen.spec.phase_sizes.empty()) {   // the packing knows, since it is made of grains of their sizes
+    if (!specimen.spec.phase_sizes.empty()) {  // the packing knows, since it is made of grains of their sizes
         if (specimen.spec.phase_sizes.size() != minerals.phases.size())
-            throw InputError({.key = "material.phase"}, fmt::format("{} minerals in a specimen that is packed of {}", minerals.phases.size(), specimen.spec.phase_sizes.size()), "the same minerals");
+            throw InputError({.key = "material.phase"},
+                             fmt::format("{} minerals in a specimen that is packed of {}", minerals.phases.size(),
+                                         specimen.spec.phase_sizes.size()),
+                             "the same minerals");
         phases_ = specimen.packing.phases;
         return;
     }
     if (!minerals.list.empty()) {
-        const int discs = static_cast<int>((specimen.packed.centres.empty() ? specimen.packing : specimen.packed).centres.size()), units = specimen.quality.crystals > 0 ? specimen.quality.crystals : discs;
+        const int discs = static_cast<int>((specimen.packed.centres.empty() ? specimen.packing : specimen.packed).centres.size()),
+                  units = specimen.quality.crystals > 0 ? specimen.quality.crystals : discs;
         if (std::ssize(minerals.list) != units)
-            throw InputError({.key = "material.minerals.list"}, fmt::format("a list of {} minerals for {} {}", minerals.list.size(), units, specimen.quality.crystals > 0 ? "crystals" : "grains"), "one each, in the order of the packing");
+            throw InputError({.key = "material.minerals.list"},
+                             fmt::format("a list of {} minerals for {} {}", minerals.list.size(), units,
+                                         specimen.quality.crystals > 0 ? "crystals" : "grains"),
+                             "one each, in the order of the packing");
         for (int c = 0; c < cells; ++c) phases_.push_back(minerals.list[unit_of(c)]);
         return;
     }
@@ -240,9 +266,13 @@ void Texture::give_phases() {
     for (int c = 0; c < cells; ++c) phases_.push_back(phase[unit[c]]);
 }
 
-int Texture::unit_of(int cell) const { return specimen_->crystal_of_cell.empty() ? disc_of(cell) : specimen_->crystal_of_cell[cell]; }
+int Texture::unit_of(int cell) const {
+    return specimen_->crystal_of_cell.empty() ? disc_of(cell) : specimen_->crystal_of_cell[cell];
+}
 
-int Texture::disc_of(int cell) const { return specimen_->cells.disc_of_cell.empty() ? cell : specimen_->cells.disc_of_cell[cell]; }
+int Texture::disc_of(int cell) const {
+    return specimen_->cells.disc_of_cell.empty() ? cell : specimen_->cells.disc_of_cell[cell];
+}
 
 std::uint64_t Texture::key_of(int cell_a, int cell_b) const {
     const int a = unit_of(cell_a), b = unit_of(cell_b), low = std::min(a, b), high = std::max(a, b);
@@ -253,13 +283,15 @@ double Texture::factor(Scattered quantity, std::uint64_t key, Vec2 place) const 
     const Distribution& d = rock_->scatter[quantity];
     if (!d.scatters()) return 1.0;
     const GaussianField* field = fields_->of[static_cast<std::size_t>(quantity)].get();
-    const double u = field != nullptr ? std::clamp(normal_share_below((*field)(place)), 1e-15, 1.0 - 1e-15) : hashed_uniform(specimen_->seed, name(quantity), key);
+    const double u = field != nullptr ? std::clamp(normal_share_below((*field)(place)), 1e-15, 1.0 - 1e-15)
+                                      : hashed_uniform(specimen_->seed, name(quantity), key);
     return factor_at(d, u);
 }
 
 GrainMaterial Texture::grain(int cell) const {
     GrainMaterial grain = phases_.empty() ? grain_ : rock_->minerals.phases[phases_[cell]].grain;
-    grain.E_Pa *= factor(Scattered::E, static_cast<std::uint64_t>(unit_of(cell)), specimen_->mesh.nodes[specimen_->mesh.centre_node[cell]]);
+    grain.E_Pa *=
+        factor(Scattered::E, static_cast<std::uint64_t>(unit_of(cell)), specimen_->mesh.nodes[specimen_->mesh.centre_node[cell]]);
     return grain;
 }
 
@@ -276,16 +308,22 @@ ContactMaterial Texture::between(int a, int b) const {
     ContactMaterial m = contact_;
     const double Ks_l = l.eta * l.Kn_Pa_m, Ks_r = r.eta * r.Kn_Pa_m;
     if (minerals.unlike == UnlikeRule::mean) {
-        m.Kn_Pa_m = 2.0 / (1.0 / l.Kn_Pa_m + 1.0 / r.Kn_Pa_m);   // half a boundary of each in series
+        m.Kn_Pa_m = 2.0 / (1.0 / l.Kn_Pa_m + 1.0 / r.Kn_Pa_m);  // half a boundary of each in series
         m.eta = 2.0 / (1.0 / Ks_l + 1.0 / Ks_r) / m.Kn_Pa_m;
         const auto mean = [&](double ContactMaterial::*value) { m.*value = 0.5 * (l.*value + r.*value); };
-        for (const auto value : {&ContactMaterial::sigma_nt_Pa, &ContactMaterial::tau_Pa, &ContactMaterial::mu, &ContactMaterial::Gfn_J_m2, &ContactMaterial::Gfs_J_m2}) mean(value);
+        for (const auto value : {&ContactMaterial::sigma_nt_Pa, &ContactMaterial::tau_Pa, &ContactMaterial::mu,
+                                 &ContactMaterial::Gfn_J_m2, &ContactMaterial::Gfs_J_m2})
+            mean(value);
     } else {
         const auto smaller = [&](double ContactMaterial::*value) { m.*value = std::min(l.*value, r.*value); };
-        for (const auto value : {&ContactMaterial::Kn_Pa_m, &ContactMaterial::sigma_nt_Pa, &ContactMaterial::tau_Pa, &ContactMaterial::mu, &ContactMaterial::Gfn_J_m2, &ContactMaterial::Gfs_J_m2}) smaller(value);
+        for (const auto value : {&ContactMaterial::Kn_Pa_m, &ContactMaterial::sigma_nt_Pa, &ContactMaterial::tau_Pa,
+                                 &ContactMaterial::mu, &ContactMaterial::Gfn_J_m2, &ContactMaterial::Gfs_J_m2})
+            smaller(value);
         m.eta = std::min(Ks_l, Ks_r) / m.Kn_Pa_m;
     }
-    for (const auto value : {&ContactMaterial::sigma_nt_Pa, &ContactMaterial::tau_Pa, &ContactMaterial::Gfn_J_m2, &ContactMaterial::Gfs_J_m2}) m.*value *= minerals.unlike_strength;
+    for (const auto value :
+         {&ContactMaterial::sigma_nt_Pa, &ContactMaterial::tau_Pa, &ContactMaterial::Gfn_J_m2, &ContactMaterial::Gfs_J_m2})
+        m.*value *= minerals.unlike_strength;
     return m;
 }
 
@@ -299,15 +337,18 @@ ContactMaterial Texture::inside(int phase) const {
 GrainContact Texture::contact(int cell_a, int cell_b, Vec2 from, Vec2 to) const {
     GrainContact result;
     for (std::size_t j = 0; j < fields_->joints.size(); ++j)
-        if (fields_->joints[j]->holds(cell_a, cell_b)) {   // the last joint that takes an edge counts
+        if (fields_->joints[j]->holds(cell_a, cell_b)) {  // the last joint that takes an edge counts
             const JointSpec& joint = rock_->joints[j];
-            result = {.material = joint.contact, .broken = joint.without_strength(), .opening_m = joint.opening_m, .joint = static_cast<std::int32_t>(j)};
+            result = {.material = joint.contact,
+                      .broken = joint.without_strength(),
+                      .opening_m = joint.opening_m,
+                      .joint = static_cast<std::int32_t>(j)};
         }
     if (result.joint >= 0) return result;
 
     ContactMaterial& m = result.material;
     result.inside = !specimen_->crystal_of_cell.empty() && unit_of(cell_a) == unit_of(cell_b);
-    if (result.inside) {   // neither scatter nor initial cracks: these are of grain boundaries
+    if (result.inside) {  // neither scatter nor initial cracks: these are of grain boundaries
         m = inside(phases_.empty() ? -1 : phases_[cell_a]);
         return result;
     }
@@ -358,7 +399,8 @@ TextureSummary Texture::summary() const {
     summary.joint_contacts.assign(rock_->joints.size(), 0);
     summary.joint_lengths_m.assign(rock_->joints.size(), 0.0);
     const auto draw = [&](Scattered quantity, std::uint64_t key, Vec2 place) {
-        if (rock_->scatter[quantity].scatters()) factors[static_cast<std::size_t>(quantity)].push_back(factor(quantity, key, place));
+        if (rock_->scatter[quantity].scatters())
+            factors[static_cast<std::size_t>(quantity)].push_back(factor(quantity, key, place));
     };
     for (int c = 0; c < std::ssize(cells); ++c) {
         draw(Scattered::E, static_cast<std::uint64_t>(unit_of(c)), specimen_->mesh.nodes[specimen_->mesh.centre_node[c]]);
@@ -366,7 +408,8 @@ TextureSummary Texture::summary() const {
         for (int k = 0; k < edges; ++k) {
             const int other = cells[c].neighbours[k];
             if (other <= c) continue;
-            const Vec2 from = specimen_->cells.vertices[cells[c].vertices[k]], to = specimen_->cells.vertices[cells[c].vertices[(k + 1) % edges]];
+            const Vec2 from = specimen_->cells.vertices[cells[c].vertices[k]],
+                       to = specimen_->cells.vertices[cells[c].vertices[(k + 1) % edges]];
             const GrainContact made = contact(c, other, from, to);
             ++summary.contacts_in_all;
             if (made.joint >= 0) {
@@ -397,8 +440,8 @@ TextureSummary Texture::summary() const {
         const double n = static_cast<double>(drawn.size()), mean = std::accumulate(drawn.begin(), drawn.end(), 0.0) / n;
         double squares = 0.0;
         for (const double f : drawn) squares += (f - mean) * (f - mean);
-        summary.draws.push_back({quantity, static_cast<int>(drawn.size()), mean, std::sqrt(squares / n) / mean, *std::min_element(drawn.begin(), drawn.end()),
-                                 *std::max_element(drawn.begin(), drawn.end())});
+        summary.draws.push_back({quantity, static_cast<int>(drawn.size()), mean, std::sqrt(squares / n) / mean,
+                                 *std::min_element(drawn.begin(), drawn.end()), *std::max_element(drawn.begin(), drawn.end())});
     }
     return summary;
 }
@@ -423,10 +466,17 @@ double factor_at(const Distribution& d, double u) {
     const double v = low + u * (high - low);
     double factor = 1.0;
     switch (d.kind) {
-        case DistributionKind::weibull: factor = std::pow(-std::log1p(-v), 1.0 / d.weibull_modulus) / std::tgamma(1.0 + 1.0 / d.weibull_modulus); break;
-        case DistributionKind::log_normal: factor = log_normal_factor(d.variation, standard_normal_at(v)); break;
-        case DistributionKind::normal: factor = 1.0 + d.variation * standard_normal_at(v); break;
-        case DistributionKind::none: break;
+        case DistributionKind::weibull:
+            factor = std::pow(-std::log1p(-v), 1.0 / d.weibull_modulus) / std::tgamma(1.0 + 1.0 / d.weibull_modulus);
+            break;
+        case DistributionKind::log_normal:
+            factor = log_normal_factor(d.variation, standard_normal_at(v));
+            break;
+        case DistributionKind::normal:
+            factor = 1.0 + d.variation * standard_normal_at(v);
+            break;
+        case DistributionKind::none:
+            break;
     }
     return std::clamp(factor, d.lowest, d.highest);
 }

@@ -134,7 +134,8 @@ void put_history(hid_t root, const TestResult& result) {
         values.reserve(result.history.size());
         for (const HistoryRow& row : result.history) values.push_back(column.value(row));
         if (column.whole) {
-            put(group, column.name.c_str(), std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit.c_str(), column.meaning.c_str());
+            put(group, column.name.c_str(), std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit.c_str(),
+                column.meaning.c_str());
         } else {
             put(group, column.name.c_str(), values, 1, column.unit.c_str(), column.meaning.c_str());
         }
@@ -164,9 +165,12 @@ void put_cracks(hid_t root, const std::vector<Crack>& cracks) {
     put(group, "to", points([](const Crack& c) { return c.to; }), 2, "m", "its end");
     put(group, "area", each<double>(cracks, [](const Crack& c) { return c.area_m2; }), 1, "m2", "area of the contact point");
     put(group, "energy", each<double>(cracks, [](const Crack& c) { return c.energy_J; }), 1, "J", "dissipated until the break");
-    put(group, "normal", points([](const Crack& c) { return c.normal; }), 2, "1", "from grain_a to grain_b, when it was recorded");
-    put(group, "opening", each<double>(cracks, [](const Crack& c) { return c.opening_m; }), 1, "m", "along the normal, when it was recorded");
-    put(group, "slip", each<double>(cracks, [](const Crack& c) { return c.slip_m; }), 1, "m", "of grain_b across the normal (a quarter turn to the left), when it was recorded");
+    put(group, "normal", points([](const Crack& c) { return c.normal; }), 2, "1",
+        "from grain_a to grain_b, when it was recorded");
+    put(group, "opening", each<double>(cracks, [](const Crack& c) { return c.opening_m; }), 1, "m",
+        "along the normal, when it was recorded");
+    put(group, "slip", each<double>(cracks, [](const Crack& c) { return c.slip_m; }), 1, "m",
+        "of grain_b across the normal (a quarter turn to the left), when it was recorded");
 }
 
 void put_events(hid_t root, const TestResult& result) {
@@ -176,8 +180,10 @@ void put_events(hid_t root, const TestResult& result) {
     for (const EventColumn& column : event_columns()) {
         std::vector<double> values;
         for (const AcousticEvent& event : emission.events) values.push_back(column.value(event));
-        if (column.whole) put(group, column.name, std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit, column.meaning);
-        else put(group, column.name, values, 1, column.unit, column.meaning);
+        if (column.whole)
+            put(group, column.name, std::vector<std::int64_t>(values.begin(), values.end()), 1, column.unit, column.meaning);
+        else
+            put(group, column.name, values, 1, column.unit, column.meaning);
     }
 }
 
@@ -193,7 +199,8 @@ void put_mesh(hid_t root, const GrainMesh& mesh, const std::vector<int>& phase_o
     put(group, "nodes", flat(mesh.nodes), 2, "m", "undeformed position of each node");
     put(group, "triangles", triangles, 3, "1", "three nodes each, counter-clockwise");
     put(group, "grain", grain, 1, "1", "grain of each triangle");
-    if (!phase_of_grain.empty()) put(group, "mineral", phase_of_grain, 1, "1", "of each grain, in the order of [[material.phase]]");
+    if (!phase_of_grain.empty())
+        put(group, "mineral", phase_of_grain, 1, "1", "of each grain, in the order of [[material.phase]]");
 }
 
 void put_contacts(hid_t root, const std::vector<ContactPlace>& contacts) {
@@ -233,20 +240,26 @@ void put_snapshots(hid_t root, const std::vector<Snapshot>& snapshots) {
         put(group, "damage", snapshot.damage, 1, "1", "largest damage on the grain edge of each triangle, 0 intact, 1 broken");
         put(group, "crack_opening", snapshot.crack_opening_m, 1, "m",
             "of the first cracks of /cracks, in their order; positive is open");
-        put(group, "contact_damage", snapshot.contact_damage, 1, "1", "of each of /contacts, 0 intact, 1 broken: the largest of its points");
+        put(group, "contact_damage", snapshot.contact_damage, 1, "1",
+            "of each of /contacts, 0 intact, 1 broken: the largest of its points");
         put(group, "contact_normal_force", snapshot.contact_normal_N, 1, "N", "of each of /contacts, compression positive");
-        put(group, "contact_shear_force", snapshot.contact_shear_N, 1, "N", "of each of /contacts: on grain_b, along the normal turned by a quarter to the left");
+        put(group, "contact_shear_force", snapshot.contact_shear_N, 1, "N",
+            "of each of /contacts: on grain_b, along the normal turned by a quarter to the left");
     }
 }
 
-/// HDF5 1.10 can leave the heap in disorder when memory ends in one of its calls, so what the archive will need is asked for before.
+/// HDF5 1.10 can leave the heap in disorder when memory ends in one of its calls, so what the archive will need is asked for
+/// before.
 /// @throws std::bad_alloc
 void require_memory(const TestResult& result) {
     std::size_t numbers = 64 * result.history.size() + 16 * result.cracks.size();
-    for (const Snapshot& snapshot : result.snapshots) numbers += 2 * snapshot.displacement_m.size() + 4 * snapshot.stress_xx_Pa.size() + snapshot.crack_opening_m.size() + 2 * snapshot.contact_damage.size();
+    for (const Snapshot& snapshot : result.snapshots)
+        numbers += 2 * snapshot.displacement_m.size() + 4 * snapshot.stress_xx_Pa.size() + snapshot.crack_opening_m.size() +
+                   2 * snapshot.contact_damage.size();
     if (result.specimen) numbers += 2 * result.specimen->mesh.nodes.size() + 4 * result.specimen->mesh.triangles.size();
-    const std::size_t bytes = 3 * numbers * sizeof(double) + (std::size_t{24} << 20);   // the file as it grows, its copy, and what the library keeps
-    ::operator delete(::operator new(bytes));   // called by name: a new-expression might be left out by the compiler
+    const std::size_t bytes =
+        3 * numbers * sizeof(double) + (std::size_t{24} << 20);  // the file as it grows, its copy, and what the library keeps
+    ::operator delete(::operator new(bytes));  // called by name: a new-expression might be left out by the compiler
 }
 
 std::string archive_bytes(const TestResult& result, const Job& job, const Provenance& provenance) {

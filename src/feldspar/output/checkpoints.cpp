@@ -25,7 +25,7 @@ constexpr const char* kCard = "card";
 constexpr std::array<char, 8> kMark{'f', 'e', 'l', 'd', 's', 'p', 'a', 'r'};
 
 struct Trailer {
-    std::uint64_t bytes = 0, hash = 0;   // of all before it
+    std::uint64_t bytes = 0, hash = 0;  // of all before it
     std::array<char, 8> mark = kMark;
 };
 static_assert(sizeof(Trailer) == 24);
@@ -47,7 +47,8 @@ Checkpoint read_file(const fs::path& file, const CheckpointOwner& owner) {
     std::ifstream stream(file, std::ios::binary);
     stream.seekg(static_cast<std::streamoff>(size - sizeof trailer));
     if (!stream.read(reinterpret_cast<char*>(&trailer), sizeof trailer)) return no("it cannot be read");
-    if (trailer.mark != kMark || trailer.bytes != size - sizeof trailer) return no("it is damaged");   // before memory is asked for
+    if (trailer.mark != kMark || trailer.bytes != size - sizeof trailer)
+        return no("it is damaged");  // before memory is asked for
     std::vector<char> bytes(trailer.bytes);
     stream.seekg(0);
     if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) return no("it cannot be read");
@@ -67,9 +68,13 @@ Checkpoint read_file(const fs::path& file, const CheckpointOwner& owner) {
         std::getline(header, *value);
     }
     if (found.test != owner.test) return no("it is another test's");
-    if (found.version != owner.version) return no(fmt::format("version {} of the program has written it, this is {}", found.version, owner.version));
-    if ((found.kernels == kCard) != (owner.kernels == kCard)) return no(fmt::format("its steps were made on a {}: --device {} goes on with it", found.kernels == kCard ? "graphics card" : "processor", found.kernels == kCard ? "gpu" : "cpu"));
-    return no(fmt::format("it was computed with the instructions {}, here these are {}: FELDSPAR_KERNELS={} goes on with it", found.kernels, owner.kernels, found.kernels));
+    if (found.version != owner.version)
+        return no(fmt::format("version {} of the program has written it, this is {}", found.version, owner.version));
+    if ((found.kernels == kCard) != (owner.kernels == kCard))
+        return no(fmt::format("its steps were made on a {}: --device {} goes on with it",
+                              found.kernels == kCard ? "graphics card" : "processor", found.kernels == kCard ? "gpu" : "cpu"));
+    return no(fmt::format("it was computed with the instructions {}, here these are {}: FELDSPAR_KERNELS={} goes on with it",
+                          found.kernels, owner.kernels, found.kernels));
 }
 
 }  // namespace
@@ -78,7 +83,8 @@ CheckpointOwner CheckpointOwner::of(const std::string& test, const Provenance& p
     return {test, provenance.version + " " + provenance.commit, provenance.device.empty() ? best_kernels().name : kCard};
 }
 
-void write_checkpoint(const RunDirectory& directory, const std::string& name, const CheckpointOwner& owner, const std::function<void(const StatePut&)>& write) {
+void write_checkpoint(const RunDirectory& directory, const std::string& name, const CheckpointOwner& owner,
+                      const std::function<void(const StatePut&)>& write) {
     const fs::path file = directory.path() / name;
     directory.write(name, [&](const fs::path& aside) {
         errno = 0;
@@ -97,7 +103,7 @@ void write_checkpoint(const RunDirectory& directory, const std::string& name, co
         stream.write(reinterpret_cast<const char*>(&trailer), sizeof trailer);
         stream.close();
         if (!stream) throw std::system_error(errno != 0 ? errno : EIO, std::generic_category());
-        std::error_code ignored;   // there may be none before
+        std::error_code ignored;  // there may be none before
         fs::rename(file, before_of(file), ignored);
     });
 }
@@ -107,7 +113,7 @@ Checkpoint read_checkpoint(const fs::path& directory, const std::string& name, c
     Checkpoint newest = read_file(file, owner);
     if (!newest.state.empty()) return newest;
     Checkpoint before = read_file(before_of(file), owner);
-    if (!before.state.empty()) return before;   // what is wrong with the newest costs some minutes only
+    if (!before.state.empty()) return before;  // what is wrong with the newest costs some minutes only
     return newest.refused.empty() ? before : newest;
 }
 
@@ -117,8 +123,13 @@ void remove_checkpoint(const fs::path& directory, const std::string& name) {
     fs::remove(before_of(directory / name), ignored);
 }
 
-TestCheckpoints::TestCheckpoints(RunDirectory directory, std::string name, CheckpointOwner owner, const CheckpointSettings& settings, std::function<void(const std::string&)> note)
-    : directory_(std::move(directory)), name_(std::move(name)), owner_(std::move(owner)), settings_(settings), note_(std::move(note)) {
+TestCheckpoints::TestCheckpoints(RunDirectory directory, std::string name, CheckpointOwner owner,
+                                 const CheckpointSettings& settings, std::function<void(const std::string&)> note)
+    : directory_(std::move(directory)),
+      name_(std::move(name)),
+      owner_(std::move(owner)),
+      settings_(settings),
+      note_(std::move(note)) {
     if (settings_.wanted != nullptr) wanted_ = settings_.wanted->load();
 }
 
@@ -134,7 +145,8 @@ void TestCheckpoints::keep(const std::function<void(const StatePut&)>& write) {
         write_checkpoint(directory_, name_, owner_, write);
         told_of_failure_ = false;
     } catch (const OutputError& error) {
-        if (!told_of_failure_) tell(fmt::format("the state of this test cannot be kept, and it goes on without: {}", error.what()));
+        if (!told_of_failure_)
+            tell(fmt::format("the state of this test cannot be kept, and it goes on without: {}", error.what()));
         told_of_failure_ = true;
     }
     kept_at_ = Clock::now();
@@ -148,7 +160,8 @@ std::vector<char> TestCheckpoints::kept() {
 
 void TestCheckpoints::refuse(const std::string& reason) {
     const fs::path file = directory_.path() / name_;
-    tell(fmt::format("the kept state '{}' is not used, and its test begins anew: {}. It stays as '{}.refused'", file.string(), reason, file.filename().string()));
+    tell(fmt::format("the kept state '{}' is not used, and its test begins anew: {}. It stays as '{}.refused'", file.string(),
+                     reason, file.filename().string()));
     std::error_code ignored;
     fs::rename(file, file.string() + ".refused", ignored);
     fs::remove(before_of(file), ignored);

@@ -15,27 +15,31 @@ namespace feldspar {
 
 /// When states are kept.
 struct CheckpointSettings {
-    double every_s = 300.0;                              ///< wall time between two states of a test, > 0; infinite: only when the program is asked to end, or to keep states
-    const std::atomic<unsigned>* wanted = nullptr;       ///< grows when the user asks for states now; may be null
+    double every_s = 300.0;  ///< wall time between two states of a test, > 0; infinite: only when the program is asked to end, or
+                             ///< to keep states
+    const std::atomic<unsigned>* wanted = nullptr;  ///< grows when the user asks for states now; may be null
 };
 
-/// What a state belongs to. One of another test is never taken; one of another program, or of other kernels, would not leave the same bits.
+/// What a state belongs to. One of another test is never taken; one of another program, or of other kernels, would not leave the
+/// same bits.
 struct CheckpointOwner {
-    std::string test;      ///< an identity: everything that can change the test's result
-    std::string version;   ///< of the program, and its commit
-    std::string kernels;   ///< by which the packs step: "avx512"; "card": a graphics card makes the steps
+    std::string test;     ///< an identity: everything that can change the test's result
+    std::string version;  ///< of the program, and its commit
+    std::string kernels;  ///< by which the packs step: "avx512"; "card": a graphics card makes the steps
 
     static CheckpointOwner of(const std::string& test, const Provenance& provenance);
     bool operator==(const CheckpointOwner&) const = default;
 };
 
-/// Writes a state, or what a finished test leaves: whole or not at all. The one before stays as `name`.before. @throws OutputError
-void write_checkpoint(const RunDirectory& directory, const std::string& name, const CheckpointOwner& owner, const std::function<void(const StatePut&)>& write);
+/// Writes a state, or what a finished test leaves: whole or not at all. The one before stays as `name`.before. @throws
+/// OutputError
+void write_checkpoint(const RunDirectory& directory, const std::string& name, const CheckpointOwner& owner,
+                      const std::function<void(const StatePut&)>& write);
 
 /// A file that write_checkpoint() has written.
 struct Checkpoint {
-    std::vector<char> state;   ///< empty if there is none, or none that can be used
-    std::string refused;       ///< why a file that is there was not used; empty otherwise
+    std::vector<char> state;  ///< empty if there is none, or none that can be used
+    std::string refused;      ///< why a file that is there was not used; empty otherwise
 };
 
 /// The newest whole one of this owner. @param directory  of the run
@@ -48,7 +52,8 @@ void remove_checkpoint(const std::filesystem::path& directory, const std::string
 class TestCheckpoints final : public StateKeeper {
 public:
     /// @param note  told what the user should read; called on the test's own thread; may be empty
-    TestCheckpoints(RunDirectory directory, std::string name, CheckpointOwner owner, const CheckpointSettings& settings, std::function<void(const std::string&)> note);
+    TestCheckpoints(RunDirectory directory, std::string name, CheckpointOwner owner, const CheckpointSettings& settings,
+                    std::function<void(const std::string&)> note);
 
     bool due(bool stopped) override;
     void keep(const std::function<void(const StatePut&)>& write) override;

@@ -11,7 +11,8 @@ namespace feldspar {
 /// What the columns mean, a comment line each.
 template <class Columns>
 void append_meanings(std::string& text, const Columns& columns) {
-    for (const auto& column : columns) fmt::format_to(std::back_inserter(text), "#   {} [{}] {}\n", column.name, column.unit, column.meaning);
+    for (const auto& column : columns)
+        fmt::format_to(std::back_inserter(text), "#   {} [{}] {}\n", column.name, column.unit, column.meaning);
 }
 
 /// The line of names, and a line a row.
@@ -29,8 +30,10 @@ void append_csv(std::string& text, const Columns& columns, const Rows& rows) {
         for (const auto& column : columns) {
             const double value = column.value(row);
             // {} prints the shortest decimal that reads back as the same double, whatever the locale
-            if (column.whole) fmt::format_to(out, "{}{}", between, static_cast<long long>(value));
-            else fmt::format_to(out, "{}{}", between, value);
+            if (column.whole)
+                fmt::format_to(out, "{}{}", between, static_cast<long long>(value));
+            else
+                fmt::format_to(out, "{}{}", between, value);
             between = ",";
         }
         text += '\n';

@@ -1,5 +1,5 @@
-// Fields for ParaView: a .pvd that lists a set of named blocks for each snapshot: grains, their edges, contacts, cracks, acoustic events.
-// Positions are undeformed; "Warp By Vector" with displacement_m shows the deformed body and the open cracks.
+// Fields for ParaView: a .pvd that lists a set of named blocks for each snapshot: grains, their edges, contacts, cracks, acoustic
+// events. Positions are undeformed; "Warp By Vector" with displacement_m shows the deformed body and the open cracks.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ std::vector<float> floats_in_MPa(const std::vector<double>& values_Pa) {
 
 /// The edges of each grain: sides of its triangles that no other triangle of the grain shares.
 std::vector<std::vector<std::array<int, 2>>> grain_edges(const TestFields& fields) {
-    std::vector<std::map<std::array<int, 2>, std::array<int, 2>>> open;   // of each grain, by the smaller node
+    std::vector<std::map<std::array<int, 2>, std::array<int, 2>>> open;  // of each grain, by the smaller node
     for (std::size_t t = 0; t < fields.triangles.size(); ++t) {
         const auto grain = static_cast<std::size_t>(fields.grain[t]);
         if (grain >= open.size()) open.resize(grain + 1);
@@ -70,15 +70,18 @@ std::vector<std::vector<std::array<int, 2>>> grain_edges(const TestFields& field
 /// Where a line lies between two grains, and by which nodes of either it moves.
 class LineBetweenGrains {
 public:
-    LineBetweenGrains(const TestFields& fields, const std::vector<std::vector<std::array<int, 2>>>& edges, int grain_a, int grain_b, Vec2 from, Vec2 to)
+    LineBetweenGrains(const TestFields& fields, const std::vector<std::vector<std::array<int, 2>>>& edges, int grain_a,
+                      int grain_b, Vec2 from, Vec2 to)
         : from_(from), to_(to), a_(face(fields, edges, grain_a)), b_(face(fields, edges, grain_b)) {}
 
     /// Adds its two ends, and their displacements, midway between the faces.
-    void add(const Snapshot& snapshot, std::vector<double>& points, std::vector<std::int32_t>& ends, std::vector<float>& displacement) const {
+    void add(const Snapshot& snapshot, std::vector<double>& points, std::vector<std::int32_t>& ends,
+             std::vector<float>& displacement) const {
         const auto first = static_cast<std::int32_t>(points.size() / 3);
         ends.insert(ends.end(), {first, first + 1});
         points.insert(points.end(), {from_.x, from_.y, 0.0, to_.x, to_.y, 0.0});
-        const auto a = face_displacement(a_.node_0 < 0 ? b_ : a_, snapshot.displacement_m), b = face_displacement(b_.node_0 < 0 ? a_ : b_, snapshot.displacement_m);
+        const auto a = face_displacement(a_.node_0 < 0 ? b_ : a_, snapshot.displacement_m),
+                   b = face_displacement(b_.node_0 < 0 ? a_ : b_, snapshot.displacement_m);
         for (std::size_t end = 0; end < 2; ++end) {
             const Vec2 u = 0.5 * (a[end] + b[end]);
             displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
@@ -98,7 +101,8 @@ private:
         if (grain < 0 || static_cast<std::size_t>(grain) >= edges.size()) return best;
         double nearest = std::numeric_limits<double>::infinity();
         for (const auto& [node_0, node_1] : edges[static_cast<std::size_t>(grain)]) {
-            const Vec2 start = fields.nodes[static_cast<std::size_t>(node_0)], end = fields.nodes[static_cast<std::size_t>(node_1)];
+            const Vec2 start = fields.nodes[static_cast<std::size_t>(node_0)],
+                       end = fields.nodes[static_cast<std::size_t>(node_1)];
             const double at_from = fraction_along(start, end, from_), at_to = fraction_along(start, end, to_);
             const double distance = norm(start + at_from * (end - start) - from_) + norm(start + at_to * (end - start) - to_);
             if (distance >= nearest) continue;
@@ -115,7 +119,8 @@ private:
 /// What the blocks of all snapshots have in common.
 class Blocks {
 public:
-    explicit Blocks(const TestFields& fields) : fields_(fields), grains_(undeformed_grains()), outlines_(undeformed_outlines(grain_edges(fields))) {
+    explicit Blocks(const TestFields& fields)
+        : fields_(fields), grains_(undeformed_grains()), outlines_(undeformed_outlines(grain_edges(fields))) {
         const auto edges = grain_edges(fields);
         for (const ContactPlace& c : fields.contacts) contacts_.emplace_back(fields, edges, c.grain_a, c.grain_b, c.from, c.to);
         for (const Crack& c : fields.cracks) cracks_.emplace_back(fields, edges, c.grain_a, c.grain_b, c.from, c.to);
@@ -252,14 +257,15 @@ private:
 
     static std::vector<float> displacements(const Snapshot& snapshot) {
         std::vector<float> displacement;
-        for (const Vec2 u : snapshot.displacement_m) displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
+        for (const Vec2 u : snapshot.displacement_m)
+            displacement.insert(displacement.end(), {static_cast<float>(u.x), static_cast<float>(u.y), 0.0F});
         return displacement;
     }
 
     const TestFields& fields_;
     VtuGrid grains_, outlines_;
     std::vector<LineBetweenGrains> contacts_, cracks_;
-    const std::vector<double>*x_ = nullptr, *y_ = nullptr, *first_step_ = nullptr;   // of the events
+    const std::vector<double>*x_ = nullptr, *y_ = nullptr, *first_step_ = nullptr;  // of the events
 };
 
 struct Block {
@@ -267,14 +273,16 @@ struct Block {
     std::string (Blocks::*file)(const Snapshot&, const std::string&) const;
 };
 
-constexpr std::array blocks_in_order{Block{"grains", &Blocks::grains}, Block{"grain_edges", &Blocks::grain_outlines}, Block{"contacts", &Blocks::contacts}, Block{"cracks", &Blocks::cracks},
+constexpr std::array blocks_in_order{Block{"grains", &Blocks::grains}, Block{"grain_edges", &Blocks::grain_outlines},
+                                     Block{"contacts", &Blocks::contacts}, Block{"cracks", &Blocks::cracks},
                                      Block{"events", &Blocks::events}};
 
 /// The script by which ParaView shows a test.
 std::string script_of(const std::string& stem, const std::filesystem::path& folder) {
     std::string text = asset_paraview_py;
     const auto fill = [&](const std::string& mark, const std::string& value) {
-        for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + value.size())) text.replace(at, mark.size(), value);
+        for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + value.size()))
+            text.replace(at, mark.size(), value);
     };
     std::string quoted;
     for (const char c : folder.string()) quoted += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
@@ -309,7 +317,7 @@ TestFields fields_of(const TestResult& result) {
     fields.contacts = result.grain_contacts;
     fields.cracks = result.cracks;
     fields.snapshots = result.snapshots;
-    for (Snapshot& snapshot : fields.snapshots)   // an archive keeps seven digits of them
+    for (Snapshot& snapshot : fields.snapshots)  // an archive keeps seven digits of them
         for (std::vector<double>* stresses : {&snapshot.stress_xx_Pa, &snapshot.stress_yy_Pa, &snapshot.stress_xy_Pa})
             for (double& stress : *stresses) stress = static_cast<float>(stress);
     fields.mineral = result.texture.phase_of_grain;
@@ -324,7 +332,8 @@ TestFields fields_of(const TestResult& result) {
     fields.triangles = mesh.triangles;
     fields.grain.assign(mesh.triangles.size(), 0);
     for (std::size_t g = 0; g + 1 < mesh.triangle_begin.size(); ++g)
-        std::fill(fields.grain.begin() + mesh.triangle_begin[g], fields.grain.begin() + mesh.triangle_begin[g + 1], static_cast<int>(g));
+        std::fill(fields.grain.begin() + mesh.triangle_begin[g], fields.grain.begin() + mesh.triangle_begin[g + 1],
+                  static_cast<int>(g));
     return fields;
 }
 
@@ -333,13 +342,19 @@ void write_paraview(const RunDirectory& directory, const TestFields& fields, int
     const std::string& stem = fields.stem;
     const Blocks blocks(fields);
     const Times time = times(fields.snapshots);
-    const auto file = [&](const char* block, std::size_t n, const char* kind) { return fmt::format("{}-{:03}.{}", block, n, kind); };
+    const auto file = [&](const char* block, std::size_t n, const char* kind) {
+        return fmt::format("{}-{:03}.{}", block, n, kind);
+    };
     side_by_side(static_cast<int>(fields.snapshots.size()), threads, [&](int number) {
         const auto n = static_cast<std::size_t>(number);
         const Snapshot& snapshot = fields.snapshots[n];
         // numbers only: the label is free text, which an XML comment could not always hold
-        const std::string comment = fmt::format("snapshot {}, step {}, axial strain {}; {}", n, snapshot.step, snapshot.axial_strain, sign_convention);
-        std::string list = fmt::format("<?xml version=\"1.0\"?>\n<!-- {} -->\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" byte_order=\"LittleEndian\">\n<vtkMultiBlockDataSet>\n", comment);
+        const std::string comment =
+            fmt::format("snapshot {}, step {}, axial strain {}; {}", n, snapshot.step, snapshot.axial_strain, sign_convention);
+        std::string list = fmt::format(
+            "<?xml version=\"1.0\"?>\n<!-- {} -->\n<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" "
+            "byte_order=\"LittleEndian\">\n<vtkMultiBlockDataSet>\n",
+            comment);
         for (std::size_t b = 0; b < blocks_in_order.size(); ++b) {
             const Block& block = blocks_in_order[b];
             directory.write_text(stem + "/" + file(block.name, n, "vtu"), (blocks.*block.file)(snapshot, comment));
@@ -348,17 +363,21 @@ void write_paraview(const RunDirectory& directory, const TestFields& fields, int
         directory.write_text(stem + "/" + file("snapshot", n, "vtm"), list + "</vtkMultiBlockDataSet>\n</VTKFile>\n");
     });
     std::string collection = fmt::format(
-        "<?xml version=\"1.0\"?>\n<!-- feldspar fields for ParaView 2; {}. Blocks: grains, grain_edges, contacts (not broken; force > 0: compression), cracks (mode 0 tensile, 1 shear; "
+        "<?xml version=\"1.0\"?>\n<!-- feldspar fields for ParaView 2; {}. Blocks: grains, grain_edges, contacts (not broken; "
+        "force > 0: compression), cracks (mode 0 tensile, 1 shear; "
         "time = magnitude of the axial strain at the break), events (acoustic). timestep = {}. -->\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
         sign_convention, time.meaning);
     for (std::size_t n = 0; n < fields.snapshots.size(); ++n)
-        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}/{}\"/>\n", time.values[n], stem, file("snapshot", n, "vtm"));
+        collection += fmt::format("<DataSet timestep=\"{}\" group=\"\" part=\"0\" file=\"{}/{}\"/>\n", time.values[n], stem,
+                                  file("snapshot", n, "vtm"));
     directory.write_text(stem + ".pvd", collection + "</Collection>\n</VTKFile>\n");
     directory.write_text(stem + ".py", script_of(stem, std::filesystem::absolute(directory.path())));
-    std::error_code ignored;   // what an earlier export has left beyond these
-    for (std::size_t n = fields.snapshots.size(); std::filesystem::remove(directory.path() / stem / file("snapshot", n, "vtm"), ignored); ++n)
-        for (const Block& block : blocks_in_order) std::filesystem::remove(directory.path() / stem / file(block.name, n, "vtu"), ignored);
+    std::error_code ignored;  // what an earlier export has left beyond these
+    for (std::size_t n = fields.snapshots.size();
+         std::filesystem::remove(directory.path() / stem / file("snapshot", n, "vtm"), ignored); ++n)
+        for (const Block& block : blocks_in_order)
+            std::filesystem::remove(directory.path() / stem / file(block.name, n, "vtu"), ignored);
 }
 
 }  // namespace feldspar

@@ -13,13 +13,15 @@
 
 namespace feldspar {
 
-/// The version of an archive's contents. 1, without a number of its own: no contacts. 2: /contacts, and their damage and forces in snapshots.
+/// The version of an archive's contents. 1, without a number of its own: no contacts. 2: /contacts, and their damage and forces
+/// in snapshots.
 inline constexpr int archive_version = 2;
 
 /// The library is not made for several threads: whoever calls it holds this.
 std::mutex& hdf5_mutex();
 
-/// What the library would do at the end of the program is to write open files. There are none on disk; and after a failed call it can crash there. To be called before its first use.
+/// What the library would do at the end of the program is to write open files. There are none on disk; and after a failed call it
+/// can crash there. To be called before its first use.
 void hdf5_closes_nothing();
 
 /// The first description on HDF5's error stack: the cause.
@@ -42,7 +44,8 @@ inline bool memory_was_missing() {
         H5E_DEFAULT, H5E_WALK_UPWARD,
         [](unsigned, const H5E_error2_t* error, void* into) -> herr_t {
             const std::string_view words = error->desc != nullptr ? error->desc : "";
-            if (error->min_num == H5E_CANTALLOC || error->min_num == H5E_NOSPACE || words.find("alloc") != words.npos) *static_cast<bool*>(into) = true;
+            if (error->min_num == H5E_CANTALLOC || error->min_num == H5E_NOSPACE || words.find("alloc") != words.npos)
+                *static_cast<bool*>(into) = true;
             return 0;
         },
         &missing);

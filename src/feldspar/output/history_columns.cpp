@@ -60,13 +60,18 @@ std::span<const HistoryColumn> history_columns() { return columns; }
 
 GaugeUnit unit_of(const GaugeSpec& gauge) {
     switch (gauge.kind) {
-        case GaugeKind::displacement: return {"mm", 1e3};
-        case GaugeKind::force: return {"kN", 1e-3};
+        case GaugeKind::displacement:
+            return {"mm", 1e3};
+        case GaugeKind::force:
+            return {"kN", 1e-3};
         case GaugeKind::mean_stress:
-        case GaugeKind::hole_stress: return {"MPa", 1e-6};
-        case GaugeKind::energy: return {"J", 1.0};
+        case GaugeKind::hole_stress:
+            return {"MPa", 1e-6};
+        case GaugeKind::energy:
+            return {"J", 1.0};
         case GaugeKind::strain:
-        case GaugeKind::mean_strain: break;
+        case GaugeKind::mean_strain:
+            break;
     }
     return {"1", 1.0};
 }
@@ -75,18 +80,23 @@ std::vector<FileColumn> history_columns(const TestResult& result) {
     const bool strained_evenly = method_of(result.test).start.strained_evenly;
     std::vector<FileColumn> all;
     for (const HistoryColumn& column : columns)
-        if (strained_evenly || !std::string_view(column.name).ends_with("_gauge")) all.push_back({column.name, column.unit, column.meaning, column.whole, column.value});
+        if (strained_evenly || !std::string_view(column.name).ends_with("_gauge"))
+            all.push_back({column.name, column.unit, column.meaning, column.whole, column.value});
     for (FileColumn& column : all)
-        if (!strained_evenly && column.name == "axial_strain") column.meaning = "loading motion over the length of the test";
-        else if (!strained_evenly && column.name == "axial_stress_MPa") column.meaning = "load over the section of the test";
+        if (!strained_evenly && column.name == "axial_strain")
+            column.meaning = "loading motion over the length of the test";
+        else if (!strained_evenly && column.name == "axial_stress_MPa")
+            column.meaning = "load over the section of the test";
     for (std::size_t g = 0; g < result.gauges.size(); ++g) {
         const GaugeSpec& gauge = result.gauges[g];
         const GaugeUnit unit = unit_of(gauge);
         const std::string name = unit.name == std::string_view("1") ? gauge.name : gauge.name + "_" + unit.name;
-        all.push_back({name, unit.name, gauge.meaning, false, [g, unit](Row r) { return g < r.gauges.size() ? r.gauges[g] * unit.factor : 0.0; }});
+        all.push_back({name, unit.name, gauge.meaning, false,
+                       [g, unit](Row r) { return g < r.gauges.size() ? r.gauges[g] * unit.factor : 0.0; }});
     }
     if (!result.stages.empty())
-        all.push_back({"stage", "1", "number of the stage of loading, from 1; 0 before the first", true, [](Row r) { return static_cast<double>(r.stage); }});
+        all.push_back({"stage", "1", "number of the stage of loading, from 1; 0 before the first", true,
+                       [](Row r) { return static_cast<double>(r.stage); }});
     return all;
 }
 

@@ -29,7 +29,8 @@ struct FileColumn {
     std::function<double(const HistoryRow&)> value;
 };
 
-/// The columns of a test: all of the above, but for strains in the middle of a specimen that is not strained evenly, then those of its gauges.
+/// The columns of a test: all of the above, but for strains in the middle of a specimen that is not strained evenly, then those
+/// of its gauges.
 std::vector<FileColumn> history_columns(const TestResult& result);
 
 /// How a gauge's readings are given to users: "mm", "1" or "kN", and times what.

@@ -20,7 +20,8 @@ std::string header(const TestResult& result, const Provenance& provenance) {
     std::string text;
     auto line = std::back_inserter(text);
     fmt::format_to(line, "# history of {}, seed {}", test_name(result.test), result.seed);
-    if (tells_pressure(result.test)) fmt::format_to(line, ", {} {:.6g} MPa", pressure_key(method_of(result.test)), result.test.sigma3_Pa * MPa);
+    if (tells_pressure(result.test))
+        fmt::format_to(line, ", {} {:.6g} MPa", pressure_key(method_of(result.test)), result.test.sigma3_Pa * MPa);
     if (!result.variant.empty()) fmt::format_to(line, "\n# variant: {}", printable(result.variant, LineEnds::escaped));
     fmt::format_to(line, "\n# format: feldspar history 1\n# signs: {}\n", sign_convention);
     fmt::format_to(line, "# model: {} grains, contact {}, law {}, numerics {}, plane {}\n", name(result.model.kind),

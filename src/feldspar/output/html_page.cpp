@@ -72,9 +72,9 @@ void HtmlPage::fill(const std::string& mark, const std::string& text) {
 nlohmann::ordered_json with_methods(nlohmann::ordered_json data) {
     for (const MethodId id : test_methods()) {
         const TestMethod& method = method_of(id);
-        data["methods"][method.name] = {{"title", method.words.title}, {"sign", method.loading.sign}, {"strength", method.strength.name},
-                                        {"on_envelope", method.loading.on_envelope}, {"confined", method.specimen.confined},
-                                        {"pressure", pressure_symbol(method)}};
+        data["methods"][method.name] = {{"title", method.words.title},          {"sign", method.loading.sign},
+                                        {"strength", method.strength.name},     {"on_envelope", method.loading.on_envelope},
+                                        {"confined", method.specimen.confined}, {"pressure", pressure_symbol(method)}};
     }
     return data;
 }

@@ -73,8 +73,10 @@ Provenance collect_provenance(std::string command_line, int threads) {
 }
 
 nlohmann::ordered_json provenance_json(const Provenance& provenance) {
-    nlohmann::ordered_json json{{"version", provenance.version}, {"commit", provenance.commit},   {"machine", provenance.machine},           {"compiler", provenance.compiler},
-                                {"started", provenance.started}, {"threads", provenance.threads}, {"command_line", provenance.command_line}};
+    nlohmann::ordered_json json{{"version", provenance.version},          {"commit", provenance.commit},
+                                {"machine", provenance.machine},          {"compiler", provenance.compiler},
+                                {"started", provenance.started},          {"threads", provenance.threads},
+                                {"command_line", provenance.command_line}};
     if (!provenance.device.empty()) json["device"] = provenance.device;
     return json;
 }

@@ -52,7 +52,8 @@ void require_length(std::size_t found, std::size_t wanted, const char* what) {
 
 void require_below(const std::vector<int>& values, std::size_t end, const char* what) {
     for (const int value : values)
-        if (value < 0 || static_cast<std::size_t>(value) >= end) throw OutputError(fmt::format("{} {} does not exist", what, value));
+        if (value < 0 || static_cast<std::size_t>(value) >= end)
+            throw OutputError(fmt::format("{} {} does not exist", what, value));
 }
 
 void read_mesh(hid_t root, TestFields& fields) {
@@ -61,7 +62,8 @@ void read_mesh(hid_t root, TestFields& fields) {
     fields.nodes = points(group, "nodes");
     const std::vector<int> corners = numbers<int>(group, "triangles");
     require_below(corners, fields.nodes.size(), "node");
-    for (std::size_t i = 0; i + 2 < corners.size(); i += 3) fields.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+        fields.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
     fields.grain = numbers<int>(group, "grain");
     require_length(fields.grain.size(), fields.triangles.size(), "grain");
     require_below(fields.grain, fields.triangles.size(), "grain");
@@ -71,7 +73,7 @@ void read_mesh(hid_t root, TestFields& fields) {
 }
 
 void read_contacts(hid_t root, TestFields& fields) {
-    if (!there(root, "contacts")) return;   // of version 1
+    if (!there(root, "contacts")) return;  // of version 1
     const Handle group(H5Gopen2(root, "contacts", H5P_DEFAULT), H5Gclose);
     const std::vector<int> a = numbers<int>(group, "grain_a"), b = numbers<int>(group, "grain_b");
     const std::vector<Vec2> from = points(group, "from"), to = points(group, "to");
@@ -82,10 +84,12 @@ void read_contacts(hid_t root, TestFields& fields) {
 void read_cracks(hid_t root, TestFields& fields) {
     const Handle group(H5Gopen2(root, "cracks", H5P_DEFAULT), H5Gclose);
     const auto step = numbers<std::int64_t>(group, "step");
-    const auto strain = numbers<double>(group, "axial_strain"), stress = numbers<double>(group, "axial_stress"), energy = numbers<double>(group, "energy");
+    const auto strain = numbers<double>(group, "axial_strain"), stress = numbers<double>(group, "axial_stress"),
+               energy = numbers<double>(group, "energy");
     const auto mode = numbers<int>(group, "mode"), a = numbers<int>(group, "grain_a"), b = numbers<int>(group, "grain_b");
     const auto place = points(group, "place"), from = points(group, "from"), to = points(group, "to");
-    for (const std::size_t length : {strain.size(), stress.size(), energy.size(), mode.size(), a.size(), b.size(), place.size(), from.size(), to.size()})
+    for (const std::size_t length :
+         {strain.size(), stress.size(), energy.size(), mode.size(), a.size(), b.size(), place.size(), from.size(), to.size()})
         require_length(length, step.size(), "cracks");
     for (std::size_t c = 0; c < step.size(); ++c) {
         Crack crack;
@@ -108,7 +112,8 @@ void read_events(hid_t root, TestFields& fields) {
     const Handle group(H5Gopen2(root, "events", H5P_DEFAULT), H5Gclose);
     for (const EventColumn& column : event_columns())
         if (there(group, column.name)) fields.events.push_back({column.name, numbers<double>(group, column.name)});
-    for (const EventValues& column : fields.events) require_length(column.values.size(), fields.events.front().values.size(), "events");
+    for (const EventValues& column : fields.events)
+        require_length(column.values.size(), fields.events.front().values.size(), "events");
 }
 
 Snapshot read_snapshot(hid_t group, const TestFields& fields) {
@@ -157,7 +162,7 @@ void read_snapshots(hid_t root, TestFields& fields) {
         const Handle group(H5Gopen2(all, name.c_str(), H5P_DEFAULT), H5Gclose);
         fields.snapshots.push_back(read_snapshot(group, fields));
     }
-    std::ranges::stable_sort(fields.snapshots, {}, &Snapshot::step);   // names have three digits
+    std::ranges::stable_sort(fields.snapshots, {}, &Snapshot::step);  // names have three digits
 }
 
 }  // namespace
@@ -182,10 +187,13 @@ TestFields read_archive(const std::filesystem::path& file) {
             read_snapshots(root, fields);
         }
     } catch (const OutputError& problem) {
-        throw InputError(place, fmt::format("cannot be read as the archive of a test: {}", problem.what()), "a .h5 file that 'feldspar run' has written");
+        throw InputError(place, fmt::format("cannot be read as the archive of a test: {}", problem.what()),
+                         "a .h5 file that 'feldspar run' has written");
     }
     if (version > archive_version)
-        throw InputError(place, fmt::format("has version {} of the format, which a later version of this program has written", version), fmt::format("versions 1 to {}", archive_version));
+        throw InputError(place,
+                         fmt::format("has version {} of the format, which a later version of this program has written", version),
+                         fmt::format("versions 1 to {}", archive_version));
     return fields;
 }
 

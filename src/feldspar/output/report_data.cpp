@@ -45,10 +45,12 @@ std::vector<std::size_t> kept_rows(const TestResult& result, std::size_t tests) 
     const auto peak = static_cast<std::size_t>(std::ranges::max_element(history, higher) - history.begin());
     const std::size_t strength = strength_row(result);
     const auto dip = method_of(result.test).reading == Reading::disc ? first_dip(result) : std::nullopt;
-    std::vector<std::size_t> turns;   // where stages begin and end
+    std::vector<std::size_t> turns;  // where stages begin and end
     for (const StageRecord& stage : result.stages) turns.push_back(stage.last_row);
     for (std::size_t r = 0; r < history.size(); ++r) {
-        if (std::ranges::binary_search(turns, r) || r % stride == 0 || r == peak || r == strength || (dip && r == dip->row) || r + 1 == history.size()) kept.push_back(r);
+        if (std::ranges::binary_search(turns, r) || r % stride == 0 || r == peak || r == strength || (dip && r == dip->row) ||
+            r + 1 == history.size())
+            kept.push_back(r);
     }
     return kept;
 }
@@ -71,7 +73,8 @@ Json history_json(const TestResult& result, std::size_t tests) {
     column("tensile", [](Row r) { return r.cracks_tensile; });
     column("shear", [](Row r) { return r.cracks_shear; });
     column("speed", [](Row r) { return r.platen_speed; });
-    // Without the loading motion: its kinetic energy is put in and taken out again where the rate changes, joules at once that do no work on the rock.
+    // Without the loading motion: its kinetic energy is put in and taken out again where the rate changes, joules at once that do
+    // no work on the rock.
     const auto of_loading_motion = [](Row r) { return r.energy.kinetic - r.kinetic_deviation; };
     column("supplied", [&](Row r) { return r.energy.supplied() - of_loading_motion(r); });
     column("grains", [](Row r) { return r.energy.elastic_grains; });
@@ -97,8 +100,10 @@ void add(Json& json, const TestResult& result, QuantityGroup group) {
         if (quantity.group != group || quantity.report == TestQuantity::absent) continue;
         const double value = quantity.value(result);
         Json& entry = json[quantity.report_name()];
-        if (quantity.place.form == QuantityForm::yes_no) entry = value == 1.0;
-        else entry = rounded(value * quantity.unit.factor);
+        if (quantity.place.form == QuantityForm::yes_no)
+            entry = value == 1.0;
+        else
+            entry = rounded(value * quantity.unit.factor);
     }
 }
 
@@ -140,7 +145,8 @@ Json cycles_json(const TestResult& result) {
 Json multi_stage_json(const TestResult& result) {
     const MultiStageProperties& p = result.properties.multi_stage;
     Json json, points = Json::array();
-    for (std::size_t i = 0; i < p.sigma3_Pa.size(); ++i) points.push_back({rounded(p.sigma3_Pa[i] * MPa), rounded(p.reversal_Pa[i] * MPa), rounded(p.strength_Pa[i] * MPa)});
+    for (std::size_t i = 0; i < p.sigma3_Pa.size(); ++i)
+        points.push_back({rounded(p.sigma3_Pa[i] * MPa), rounded(p.reversal_Pa[i] * MPa), rounded(p.strength_Pa[i] * MPa)});
     json["points"] = points;
     add(json, result, QuantityGroup::multi_stage);
     return json;
@@ -152,8 +158,10 @@ std::string title_of(const TestSpec& test) { return test.custom.name.empty() ? m
 /// What stands at the axes of a test's charts, without units.
 Json axes_json(const TestResult& result) {
     const MethodWords& words = method_of(result.test).words;
-    const bool flattened = method_of(result.test).reading == Reading::disc && std::isfinite(result.properties.brazilian.flat_coefficient);
-    if (flattened) return {{"stress", std::string("k ") + words.stress}, {"strain", "Approach of the plates / distance of the flats"}};
+    const bool flattened =
+        method_of(result.test).reading == Reading::disc && std::isfinite(result.properties.brazilian.flat_coefficient);
+    if (flattened)
+        return {{"stress", std::string("k ") + words.stress}, {"strain", "Approach of the plates / distance of the flats"}};
     return {{"stress", words.stress}, {"strain", words.strain}};
 }
 
@@ -169,7 +177,11 @@ Json gauges_json(const TestResult& result, std::size_t tests) {
             values.push_back(g < row.gauges.size() ? rounded(row.gauges[g] * unit.factor) : Json(nullptr));
             load.push_back(rounded(row.axial_stress_Pa * result.section_m2 * 1e-3));
         }
-        list.push_back({{"name", result.gauges[g].name}, {"unit", unit.name}, {"meaning", result.gauges[g].meaning}, {"values", values}, {"load", load}});
+        list.push_back({{"name", result.gauges[g].name},
+                        {"unit", unit.name},
+                        {"meaning", result.gauges[g].meaning},
+                        {"values", values},
+                        {"load", load}});
     }
     return list;
 }
@@ -179,11 +191,13 @@ Json properties_json(const TestResult& result) {
     Json list = Json::array();
     for (const MethodProperty& property : method_of(result.test).properties)
         if (const double value = test_quantity(property.name).value(result); std::isfinite(value))
-            list.push_back({{"label", property.label}, {"value", rounded(value * property.unit.factor)}, {"unit", property.unit.user}});
+            list.push_back(
+                {{"label", property.label}, {"value", rounded(value * property.unit.factor)}, {"unit", property.unit.user}});
     return list;
 }
 
-/// Acoustic emission with what its charts show: events over the axial strain, before the strength and behind it, and how many have a magnitude of at least M.
+/// Acoustic emission with what its charts show: events over the axial strain, before the strength and behind it, and how many
+/// have a magnitude of at least M.
 Json emission_json(const TestResult& result) {
     Json json = acoustic_emission_json(result);
     if (json.is_null()) return json;
@@ -205,9 +219,11 @@ Json emission_json(const TestResult& result) {
     json["magnitudes"] = Json::array();
     if (magnitudes.empty()) return json;
     constexpr double step = 0.1;
-    for (auto m = static_cast<long long>(std::floor(magnitudes.front() / step)); step * static_cast<double>(m) <= magnitudes.back(); ++m) {
+    for (auto m = static_cast<long long>(std::floor(magnitudes.front() / step));
+         step * static_cast<double>(m) <= magnitudes.back(); ++m) {
         const double magnitude = step * static_cast<double>(m);
-        json["magnitudes"].push_back({rounded(magnitude), magnitudes.end() - std::ranges::lower_bound(magnitudes, magnitude - 1e-9)});
+        json["magnitudes"].push_back(
+            {rounded(magnitude), magnitudes.end() - std::ranges::lower_bound(magnitudes, magnitude - 1e-9)});
     }
     return json;
 }
@@ -241,13 +257,14 @@ Json test_json(const TestResult& result, std::size_t tests) {
     if (has_texture(result)) test["rock"] = texture_json(result);
     test["emission"] = emission_json(result);
     test["crack_initiation"] = rounded(result.properties.sigma_ci_crack_volume_Pa * MPa);
-    for (const QuantityGroup group : {QuantityGroup::damage, QuantityGroup::cracks, QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence,
-                                      QuantityGroup::balance})
+    for (const QuantityGroup group : {QuantityGroup::damage, QuantityGroup::cracks, QuantityGroup::steps, QuantityGroup::cost,
+                                      QuantityGroup::evidence, QuantityGroup::balance})
         add(test, result, group);
     test["grade"] = std::string(1, result.evidence.grade);
     test["verdict"] = result.evidence.verdict;
     add(test, result, QuantityGroup::repeats);
-    if (const FailureMode mode = failure_mode(result); !mode.name.empty()) test["failure"] = {{"name", mode.name}, {"words", mode.words}};
+    if (const FailureMode mode = failure_mode(result); !mode.name.empty())
+        test["failure"] = {{"name", mode.name}, {"words", mode.words}};
     test["stop_reason"] = result.stop_reason;
     test["interrupted"] = result.interrupted;
     test["history"] = history_json(result, tests);
@@ -273,18 +290,21 @@ std::vector<std::pair<std::string, double>> laboratory(const Job& job) {
 }
 
 /// How many of the tests that a property is read from have each grade. @param variant  whose tests; empty if the job has none
-Json grades_json(std::string_view kept_name, const RockProperty& property, std::span<const TestResult> results, const std::string& variant) {
+Json grades_json(std::string_view kept_name, const RockProperty& property, std::span<const TestResult> results,
+                 const std::string& variant) {
     const std::optional<double> pressure_MPa = pressure_of_confined_strength_MPa(kept_name);
     int grades[3] = {};
     for (const TestResult& result : results) {
         const bool other_pressure = pressure_MPa && std::abs(result.test.sigma3_Pa * MPa - *pressure_MPa) > 1e-6 * *pressure_MPa;
-        if (result.variant == variant && property.tests.contains(result.test.kind) && !other_pressure) ++grades[std::clamp(result.evidence.grade - 'A', 0, 2)];
+        if (result.variant == variant && property.tests.contains(result.test.kind) && !other_pressure)
+            ++grades[std::clamp(result.evidence.grade - 'A', 0, 2)];
     }
     return {{"A", grades[0]}, {"B", grades[1]}, {"C", grades[2]}};
 }
 
 /// @param results  the tests that they are read from, among others
-Json properties_json(const Job& job, const PropertySummary& properties, std::span<const TestResult> results, const std::string& variant = "") {
+Json properties_json(const Job& job, const PropertySummary& properties, std::span<const TestResult> results,
+                     const std::string& variant = "") {
     struct Row {
         UserQuantity quantity;
         std::string_view kept_name;
@@ -353,10 +373,13 @@ Json shear_envelope_json(const PropertySummary& properties) {
 
 Json specimens_json(std::span<const TestResult> results) {
     // whose specimens they are: the job's first, then discs that tests cut, then what tests bring
-    const auto owner = [](const TestResult& r) { return method_of(r.test).specimen.own_disc ? title_of(r.test) : r.test.specimen ? title_of(r.test) : ""; };
+    const auto owner = [](const TestResult& r) {
+        return method_of(r.test).specimen.own_disc ? title_of(r.test) : r.test.specimen ? title_of(r.test) : "";
+    };
     std::vector<std::pair<std::string, const TestResult*>> found;
     for (const TestResult& r : results)
-        if (r.specimen && std::ranges::none_of(found, [&](const auto& one) { return one.first == owner(r); })) found.emplace_back(owner(r), &r);
+        if (r.specimen && std::ranges::none_of(found, [&](const auto& one) { return one.first == owner(r); }))
+            found.emplace_back(owner(r), &r);
     std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first.empty() ? 0 : 1; });
     Json list = Json::array();
     for (const auto& [of, result] : found) {
@@ -367,11 +390,16 @@ Json specimens_json(std::span<const TestResult> results) {
             shape = fmt::format("rectangle, {:.6g} x {:.6g} mm", outline.width_m * 1e3, outline.height_m * 1e3);
         if (outline.shape == Shape::disc) shape = fmt::format("disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
         if (outline.shape == Shape::half_disc) shape = fmt::format("half disc, diameter {:.6g} mm", outline.diameter_m * 1e3);
-        if (outline.shape == Shape::ring) shape = fmt::format("ring, diameters {:.6g} and {:.6g} mm", outline.diameter_m * 1e3, outline.hole_diameter_m * 1e3);
+        if (outline.shape == Shape::ring)
+            shape = fmt::format("ring, diameters {:.6g} and {:.6g} mm", outline.diameter_m * 1e3, outline.hole_diameter_m * 1e3);
         if (!outline.holes.empty()) shape += ", " + counted(outline.holes.size(), "hole");
-        if (!outline.notches.empty()) shape += fmt::format(", {} {}", outline.notches.size(), outline.notches.size() == 1 ? "notch" : "notches");
-        if (specimen.outline.flattened()) shape += fmt::format(", two flats of {:.4g} degrees", in_degrees(outline.flat_angle_rad));
-        list.push_back({{"for", !of.empty() ? of : found.size() > 1 ? "all other tests" : "all tests"},
+        if (!outline.notches.empty())
+            shape += fmt::format(", {} {}", outline.notches.size(), outline.notches.size() == 1 ? "notch" : "notches");
+        if (specimen.outline.flattened())
+            shape += fmt::format(", two flats of {:.4g} degrees", in_degrees(outline.flat_angle_rad));
+        list.push_back({{"for", !of.empty()        ? of
+                                : found.size() > 1 ? "all other tests"
+                                                   : "all tests"},
                         {"shape", shape},
                         {"thickness", rounded(specimen.spec.thickness_m * 1e3)},
                         {"grains", specimen.quality.grains},
@@ -451,9 +479,13 @@ Json report_data(const Job& job, std::span<const TestResult> results, const Prop
     for (const TestResult& result : results) data["tests"].push_back(test_json(result, results.size()));
     data["failed"] = Json::array();
     for (const FailedTest& test : failed)
-        data["failed"].push_back({{"variant", test.variant}, {"kind", name(test.test.kind)}, {"title", title_of(test.test)},
-                                  {"pressure", pressure_symbol(method_of(test.test))}, {"seed", test.seed},
-                                  {"sigma3", rounded(test.test.sigma3_Pa * MPa)}, {"reason", test.reason}});
+        data["failed"].push_back({{"variant", test.variant},
+                                  {"kind", name(test.test.kind)},
+                                  {"title", title_of(test.test)},
+                                  {"pressure", pressure_symbol(method_of(test.test))},
+                                  {"seed", test.seed},
+                                  {"sigma3", rounded(test.test.sigma3_Pa * MPa)},
+                                  {"reason", test.reason}});
     data["provenance"] = provenance_json(provenance);
     return data;
 }

@@ -11,8 +11,8 @@
 
 namespace feldspar {
 
-/// Everything but the fields: job, properties, envelope, tests with thinned histories, failed tests, provenance. User units, compression
-/// positive, null where a value is not defined.
+/// Everything but the fields: job, properties, envelope, tests with thinned histories, failed tests, provenance. User units,
+/// compression positive, null where a value is not defined.
 nlohmann::ordered_json report_data(const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
                                    const Provenance& provenance, bool complete, std::span<const FailedTest> failed);
 
@@ -22,9 +22,10 @@ struct ReportFields {             // NOLINT(bugprone-exception-escape): moving t
     std::string block;            ///< zlib-compressed, base64
 };
 
-/// Of each kind (and sigma_3) the fields of the packings with the median, the smallest and the largest strength, as many as fit into `budget_B` characters; of a job with
-/// variants those of the first packing of each variant and kind. A test that does not fit into its share as a whole keeps fewer moments: first crack, peak and end at last, or
-/// its end alone; one that does not fit then either is left out.
+/// Of each kind (and sigma_3) the fields of the packings with the median, the smallest and the largest strength, as many as fit
+/// into `budget_B` characters; of a job with variants those of the first packing of each variant and kind. A test that does not
+/// fit into its share as a whole keeps fewer moments: first crack, peak and end at last, or its end alone; one that does not fit
+/// then either is left out.
 std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B);
 
 /// The cracks of every test over the grains of its packing, one block a packing: for patterns side by side.

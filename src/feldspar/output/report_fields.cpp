@@ -47,7 +47,9 @@ struct Limits {
     double low = 0.0, high = 0.0;
     std::uint8_t level(double value) const {
         const double share = high > low ? (value - low) / (high - low) : 0.0;
-        return static_cast<std::uint8_t>(5 * std::lround(51.0 * std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0)));   // in steps of 5: finer ones are not seen, and take half of the room
+        return static_cast<std::uint8_t>(
+            5 * std::lround(51.0 * std::clamp(std::isfinite(share) ? share : 0.0, 0.0,
+                                              1.0)));  // in steps of 5: finer ones are not seen, and take half of the room
     }
 };
 
@@ -100,7 +102,8 @@ void add_texture(Block& block, Json& meta, const TestResult& result) {
     const TextureSummary& texture = result.texture;
     if (!texture.phase_of_grain.empty()) {
         block.add("phase", "uint8", std::vector<std::uint8_t>(texture.phase_of_grain.begin(), texture.phase_of_grain.end()));
-        for (const Mineral& mineral : result.rock.minerals.phases) meta["minerals"].push_back({{"name", mineral.name}, {"colour", fmt::format("#{:06x}", mineral.colour)}});
+        for (const Mineral& mineral : result.rock.minerals.phases)
+            meta["minerals"].push_back({{"name", mineral.name}, {"colour", fmt::format("#{:06x}", mineral.colour)}});
     }
     if (!result.specimen->crystal_of_cell.empty()) block.add("crystal", "int32", result.specimen->crystal_of_cell);
     if (texture.joint_edges.empty()) return;
@@ -132,7 +135,8 @@ void add_cracks(Block& block, const TestResult& result) {
 double add_displacement(Block& block, const std::string& part, const std::vector<Vec2>& displacement_m) {
     double largest = 0.0;
     for (const Vec2 u : displacement_m) largest = std::max({largest, std::abs(u.x), std::abs(u.y)});
-    const double scale = largest > 0.0 && std::isfinite(largest) ? largest / 8191.0 : 1.0;   // finer steps would fill the page with noise
+    const double scale =
+        largest > 0.0 && std::isfinite(largest) ? largest / 8191.0 : 1.0;  // finer steps would fill the page with noise
     std::vector<std::int16_t> steps;
     steps.reserve(2 * displacement_m.size());
     for (const bool y : {false, true}) {
@@ -181,7 +185,8 @@ ReportFields fields_of(const TestResult& result, std::size_t test, const std::ve
         block.add("damage" + n, "uint8", damage);
         block.add("sigma1_" + n, "uint8", levels(stresses[i].sigma1_MPa, limits_1));
         block.add("sigma3_" + n, "uint8", levels(stresses[i].sigma3_MPa, limits_3));
-        if (!result.specimen->cells.cells.empty()) block.add("fragment" + n, "int32", fragments(*result.specimen, result.cracks, snapshot.cracks));
+        if (!result.specimen->cells.cells.empty())
+            block.add("fragment" + n, "int32", fragments(*result.specimen, result.cracks, snapshot.cracks));
         snapshots.push_back({{"label", snapshot.label},
                              {"strain", rounded(snapshot.axial_strain * 1e3)},
                              {"stress", rounded(snapshot.axial_stress_Pa * MPa)},
@@ -207,7 +212,8 @@ bool can_be_drawn(const TestResult& result) {
     });
 }
 
-/// Snapshots to keep: all; or every other one beside those with a name of their own; or first crack, peak and end; or the end alone.
+/// Snapshots to keep: all; or every other one beside those with a name of their own; or first crack, peak and end; or the end
+/// alone.
 std::array<std::vector<std::size_t>, 4> moments_of(const TestResult& result) {
     std::vector<std::size_t> all, some, few;
     int loads = 0;
@@ -224,11 +230,12 @@ std::array<std::vector<std::size_t>, 4> moments_of(const TestResult& result) {
 /// A test whose fields are to be kept.
 struct Candidate {
     std::size_t group = 0, result = 0;
-    const char* role = "";   ///< among the packings of its group
-    double weight = 1.0;     ///< of what it may take
+    const char* role = "";  ///< among the packings of its group
+    double weight = 1.0;    ///< of what it may take
 };
 
-/// The tests that say most: of each variant, kind and pressure the packing of the median strength, the weakest and the strongest. Variants are there to be compared: each has its first packing.
+/// The tests that say most: of each variant, kind and pressure the packing of the median strength, the weakest and the strongest.
+/// Variants are there to be compared: each has its first packing.
 std::vector<Candidate> candidates(std::span<const TestResult> results) {
     using Group = std::tuple<std::string, MethodId, double>;  // variant, kind, sigma_3
     std::vector<std::pair<Group, std::vector<std::size_t>>> groups;
@@ -255,8 +262,10 @@ std::vector<Candidate> candidates(std::span<const TestResult> results) {
         };
         std::ranges::stable_sort(tests, {}, strength);
         const std::size_t middle = (tests.size() - 1) / 2;
-        if (tests.size() == 2) list.push_back({g, tests[0], "weakest", of_the_median});
-        else list.push_back({g, tests[middle], "median", of_the_median});
+        if (tests.size() == 2)
+            list.push_back({g, tests[0], "weakest", of_the_median});
+        else
+            list.push_back({g, tests[middle], "median", of_the_median});
         if (tests.size() > 2) list.push_back({g, tests.front(), "weakest"});
         list.push_back({g, tests.back(), "strongest"});
     }
@@ -291,8 +300,8 @@ std::vector<ReportFields> report_fields(std::span<const TestResult> results, std
     std::ranges::stable_sort(tests, std::greater<>(), &Candidate::weight);
     double weights = 0.0;
     for (const Candidate& test : tests) weights += test.weight;
-    std::vector<std::pair<std::size_t, ReportFields>> list;   // with the group
-    for (const Candidate& test : tests) {   // each passes on what it does not need
+    std::vector<std::pair<std::size_t, ReportFields>> list;  // with the group
+    for (const Candidate& test : tests) {                    // each passes on what it does not need
         const auto share = static_cast<std::size_t>(static_cast<double>(budget_B) * std::min(1.0, test.weight / weights));
         weights -= test.weight;
         for (const auto& chosen : moments_of(results[test.result])) {

@@ -20,8 +20,9 @@ std::string script_block(const std::string& id, const std::string& text) {
 
 }  // namespace
 
-void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
-                  const Provenance& provenance, bool complete, std::span<const FailedTest> failed) {
+void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                  const PropertySummary& properties, const Provenance& provenance, bool complete,
+                  std::span<const FailedTest> failed) {
     nlohmann::ordered_json data = report_data(job, results, properties, provenance, complete, failed);
     std::string blocks;
     data["patterns"] = nlohmann::ordered_json::array();

@@ -9,9 +9,9 @@
 #include <span>
 #include <string>
 
+#include "feldspar/job/job.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/methods/result.hpp"
-#include "feldspar/job/job.hpp"
 
 namespace feldspar {
 
@@ -24,7 +24,7 @@ struct Provenance {
     std::string started;  ///< ISO 8601, UTC
     std::string command_line;
     int threads = 1;
-    std::string device;   ///< the card that made the steps; empty: the processor did
+    std::string device;  ///< the card that made the steps; empty: the processor did
 };
 
 Provenance collect_provenance(std::string command_line, int threads);
@@ -48,8 +48,8 @@ public:
     const std::filesystem::path& path() const { return path_; }
 
     /// Writes `name` through `fill(temporary path)`, then renames it into place. @throws OutputError; on failure the
-    /// temporary file is gone and an earlier version of `name` is untouched. Several programs may write the same file at once: each
-    /// version is whole, and the last one stays.
+    /// temporary file is gone and an earlier version of `name` is untouched. Several programs may write the same file at once:
+    /// each version is whole, and the last one stays.
     void write(const std::string& name, const std::function<void(const std::filesystem::path&)>& fill) const;
 
     /// The same for text that is already in memory.
@@ -69,10 +69,10 @@ std::string test_stem(const std::string& variant, const TestSpec& test, std::uin
 
 /// A test that ended without a result.
 struct FailedTest {
-    std::string variant;   ///< its name; empty where the job has none
+    std::string variant;  ///< its name; empty where the job has none
     TestSpec test;
     std::uint64_t seed = 0;
-    std::string reason;    ///< in words
+    std::string reason;  ///< in words
 };
 
 /// history-<stem>.csv: units and sign convention in the header.
@@ -81,15 +81,18 @@ void write_history_csv(const RunDirectory& directory, const TestResult& result, 
 /// events-<stem>.csv: the acoustic events of a test; no file without cracks.
 void write_events_csv(const RunDirectory& directory, const TestResult& result);
 
-/// <stem>.h5: history, cracks, acoustic events, mesh, contacts and fields at the snapshots, with provenance. May be called on any thread, but one archive is made after the other.
+/// <stem>.h5: history, cracks, acoustic events, mesh, contacts and fields at the snapshots, with provenance. May be called on any
+/// thread, but one archive is made after the other.
 void write_hdf5(const RunDirectory& directory, const TestResult& result, const Job& job, const Provenance& provenance);
 
 /// summary.json: rewritten after each test, so that an interrupted run leaves what it had.
-void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
-                   const Provenance& provenance, bool complete, std::span<const FailedTest> failed = {});
+void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                   const PropertySummary& properties, const Provenance& provenance, bool complete,
+                   std::span<const FailedTest> failed = {});
 
 /// report.html: self-contained, opens from disk with no network.
-void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
-                  const Provenance& provenance, bool complete, std::span<const FailedTest> failed = {});
+void write_report(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                  const PropertySummary& properties, const Provenance& provenance, bool complete,
+                  std::span<const FailedTest> failed = {});
 
 }  // namespace feldspar

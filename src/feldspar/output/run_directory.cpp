@@ -49,19 +49,20 @@ std::string machine() {
 /// Of the system: nothing that is computed may depend on it.
 unsigned unforeseen_number() {
     unsigned number = 0;
-    return ::getrandom(&number, sizeof number, GRND_NONBLOCK) == sizeof number ? number / 2 : 0;   // so that counting on does not begin anew
+    return ::getrandom(&number, sizeof number, GRND_NONBLOCK) == sizeof number ? number / 2
+                                                                               : 0;  // so that counting on does not begin anew
 }
 
-/// Where a file is written before it is renamed to `path`: ".summary.json.4711-2-machine.part". Process, counter and machine keep programs and
-/// threads that write the same file at once apart; the last one to rename its own wins.
+/// Where a file is written before it is renamed to `path`: ".summary.json.4711-2-machine.part". Process, counter and machine keep
+/// programs and threads that write the same file at once apart; the last one to rename its own wins.
 fs::path aside_of(const fs::path& path) {
-    static std::atomic<unsigned> counter{unforeseen_number()};   // so that nobody can put a link there beforehand
+    static std::atomic<unsigned> counter{unforeseen_number()};  // so that nobody can put a link there beforehand
     return path.parent_path() / fmt::format(".{}.{}-{}-{}.part", path.filename().string(), ::getpid(), ++counter, machine());
 }
 
 /// What the name of a file that is written aside says.
 struct Aside {
-    std::string file;   ///< its final name
+    std::string file;  ///< its final name
     pid_t process = 0;
     std::string machine;
 };
@@ -73,7 +74,8 @@ std::optional<Aside> read_aside(const std::string& name) {
     return Aside{match[1], static_cast<pid_t>(std::stol(match[2])), match[3]};
 }
 
-/// Whether nobody writes it any more: its process is gone. One of another machine cannot be asked for: there it has not grown for a day.
+/// Whether nobody writes it any more: its process is gone. One of another machine cannot be asked for: there it has not grown for
+/// a day.
 bool left_behind(const fs::path& path) {
     const std::optional<Aside> aside = read_aside(path.filename().string());
     if (!aside) return false;
@@ -84,7 +86,8 @@ bool left_behind(const fs::path& path) {
 }
 
 [[noreturn]] void lost(fs::path path, const std::string& why) {
-    if (const auto aside = read_aside(path.filename().string())) path = path.parent_path() / aside->file;   // the user knows the file by its final name
+    if (const auto aside = read_aside(path.filename().string()))
+        path = path.parent_path() / aside->file;  // the user knows the file by its final name
     throw OutputError(fmt::format("cannot write '{}': {}", path.string(), why));
 }
 
@@ -183,7 +186,8 @@ std::string file_name_of(const std::string& job_name) {
 
 const fs::path results_directory = "results";
 
-/// An empty file that was not there before. Its writers open it by its name: in a directory that others may write to, a link in its place would lead them anywhere.
+/// An empty file that was not there before. Its writers open it by its name: in a directory that others may write to, a link in
+/// its place would lead them anywhere.
 void make_new(const fs::path& path) {
     Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.number() < 0) lost(path, reason(errno));
@@ -269,7 +273,8 @@ RunDirectory RunDirectory::open(fs::path path) {
 
 namespace {
 
-void write_whole(const fs::path& directory, const std::string& name, const std::function<void(const fs::path&)>& fill, bool may_be_empty) {
+void write_whole(const fs::path& directory, const std::string& name, const std::function<void(const fs::path&)>& fill,
+                 bool may_be_empty) {
     const fs::path path = directory / name;
     const fs::path aside = aside_of(path);
     const HoldFileSizeSignal hold;
@@ -294,10 +299,13 @@ void write_whole(const fs::path& directory, const std::string& name, const std::
 
 }  // namespace
 
-void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const { write_whole(path_, name, fill, false); }
+void RunDirectory::write(const std::string& name, const std::function<void(const fs::path&)>& fill) const {
+    write_whole(path_, name, fill, false);
+}
 
 void RunDirectory::write_text(const std::string& name, const std::string& text) const {
-    write_whole(path_, name, [&](const fs::path& aside) { write_bytes(aside, text); }, true);
+    write_whole(
+        path_, name, [&](const fs::path& aside) { write_bytes(aside, text); }, true);
 }
 
 }  // namespace feldspar

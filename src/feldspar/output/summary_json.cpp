@@ -30,13 +30,19 @@ Json in_MPa(double value_Pa) { return number(value_Pa * MPa); }
 void add(Json& json, const TestResult& result, QuantityGroup group) {
     for (const TestQuantity& quantity : test_quantities()) {
         if (quantity.group != group || quantity.summary == TestQuantity::absent) continue;
-        if (group == QuantityGroup::of_method && !quantity.tests.contains(result.test.kind)) continue;   // another method's
+        if (group == QuantityGroup::of_method && !quantity.tests.contains(result.test.kind)) continue;  // another method's
         const double value = quantity.value(result);
         Json& entry = json[quantity.summary_name()];
         switch (quantity.place.form) {
-            case QuantityForm::real: entry = number(value * quantity.unit.factor); break;
-            case QuantityForm::whole: entry = static_cast<long long>(value); break;
-            case QuantityForm::yes_no: entry = value == 1.0; break;
+            case QuantityForm::real:
+                entry = number(value * quantity.unit.factor);
+                break;
+            case QuantityForm::whole:
+                entry = static_cast<long long>(value);
+                break;
+            case QuantityForm::yes_no:
+                entry = value == 1.0;
+                break;
         }
     }
 }
@@ -55,7 +61,9 @@ Json files_json(const RunDirectory& directory, const std::string& stem) {
     return files;
 }
 
-std::string control_of(const TestSpec& test) { return test.control == LoadControl::gauge ? test.control_gauge : name(test.control); }
+std::string control_of(const TestSpec& test) {
+    return test.control == LoadControl::gauge ? test.control_gauge : name(test.control);
+}
 
 /// What each stage was, and why it ended.
 Json stages_json(const TestResult& result) {
@@ -106,7 +114,9 @@ Json multi_stage_json(const TestResult& result) {
     const MultiStageProperties& p = result.properties.multi_stage;
     Json json, points = Json::array();
     for (std::size_t i = 0; i < p.sigma3_Pa.size(); ++i)
-        points.push_back({{"sigma3_MPa", in_MPa(p.sigma3_Pa[i])}, {"reversal_MPa", in_MPa(p.reversal_Pa[i])}, {"strength_MPa", in_MPa(p.strength_Pa[i])},
+        points.push_back({{"sigma3_MPa", in_MPa(p.sigma3_Pa[i])},
+                          {"reversal_MPa", in_MPa(p.reversal_Pa[i])},
+                          {"strength_MPa", in_MPa(p.strength_Pa[i])},
                           {"measured", i + 1 == p.sigma3_Pa.size()}});
     json["pressures"] = points;
     add(json, result, QuantityGroup::multi_stage);
@@ -116,11 +126,15 @@ Json multi_stage_json(const TestResult& result) {
 /// What the gauges read at the largest stress and at the end.
 Json gauges_json(const TestResult& result) {
     Json json = Json::object();
-    const auto peak = std::ranges::max_element(result.history, {}, [&](const HistoryRow& row) { return method_of(result.test).loading.sign * row.axial_stress_Pa; });
+    const auto peak = std::ranges::max_element(
+        result.history, {}, [&](const HistoryRow& row) { return method_of(result.test).loading.sign * row.axial_stress_Pa; });
     for (std::size_t g = 0; g < result.gauges.size(); ++g) {
         const GaugeUnit unit = unit_of(result.gauges[g]);
-        const auto at = [&](const HistoryRow& row) { return g < row.gauges.size() ? number(row.gauges[g] * unit.factor) : Json(nullptr); };
-        json[result.gauges[g].name] = {{"unit", unit.name}, {"at_peak", peak == result.history.end() ? Json(nullptr) : at(*peak)},
+        const auto at = [&](const HistoryRow& row) {
+            return g < row.gauges.size() ? number(row.gauges[g] * unit.factor) : Json(nullptr);
+        };
+        json[result.gauges[g].name] = {{"unit", unit.name},
+                                       {"at_peak", peak == result.history.end() ? Json(nullptr) : at(*peak)},
                                        {"at_end", result.history.empty() ? Json(nullptr) : at(result.history.back())}};
     }
     return json;
@@ -133,7 +147,10 @@ Json odd_json(const TestResult& result) {
     if (why.empty()) return json;
     const NearestToFailure& n = result.nearest;
     json["why"] = why;
-    json["nearest_to_failure"] = {{"share_of_strength", number(n.share)}, {"mode", n.in_tension ? "tension" : "shear"}, {"damage", n.damage}, {"place_mm", {n.place.x * 1e3, n.place.y * 1e3}}};
+    json["nearest_to_failure"] = {{"share_of_strength", number(n.share)},
+                                  {"mode", n.in_tension ? "tension" : "shear"},
+                                  {"damage", n.damage},
+                                  {"place_mm", {n.place.x * 1e3, n.place.y * 1e3}}};
     json["softening_length_over_grain"] = number(softening_over_grain(result));
     return json;
 }
@@ -178,9 +195,12 @@ Json test_json(const RunDirectory& directory, const TestResult& result) {
     if (reading == Reading::column && method_of(result.test).build.stages != nullptr) add(test, result, QuantityGroup::cycles);
     if (reading == Reading::stages) test["multi_stage"] = multi_stage_json(result);
     if (!result.gauges.empty()) test["gauges"] = gauges_json(result);
-    if (method_of(result.test).start.strained_evenly && reading != Reading::hole)   // else there is no such modulus, and no threshold
-        for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage}) add(test, result, group);
-    for (const QuantityGroup group : {QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
+    if (method_of(result.test).start.strained_evenly &&
+        reading != Reading::hole)  // else there is no such modulus, and no threshold
+        for (const QuantityGroup group : {QuantityGroup::elastic, QuantityGroup::initiation, QuantityGroup::damage})
+            add(test, result, group);
+    for (const QuantityGroup group :
+         {QuantityGroup::steps, QuantityGroup::cost, QuantityGroup::evidence, QuantityGroup::cracks, QuantityGroup::balance})
         add(test, result, group);
     test["quasi_static"] = std::string(1, result.evidence.grade);
     test["verdict"] = result.evidence.verdict;
@@ -201,13 +221,16 @@ Json failed_json(const FailedTest& failed) {
     test["name"] = test_stem(failed.variant, failed.test, failed.seed);
     test["kind"] = name(failed.test.kind);
     test["seed"] = failed.seed;
-    if (const TestMethod& method = method_of(failed.test); *pressure_symbol(method) != 0) test[pressure_key(method) + std::string("_MPa")] = in_MPa(failed.test.sigma3_Pa);
+    if (const TestMethod& method = method_of(failed.test); *pressure_symbol(method) != 0)
+        test[pressure_key(method) + std::string("_MPa")] = in_MPa(failed.test.sigma3_Pa);
     test["reason"] = failed.reason;
     return test;
 }
 
 Json sizes_json(const SizeSummary& sizes) {
-    return {{"mean", number(sizes.mean_m * 1e3)}, {"minimum", number(sizes.minimum_m * 1e3)}, {"maximum", number(sizes.maximum_m * 1e3)},
+    return {{"mean", number(sizes.mean_m * 1e3)},
+            {"minimum", number(sizes.minimum_m * 1e3)},
+            {"maximum", number(sizes.maximum_m * 1e3)},
             {"D50", number(sizes.D50_m * 1e3)}};
 }
 
@@ -233,7 +256,12 @@ Json specimen_json(const Specimen& specimen) {
                  {"area_error", number(q.area_error)},
                  {"warnings", q.warnings}};
     if (specimen.spec.given_cells.given())
-        json["given_cells"] = {{"file", specimen.spec.given_cells.file.filename().string()}, {"welded", q.welded}, {"inserted", q.inserted}, {"moved", q.moved}, {"concave", q.concave}, {"joined_pieces", q.joined_pieces}};
+        json["given_cells"] = {{"file", specimen.spec.given_cells.file.filename().string()},
+                               {"welded", q.welded},
+                               {"inserted", q.inserted},
+                               {"moved", q.moved},
+                               {"concave", q.concave},
+                               {"joined_pieces", q.joined_pieces}};
     if (q.crossings > 0) json["crossing_cuts"] = {{"crossings", q.crossings}, {"joined_pieces", q.joined_pieces}};
     return json;
 }
@@ -332,8 +360,9 @@ Json variants_json(const Job& job, std::span<const TestResult> results) {
 
 }  // namespace
 
-void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results, const PropertySummary& properties,
-                   const Provenance& provenance, bool complete, std::span<const FailedTest> failed) {
+void write_summary(const RunDirectory& directory, const Job& job, std::span<const TestResult> results,
+                   const PropertySummary& properties, const Provenance& provenance, bool complete,
+                   std::span<const FailedTest> failed) {
     Json summary;
     summary["format"] = "feldspar summary";
     summary["format_version"] = 1;
@@ -342,14 +371,18 @@ void write_summary(const RunDirectory& directory, const Job& job, std::span<cons
     summary["complete"] = complete;
     summary["signs"] = sign_convention;
     summary["seeds"] = job.seeds;
-    add_specimens(summary, "specimen", results, [](const TestResult& r) { return !method_of(r.test).specimen.own_disc && !r.test.specimen; });
-    add_specimens(summary, "brazilian_specimen", results, [](const TestResult& r) { return method_of(r.test).specimen.own_disc; });
-    for (const TestResult& result : results)   // what tests have brought themselves, by their names
+    add_specimens(summary, "specimen", results,
+                  [](const TestResult& r) { return !method_of(r.test).specimen.own_disc && !r.test.specimen; });
+    add_specimens(summary, "brazilian_specimen", results,
+                  [](const TestResult& r) { return method_of(r.test).specimen.own_disc; });
+    for (const TestResult& result : results)  // what tests have brought themselves, by their names
         if (result.test.specimen && !method_of(result.test).specimen.own_disc) {
             const std::string name = test_name(result.test);
-            add_specimens(summary["test_specimens"], name, results, [&](const TestResult& r) { return test_name(r.test) == name; });
+            add_specimens(summary["test_specimens"], name, results,
+                          [&](const TestResult& r) { return test_name(r.test) == name; });
         }
-    if (!summary.contains("specimen") && summary.contains("test_specimens")) summary["specimen"] = summary["test_specimens"].front();
+    if (!summary.contains("specimen") && summary.contains("test_specimens"))
+        summary["specimen"] = summary["test_specimens"].front();
     // a run of Brazilian tests only has one kind of specimen
     if (!summary.contains("specimen") && summary.contains("brazilian_specimen"))
         summary["specimen"] = summary["brazilian_specimen"];

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-
 #include "feldspar/base/angle.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 
@@ -13,7 +12,10 @@ UserQuantity user_quantity(const std::string& property) {
     UserQuantity quantity;
     quantity.name = quantity.label = quantity.symbol = property;
     const RockProperty* known = kept_rock_property(property);
-    const QuantityUnit unit = known != nullptr ? known->unit : property.ends_with("_Pa") ? units::stress : property.ends_with("_deg") ? units::angle : units::pure;
+    const QuantityUnit unit = known != nullptr             ? known->unit
+                              : property.ends_with("_Pa")  ? units::stress
+                              : property.ends_with("_deg") ? units::angle
+                                                           : units::pure;
     quantity.factor = unit.factor;
     quantity.unit = unit.user;
     if (!unit.kept.empty()) quantity.name = unit.user_name(property.substr(0, property.size() - unit.kept.size() - 1));

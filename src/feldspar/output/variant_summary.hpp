@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "feldspar/job/job.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/methods/result.hpp"
-#include "feldspar/job/job.hpp"
 
 namespace feldspar {
 

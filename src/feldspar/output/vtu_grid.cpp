@@ -39,7 +39,8 @@ void append_number(std::string& bytes, std::uint64_t number) {
 /// zlib's compress2() with a strategy. @throws OutputError
 std::string packed(std::string_view block, int strategy) {
     z_stream stream{};
-    if (deflateInit2(&stream, level, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy) != Z_OK) throw OutputError("zlib could not begin");
+    if (deflateInit2(&stream, level, Z_DEFLATED, MAX_WBITS, MAX_MEM_LEVEL, strategy) != Z_OK)
+        throw OutputError("zlib could not begin");
     std::string bytes(deflateBound(&stream, static_cast<uLong>(block.size())), '\0');
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(block.data()));  // zlib reads only
     stream.avail_in = static_cast<uInt>(block.size());
@@ -87,7 +88,8 @@ std::string VtuGrid::array(const std::string& name, std::span<const Number> valu
     std::string xml = fmt::format(R"(<DataArray type="{}" Name="{}" NumberOfComponents="{}" format="appended" offset="{}"/>)"
                                   "\n",
                                   vtk_type<Number>(), name, components, appended_.size());
-    const bool alone = components == 1 && never_repeats(values);  // coordinates and displacements share bytes with their neighbours
+    const bool alone =
+        components == 1 && never_repeats(values);  // coordinates and displacements share bytes with their neighbours
     appended_ += vtk_compressed({reinterpret_cast<const char*>(values.data()), values.size_bytes()},
                                 alone ? Repeats::not_searched : Repeats::searched);
     return xml;

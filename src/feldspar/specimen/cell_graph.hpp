@@ -19,7 +19,9 @@ enum VertexPlace : int {
 constexpr int outline_label(int edge) { return -1 - edge; }
 
 /// An edge from one vertex to another, as one number.
-constexpr std::uint64_t dart(int from, int to) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32 | static_cast<std::uint32_t>(to); }
+constexpr std::uint64_t dart(int from, int to) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(from)) << 32 | static_cast<std::uint32_t>(to);
+}
 
 /// A closed chain of edges, counter-clockwise, of one cell: the cell itself, or a piece of it in a non-convex outline.
 struct Face {

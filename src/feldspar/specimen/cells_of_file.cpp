@@ -1,5 +1,7 @@
 #include "feldspar/specimen/cells_of_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -11,8 +13,6 @@
 #include <optional>
 #include <set>
 
-#include <fmt/format.h>
-
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/plain_text.hpp"
 
@@ -20,17 +20,21 @@ namespace feldspar {
 namespace {
 
 constexpr std::size_t largest_file = std::size_t{1} << 30;
-constexpr long long most_things = 50'000'000;   // of one kind in a file; beyond it a count is damaged
+constexpr long long most_things = 50'000'000;  // of one kind in a file; beyond it a count is damaged
 
 // Other programs write a plus sign, too.
-std::optional<double> signed_number(std::string_view word) { return finite_number(word.starts_with('+') ? word.substr(1) : word); }
+std::optional<double> signed_number(std::string_view word) {
+    return finite_number(word.starts_with('+') ? word.substr(1) : word);
+}
 
 /// The words of a text, one after the other, each with its line.
 class Words {
 public:
     Words(std::string_view text, const std::filesystem::path& file) : text_(text), file_(file.string()) {}
 
-    [[noreturn]] void fail(int line, const std::string& problem, const std::string& allowed = {}) const { throw InputError({file_, line, line > 0 ? 1 : 0, {}}, problem, allowed); }
+    [[noreturn]] void fail(int line, const std::string& problem, const std::string& allowed = {}) const {
+        throw InputError({file_, line, line > 0 ? 1 : 0, {}}, problem, allowed);
+    }
     [[noreturn]] void fail(const std::string& problem, const std::string& allowed = {}) const { fail(line_, problem, allowed); }
 
     /// The next word, which stays to be read; empty at the end.
@@ -69,19 +73,24 @@ public:
     /// A count, from `least` on.
     long long count(std::string_view what, long long least = 0) {
         const long long value = whole(what);
-        if (value < least || value > most_things) fail(fmt::format("{} is no count", value), fmt::format("{}, from {} to {}", what, least, most_things));
+        if (value < least || value > most_things)
+            fail(fmt::format("{} is no count", value), fmt::format("{}, from {} to {}", what, least, most_things));
         return value;
     }
     /// A number of something, from 1 to `last`.
     int index(std::string_view what, std::size_t last) {
         const long long value = whole(what);
-        if (value < 1 || value > static_cast<long long>(last)) fail(fmt::format("there is no {} {}", what, value), last == 0 ? fmt::format("the file has no {}", what) : fmt::format("from 1 to {}", last));
+        if (value < 1 || value > static_cast<long long>(last))
+            fail(fmt::format("there is no {} {}", what, value),
+                 last == 0 ? fmt::format("the file has no {}", what) : fmt::format("from 1 to {}", last));
         return static_cast<int>(value);
     }
     /// The number that must stand here, as things are numbered one after the other.
     void numbered(std::string_view what, long long number) {
         const long long value = whole(what);
-        if (value != number) fail(fmt::format("{} {} stands where number {} should be", what, value, number), "numbers from 1 on, one after the other");
+        if (value != number)
+            fail(fmt::format("{} {} stands where number {} should be", what, value, number),
+                 "numbers from 1 on, one after the other");
     }
     /// The rest of the line.
     void skip_line() {
@@ -112,7 +121,9 @@ public:
         line_ = line;
     }
     void require(const Words& words) const {
-        if (std::abs(worst_) > 1e-6 * extent_) words.fail(line_, fmt::format("a point lies at z = {:g}, outside the plane", worst_), "points with z = 0: Feldspar is two-dimensional");
+        if (std::abs(worst_) > 1e-6 * extent_)
+            words.fail(line_, fmt::format("a point lies at z = {:g}, outside the plane", worst_),
+                       "points with z = 0: Feldspar is two-dimensional");
     }
 
 private:
@@ -130,7 +141,8 @@ public:
         if (words_.peek() != "***tess") {
             const std::string first(words_.next("***tess"));
             const bool raster = first == "***tesr";
-            words_.fail(raster ? "is a raster tessellation" : fmt::format("begins with '{}': this is no tessellation file of Neper", Words::clipped(first)),
+            words_.fail(raster ? "is a raster tessellation"
+                               : fmt::format("begins with '{}': this is no tessellation file of Neper", Words::clipped(first)),
                         raster ? "a tessellation with vertices and edges (***tess)" : "***tess");
         }
         words_.next("***tess");
@@ -138,8 +150,11 @@ public:
         for (;;) {
             const std::string section(words_.next("***end"));
             if (section == "***end") break;
-            if (!section.starts_with("**") || section.starts_with("***")) words_.fail(fmt::format("'{}' stands where a section should begin", Words::clipped(section)), "**format, **general, **cell, **vertex, **edge, **face, **domain, ... or ***end");
-            if (!seen.insert(section).second) words_.fail(fmt::format("the section {} is there twice", Words::clipped(section)), "each section once");
+            if (!section.starts_with("**") || section.starts_with("***"))
+                words_.fail(fmt::format("'{}' stands where a section should begin", Words::clipped(section)),
+                            "**format, **general, **cell, **vertex, **edge, **face, **domain, ... or ***end");
+            if (!seen.insert(section).second)
+                words_.fail(fmt::format("the section {} is there twice", Words::clipped(section)), "each section once");
             read_section(section);
         }
         if (!words_.peek().empty()) {
@@ -147,9 +162,13 @@ public:
             words_.fail("something stands behind ***end", "nothing");
         }
         for (const char* needed : {"**general", "**cell", "**vertex", "**edge", "**face"})
-            if (!seen.contains(needed)) words_.fail(0, fmt::format("the section {} is missing", needed), "**format, **general, **cell, **vertex, **edge and **face");
+            if (!seen.contains(needed))
+                words_.fail(0, fmt::format("the section {} is missing", needed),
+                            "**format, **general, **cell, **vertex, **edge and **face");
         plane_.require(words_);
-        if (faces_.size() != static_cast<std::size_t>(cells_)) words_.fail(face_count_line_, fmt::format("{} faces for {} cells", faces_.size(), cells_), "as many faces as cells: in two dimensions each cell is a face");
+        if (faces_.size() != static_cast<std::size_t>(cells_))
+            words_.fail(face_count_line_, fmt::format("{} faces for {} cells", faces_.size(), cells_),
+                        "as many faces as cells: in two dimensions each cell is a face");
         check_faces();
         if (!skipped_.empty()) {
             std::string list;
@@ -160,21 +179,27 @@ public:
     }
 
 private:
-    struct Edge { int a, b; };
+    struct Edge {
+        int a, b;
+    };
     struct FaceOfFile {
         int line = 0;
-        std::vector<int> vertices;      // from 1 on
-        std::vector<long long> edges;   // signed
+        std::vector<int> vertices;     // from 1 on
+        std::vector<long long> edges;  // signed
     };
 
     void read_section(const std::string& section) {
         if (section == "**format") {
             const std::string_view version = words_.next("a version such as 3.5");
             if (!version.starts_with("2.") && !version.starts_with("3.") && version != "2" && version != "3")
-                words_.fail(fmt::format("version '{}' of the format is not known", Words::clipped(version)), "versions 2.0 to 3.5");
+                words_.fail(fmt::format("version '{}' of the format is not known", Words::clipped(version)),
+                            "versions 2.0 to 3.5");
         } else if (section == "**general") {
             const long long dimension = words_.whole("the dimension");
-            if (dimension == 3) words_.fail("the tessellation is three-dimensional: Feldspar breaks rock in the plane", "a tessellation of dimension 2 (neper -T -dim 2, or a slice of this one: neper -T -loadtess ... -transform slice)");
+            if (dimension == 3)
+                words_.fail("the tessellation is three-dimensional: Feldspar breaks rock in the plane",
+                            "a tessellation of dimension 2 (neper -T -dim 2, or a slice of this one: neper -T -loadtess ... "
+                            "-transform slice)");
             if (dimension != 2) words_.fail(fmt::format("the tessellation has the dimension {}", dimension), "2");
             words_.next("the type, 'standard'");
         } else if (section == "**cell") {
@@ -199,16 +224,19 @@ private:
             }
         } else if (section == "**face") {
             read_faces();
-        } else if (section == "**domain" || section == "**periodicity" || section == "**periodic" || section == "**scale" || section == "**polyhedron") {
+        } else if (section == "**domain" || section == "**periodicity" || section == "**periodic" || section == "**scale" ||
+                   section == "**polyhedron") {
             while (!words_.peek().starts_with("**")) words_.next("***end");
         } else {
-            words_.fail(fmt::format("the section '{}' is not known", Words::clipped(section)), "**format, **general, **cell, **vertex, **edge, **face, **domain, **periodic, **scale");
+            words_.fail(fmt::format("the section '{}' is not known", Words::clipped(section)),
+                        "**format, **general, **cell, **vertex, **edge, **face, **domain, **periodic, **scale");
         }
     }
 
     void read_cells() {
         cells_ = words_.count("a number of cells", 1);
-        static const std::set<std::string_view> known{"*id", "*seed", "*ori", "*orispread", "*orispreadtheta", "*weight", "*lam", "*lamid", "*mode", "*modeid", "*group", "*crysym"};
+        static const std::set<std::string_view> known{"*id",  "*seed",  "*ori",  "*orispread", "*orispreadtheta", "*weight",
+                                                      "*lam", "*lamid", "*mode", "*modeid",    "*group",          "*crysym"};
         while (words_.peek().starts_with('*') && !words_.peek().starts_with("**")) {
             const std::string field(words_.next("a field of **cell"));
             if (field == "*id") {
@@ -231,7 +259,8 @@ private:
             if (corners < 3) words_.fail(fmt::format("face {} has {} vertices", i, corners), "three or more");
             for (long long k = 0; k < corners; ++k) face.vertices.push_back(static_cast<int>(words_.count("a vertex of a face")));
             const long long edges = words_.count("a number of edges of a face");
-            if (edges != corners) words_.fail(fmt::format("face {} has {} edges for {} vertices", i, edges, corners), "as many edges as vertices");
+            if (edges != corners)
+                words_.fail(fmt::format("face {} has {} edges for {} vertices", i, edges, corners), "as many edges as vertices");
             for (long long k = 0; k < edges; ++k) face.edges.push_back(words_.whole("an edge of a face"));
             for (int k = 0; k < 4; ++k) words_.number("the equation of a face");
             words_.whole("the state of a face");
@@ -246,19 +275,30 @@ private:
         const long long vertices = std::ssize(result_.vertices), edges = std::ssize(edges_);
         for (std::size_t e = 0; e < edges_.size(); ++e)
             for (const int v : {edges_[e].a, edges_[e].b})
-                if (v < 1 || v > vertices) words_.fail(edge_lines_[e], fmt::format("edge {} names vertex {}, which is not there", e + 1, v), fmt::format("vertices 1 to {}", vertices));
+                if (v < 1 || v > vertices)
+                    words_.fail(edge_lines_[e], fmt::format("edge {} names vertex {}, which is not there", e + 1, v),
+                                fmt::format("vertices 1 to {}", vertices));
         for (std::size_t f = 0; f < faces_.size(); ++f) {
             const FaceOfFile& face = faces_[f];
             for (const int v : face.vertices)
-                if (v < 1 || v > vertices) words_.fail(face.line, fmt::format("face {} names vertex {}, which is not there", f + 1, v), fmt::format("vertices 1 to {}", vertices));
+                if (v < 1 || v > vertices)
+                    words_.fail(face.line, fmt::format("face {} names vertex {}, which is not there", f + 1, v),
+                                fmt::format("vertices 1 to {}", vertices));
             std::set<std::pair<int, int>> sides;
-            for (std::size_t k = 0; k < face.vertices.size(); ++k) sides.insert(std::minmax(face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]));
+            for (std::size_t k = 0; k < face.vertices.size(); ++k)
+                sides.insert(std::minmax(face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]));
             for (const long long signed_edge : face.edges) {
                 const long long e = std::abs(std::max(signed_edge, -most_things - 1));
-                if (e < 1 || e > edges) words_.fail(face.line, fmt::format("face {} names edge {}, which is not there", f + 1, e), fmt::format("edges 1 to {}", edges));
+                if (e < 1 || e > edges)
+                    words_.fail(face.line, fmt::format("face {} names edge {}, which is not there", f + 1, e),
+                                fmt::format("edges 1 to {}", edges));
                 const Edge& edge = edges_[e - 1];
                 if (!sides.contains(std::minmax(edge.a, edge.b)))
-                    words_.fail(face.line, fmt::format("edge {} of face {} joins vertices {} and {}, which do not follow each other in the face", e, f + 1, edge.a, edge.b), "the edges of the face");
+                    words_.fail(
+                        face.line,
+                        fmt::format("edge {} of face {} joins vertices {} and {}, which do not follow each other in the face", e,
+                                    f + 1, edge.a, edge.b),
+                        "the edges of the face");
             }
             CellsOfFile::Cell cell;
             cell.name = names_.empty() ? std::to_string(f + 1) : names_[f];
@@ -291,23 +331,34 @@ public:
         std::set<std::string, std::less<>> seen;
         while (!words_.peek().empty()) {
             const std::string section(words_.next("a section"));
-            if (!section.starts_with('$') || section.starts_with("$End")) words_.fail(fmt::format("'{}' stands where a section should begin", Words::clipped(section)), "$MeshFormat, $Entities, $Nodes, $Elements, ...");
-            if (section != "$MeshFormat" && !seen.contains("$MeshFormat")) words_.fail(fmt::format("{} stands before $MeshFormat", Words::clipped(section)), "$MeshFormat at the beginning");
-            if (!seen.insert(section).second && (section == "$Nodes" || section == "$Elements" || section == "$Entities" || section == "$MeshFormat"))
+            if (!section.starts_with('$') || section.starts_with("$End"))
+                words_.fail(fmt::format("'{}' stands where a section should begin", Words::clipped(section)),
+                            "$MeshFormat, $Entities, $Nodes, $Elements, ...");
+            if (section != "$MeshFormat" && !seen.contains("$MeshFormat"))
+                words_.fail(fmt::format("{} stands before $MeshFormat", Words::clipped(section)), "$MeshFormat at the beginning");
+            if (!seen.insert(section).second &&
+                (section == "$Nodes" || section == "$Elements" || section == "$Entities" || section == "$MeshFormat"))
                 words_.fail(fmt::format("the section {} is there twice", section), "each section once");
             const std::string end = "$End" + section.substr(1);
-            if (section == "$MeshFormat") read_format();
-            else if (section == "$Entities" && version4_) read_entities();
-            else if (section == "$Nodes") read_nodes();
-            else if (section == "$Elements") read_elements();
+            if (section == "$MeshFormat")
+                read_format();
+            else if (section == "$Entities" && version4_)
+                read_entities();
+            else if (section == "$Nodes")
+                read_nodes();
+            else if (section == "$Elements")
+                read_elements();
             else
                 while (words_.peek() != end) words_.next(end);
-            if (words_.next(end) != end) words_.fail(fmt::format("the section {} does not end where its counts say", section), end);
+            if (words_.next(end) != end)
+                words_.fail(fmt::format("the section {} does not end where its counts say", section), end);
         }
         for (const char* needed : {"$Nodes", "$Elements"})
-            if (!seen.contains(needed)) words_.fail(0, fmt::format("the section {} is missing", needed), "$MeshFormat, $Nodes and $Elements");
+            if (!seen.contains(needed))
+                words_.fail(0, fmt::format("the section {} is missing", needed), "$MeshFormat, $Nodes and $Elements");
         plane_.require(words_);
-        if (elements_.empty()) words_.fail(0, "has no triangles and quadrangles", "a mesh of surfaces: save it with its elements of dimension 2");
+        if (elements_.empty())
+            words_.fail(0, "has no triangles and quadrangles", "a mesh of surfaces: save it with its elements of dimension 2");
         gather();
         return std::move(result_);
     }
@@ -327,7 +378,8 @@ private:
         if (type != 0) words_.fail("is a binary mesh", "a mesh saved as text (gmsh: Mesh.Binary = 0, or save as ASCII)");
         version4_ = version == "4.1";
         if (!version4_ && version != "2.2" && version != "2" && version != "2.0" && version != "2.1")
-            words_.fail(fmt::format("version {} of the format is not read", Words::clipped(version)), "4.1 or 2.2 (gmsh -format msh41 or msh22)");
+            words_.fail(fmt::format("version {} of the format is not read", Words::clipped(version)),
+                        "4.1 or 2.2 (gmsh -format msh41 or msh22)");
     }
 
     void read_entities() {
@@ -352,7 +404,8 @@ private:
     void add_node(long long tag, int line, Vec2 at, double z) {
         plane_.take(at, z, line);
         if (tag < 0) words_.fail(line, fmt::format("a node has the number {}", tag), "a number from 1 on");
-        if (!node_of_tag_.emplace(tag, static_cast<int>(result_.vertices.size())).second) words_.fail(line, fmt::format("node {} is there twice", tag), "each node once");
+        if (!node_of_tag_.emplace(tag, static_cast<int>(result_.vertices.size())).second)
+            words_.fail(line, fmt::format("node {} is there twice", tag), "each node once");
         result_.vertices.push_back(at);
     }
 
@@ -378,15 +431,20 @@ private:
             for (long long i = 0; i < n; ++i) tags.push_back(words_.whole("the tag of a node"));
             for (const long long tag : tags) {
                 point(tag);
-                for (long long k = 0; parametric == 1 && k < std::clamp<long long>(dimension, 0, 3); ++k) words_.number("a parameter of a node");
+                for (long long k = 0; parametric == 1 && k < std::clamp<long long>(dimension, 0, 3); ++k)
+                    words_.number("a parameter of a node");
             }
         }
-        if (std::ssize(result_.vertices) != all) words_.fail(fmt::format("{} nodes in the blocks, but {} are announced", result_.vertices.size(), all), "the same number");
+        if (std::ssize(result_.vertices) != all)
+            words_.fail(fmt::format("{} nodes in the blocks, but {} are announced", result_.vertices.size(), all),
+                        "the same number");
     }
 
     // Nodes of an element of this type; 0: not known.
     static int nodes_of(long long type) {
-        static const std::map<long long, int> counts{{1, 2}, {2, 3}, {3, 4}, {4, 4}, {5, 8}, {6, 6}, {7, 5}, {8, 3}, {9, 6}, {10, 9}, {11, 10}, {15, 1}, {16, 8}, {20, 9}, {21, 10}, {26, 4}, {27, 5}, {28, 6}};
+        static const std::map<long long, int> counts{{1, 2},  {2, 3},  {3, 4},   {4, 4},  {5, 8},   {6, 6},
+                                                     {7, 5},  {8, 3},  {9, 6},   {10, 9}, {11, 10}, {15, 1},
+                                                     {16, 8}, {20, 9}, {21, 10}, {26, 4}, {27, 5},  {28, 6}};
         const auto found = counts.find(type);
         return found == counts.end() ? 0 : found->second;
     }
@@ -395,16 +453,20 @@ private:
         static const std::string allowed = "triangles and quadrangles of first order (types 2 and 3)";
         const int count = nodes_of(type);
         if (count == 0) words_.fail(line, fmt::format("an element has the type {}", type), allowed);
-        if (type == 4 || type == 5 || type == 6 || type == 7 || type == 11) words_.fail(line, "the mesh has solid elements: Feldspar breaks rock in the plane", allowed);
-        if (type == 9 || type == 10 || type == 16 || type == 20 || type == 21) words_.fail(line, "the mesh has surface elements of higher order", allowed);
+        if (type == 4 || type == 5 || type == 6 || type == 7 || type == 11)
+            words_.fail(line, "the mesh has solid elements: Feldspar breaks rock in the plane", allowed);
+        if (type == 9 || type == 10 || type == 16 || type == 20 || type == 21)
+            words_.fail(line, "the mesh has surface elements of higher order", allowed);
         Element element{line, physical, elementary, {}, 0};
         for (int k = 0; k < count; ++k) {
             const long long tag = words_.whole("a node of an element");
             const auto found = node_of_tag_.find(tag);
-            if (found == node_of_tag_.end()) words_.fail(fmt::format("an element names node {}, which is not there", tag), "nodes of $Nodes, which stand before $Elements");
+            if (found == node_of_tag_.end())
+                words_.fail(fmt::format("an element names node {}, which is not there", tag),
+                            "nodes of $Nodes, which stand before $Elements");
             if (count == 3 || count == 4) element.nodes[k] = found->second;
         }
-        if (type != 2 && type != 3) return;   // points and lines mark boundaries
+        if (type != 2 && type != 3) return;  // points and lines mark boundaries
         element.count = count;
         elements_.push_back(element);
     }
@@ -438,7 +500,8 @@ private:
         long long read = 0;
         for (long long b = 0; b < blocks; ++b) {
             words_.whole("a dimension");
-            const long long tag = words_.whole("the tag of an entity"), type = words_.whole("the type of elements"), n = words_.count("a number of elements");
+            const long long tag = words_.whole("the tag of an entity"), type = words_.whole("the type of elements"),
+                            n = words_.count("a number of elements");
             const auto found = physical_of_surface_.find(tag);
             for (long long i = 0; i < n; ++i) {
                 words_.whole("the tag of an element");
@@ -446,7 +509,8 @@ private:
                 ++read;
             }
         }
-        if (read != all) words_.fail(fmt::format("{} elements in the blocks, but {} are announced", read, all), "the same number");
+        if (read != all)
+            words_.fail(fmt::format("{} elements in the blocks, but {} are announced", read, all), "the same number");
     }
 
     /// Which tags are the grains; then the polygon of each.
@@ -462,22 +526,27 @@ private:
 
     double twice_area(const Element& e) const {
         double sum = 0.0;
-        for (int k = 0; k < e.count; ++k) sum += cross(result_.vertices[e.nodes[k]], result_.vertices[static_cast<std::size_t>(e.nodes[static_cast<std::size_t>((k + 1) % e.count)])]);
+        for (int k = 0; k < e.count; ++k)
+            sum += cross(result_.vertices[e.nodes[k]],
+                         result_.vertices[static_cast<std::size_t>(e.nodes[static_cast<std::size_t>((k + 1) % e.count)])]);
         return sum;
     }
 
     CellsOfFile::Cell polygon_of(int tag, const std::vector<const Element*>& elements) const {
-        std::map<std::pair<int, int>, int> darts;   // directed sides, each counter-clockwise around its element: how often
+        std::map<std::pair<int, int>, int> darts;  // directed sides, each counter-clockwise around its element: how often
         for (const Element* element : elements) {
             const bool turned = twice_area(*element) < 0.0;
             for (int k = 0; k < element->count; ++k) {
                 int a = element->nodes[k], b = element->nodes[static_cast<std::size_t>((k + 1) % element->count)];
                 if (turned) std::swap(a, b);
-                if (a == b) words_.fail(element->line, fmt::format("an element of surface {} names a node twice", tag), "different nodes");
+                if (a == b)
+                    words_.fail(element->line, fmt::format("an element of surface {} names a node twice", tag),
+                                "different nodes");
                 if (const auto other = darts.find({b, a}); other != darts.end()) {
                     darts.erase(other);
                 } else if (!darts.emplace(std::pair{a, b}, element->line).second) {
-                    words_.fail(element->line, fmt::format("elements of surface {} lie on each other", tag), "elements side by side");
+                    words_.fail(element->line, fmt::format("elements of surface {} lie on each other", tag),
+                                "elements side by side");
                 }
             }
         }
@@ -485,7 +554,9 @@ private:
         const int line = elements.front()->line;
         const auto place = [&](int v) { return fmt::format("({:.9g}, {:.9g})", result_.vertices[v].x, result_.vertices[v].y); };
         for (const auto& [side, at] : darts)
-            if (!after.emplace(side.first, side.second).second) words_.fail(at, fmt::format("surface {} hangs together by a point only, at {}", tag, place(side.first)), "a surface of its own for each grain");
+            if (!after.emplace(side.first, side.second).second)
+                words_.fail(at, fmt::format("surface {} hangs together by a point only, at {}", tag, place(side.first)),
+                            "a surface of its own for each grain");
         if (after.empty()) words_.fail(line, fmt::format("surface {} has no boundary", tag), "elements side by side");
         CellsOfFile::Cell cell{std::to_string(tag), line, {}};
         const int first = after.begin()->first;
@@ -498,7 +569,10 @@ private:
             int other = first;
             for (const auto& [from, to] : after)
                 if (std::find(cell.corners.begin(), cell.corners.end(), from) == cell.corners.end()) other = from;
-            words_.fail(line, fmt::format("surface {} is not one grain: its boundary has parts at {} and {}", tag, place(first), place(other)), "surfaces without holes, in one piece each");
+            words_.fail(
+                line,
+                fmt::format("surface {} is not one grain: its boundary has parts at {} and {}", tag, place(first), place(other)),
+                "surfaces without holes, in one piece each");
         }
         remove_straight(cell.corners);
         return cell;
@@ -509,9 +583,10 @@ private:
         const auto at = [&](int v) { return result_.vertices[v]; };
         const auto straight = [&](int a, int v, int b) {
             const Vec2 along = at(b) - at(a), to = at(v) - at(a);
-            return dot(to, along) > 0.0 && dot(at(b) - at(v), along) > 0.0 && std::abs(cross(along, to)) <= 1e-7 * dot(along, along);
+            return dot(to, along) > 0.0 && dot(at(b) - at(v), along) > 0.0 &&
+                   std::abs(cross(along, to)) <= 1e-7 * dot(along, along);
         };
-        std::size_t begin = 0;   // at a corner that stays
+        std::size_t begin = 0;  // at a corner that stays
         const std::size_t n = corners.size();
         while (begin < n && straight(corners[(begin + n - 1) % n], corners[begin], corners[(begin + 1) % n])) ++begin;
         if (begin == n) return;
@@ -552,7 +627,9 @@ public:
     }
 
 private:
-    [[noreturn]] void fail(int line, const std::string& problem, const std::string& allowed = {}) const { throw InputError({file_, line, line > 0 ? 1 : 0, {}}, problem, allowed); }
+    [[noreturn]] void fail(int line, const std::string& problem, const std::string& allowed = {}) const {
+        throw InputError({file_, line, line > 0 ? 1 : 0, {}}, problem, allowed);
+    }
 
     static std::vector<std::string_view> fields_of(std::string_view line) {
         std::vector<std::string_view> fields;
@@ -567,20 +644,30 @@ private:
     }
 
     void read_head(const std::vector<std::string_view>& fields) {
-        static const std::map<std::string_view, double> units{{"", 0.0}, {"_nm", 1e-9}, {"_um", 1e-6}, {"_mm", 1e-3}, {"_cm", 1e-2}, {"_m", 1.0}};
+        static const std::map<std::string_view, double> units{{"", 0.0},     {"_nm", 1e-9}, {"_um", 1e-6},
+                                                              {"_mm", 1e-3}, {"_cm", 1e-2}, {"_m", 1.0}};
         std::array<std::string_view, 2> unit;
         for (std::size_t i = 0; i < fields.size(); ++i) {
             const auto take = [&](std::optional<std::size_t>& column) {
-                if (column) fail(line_, fmt::format("the head has the column '{}' twice", Words::clipped(fields[i])), "each column once");
+                if (column)
+                    fail(line_, fmt::format("the head has the column '{}' twice", Words::clipped(fields[i])), "each column once");
                 column = i;
             };
-            if (fields[i] == "grain") take(grain_);
-            else if (fields[i].starts_with('x') && units.contains(fields[i].substr(1))) take(x_), unit[0] = fields[i].substr(1);
-            else if (fields[i].starts_with('y') && units.contains(fields[i].substr(1))) take(y_), unit[1] = fields[i].substr(1);
-            else others_.insert(Words::clipped(fields[i]));
+            if (fields[i] == "grain")
+                take(grain_);
+            else if (fields[i].starts_with('x') && units.contains(fields[i].substr(1)))
+                take(x_), unit[0] = fields[i].substr(1);
+            else if (fields[i].starts_with('y') && units.contains(fields[i].substr(1)))
+                take(y_), unit[1] = fields[i].substr(1);
+            else
+                others_.insert(Words::clipped(fields[i]));
         }
         if (!grain_ || !x_ || !y_)
-            fail(line_, fmt::format("the head has no column '{}'", !grain_ ? "grain" : !x_ ? "x" : "y"), "grain,x,y, or with the unit: grain,x_mm,y_mm (nm, um, mm, cm, m)");
+            fail(line_,
+                 fmt::format("the head has no column '{}'", !grain_ ? "grain"
+                                                            : !x_   ? "x"
+                                                                    : "y"),
+                 "grain,x,y, or with the unit: grain,x_mm,y_mm (nm, um, mm, cm, m)");
         if (unit[0] != unit[1]) fail(line_, "x and y have different units", "the same unit, such as x_mm,y_mm");
         result_.unit_m = units.at(unit[0]);
         if (!others_.empty()) {
@@ -601,12 +688,15 @@ private:
         const std::vector<std::string_view> fields = fields_of(line);
         if (!head_) return read_head(fields);
         const std::size_t needed = std::max({*grain_, *x_, *y_}) + 1;
-        if (fields.size() < needed) fail(line_, fmt::format("{} values in the row", fields.size()), fmt::format("{} or more, as the head has", needed));
+        if (fields.size() < needed)
+            fail(line_, fmt::format("{} values in the row", fields.size()), fmt::format("{} or more, as the head has", needed));
         const std::string name = Words::clipped(fields[*grain_]);
         if (name.empty()) fail(line_, "the row does not say of which grain it is", "a number or a name");
         if (result_.cells.empty() || result_.cells.back().name != name) {
             if (!result_.cells.empty()) end_cell();
-            if (!seen_.insert(name).second) fail(line_, fmt::format("grain {} goes on behind other grains", name), "the corners of a grain in rows one after the other");
+            if (!seen_.insert(name).second)
+                fail(line_, fmt::format("grain {} goes on behind other grains", name),
+                     "the corners of a grain in rows one after the other");
             result_.cells.push_back({name, line_, {}});
         }
         result_.cells.back().corners.push_back(static_cast<int>(result_.vertices.size()));
@@ -633,11 +723,13 @@ private:
 
 CellFormat cell_format_of(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending == ".tess") return CellFormat::tess;
     if (ending == ".msh") return CellFormat::msh;
     if (ending == ".csv") return CellFormat::csv;
-    throw InputError({file.string(), 0, 0, {}}, "is no file of cells by its name", "a name that ends with .tess (Neper), .msh (gmsh) or .csv (grain,x,y)");
+    throw InputError({file.string(), 0, 0, {}}, "is no file of cells by its name",
+                     "a name that ends with .tess (Neper), .msh (gmsh) or .csv (grain,x,y)");
 }
 
 std::string read_cell_file(const std::filesystem::path& file) {
@@ -648,7 +740,8 @@ std::string read_cell_file(const std::filesystem::path& file) {
     if (!ignored && size > largest_file) throw InputError(place, "is larger than 1 GiB, which no file of cells is");
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(place, std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"));
+    if (!stream)
+        throw InputError(place, std::string("cannot be read: ") + (errno != 0 ? std::strerror(errno) : "unknown reason"));
     std::string text;
     std::vector<char> buffer(std::size_t{1} << 20);
     while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())) || stream.gcount() > 0) {
@@ -663,9 +756,12 @@ CellsOfFile read_cells(std::string_view contents, const std::filesystem::path& f
     const CellFormat format = cell_format_of(file);
     if (contents.empty()) throw InputError({file.string(), 0, 0, {}}, "is empty", "a file of cells");
     switch (format) {
-        case CellFormat::tess: return TessReader(contents, file).read();
-        case CellFormat::msh: return MshReader(contents, file).read();
-        case CellFormat::csv: return CsvReader(contents, file).read();
+        case CellFormat::tess:
+            return TessReader(contents, file).read();
+        case CellFormat::msh:
+            return MshReader(contents, file).read();
+        case CellFormat::csv:
+            return CsvReader(contents, file).read();
     }
     return {};
 }

@@ -1,5 +1,7 @@
 #include "feldspar/specimen/clip_cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,8 +10,6 @@
 #include <numeric>
 #include <optional>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -73,12 +73,15 @@ std::vector<std::vector<Corner>> whole_cells(std::span<const Vec2> centres, std:
     const RegularTriangulation triangulation = regular_triangulation(sites, all_weights);
     if (!triangulation.hidden.empty()) {
         const int i = triangulation.hidden.front();
-        throw InputError({}, fmt::format("disc {} at ({:.6g}, {:.6g}) m is hidden by its neighbours: it has no Laguerre cell", i,
-                                         sites[i].x, sites[i].y),
+        throw InputError({},
+                         fmt::format("disc {} at ({:.6g}, {:.6g}) m is hidden by its neighbours: it has no Laguerre cell", i,
+                                     sites[i].x, sites[i].y),
                          "discs that overlap less");
     }
     // Around site a the triangle (a, b, c) leads from neighbour b to neighbour c.
-    struct Spoke { int from, to, triangle; };
+    struct Spoke {
+        int from, to, triangle;
+    };
     std::vector<std::vector<Spoke>> spokes(static_cast<std::size_t>(n));
     for (int t = 0; t < std::ssize(triangulation.triangles); ++t) {
         for (int k = 0; k < 3; ++k) {
@@ -137,7 +140,8 @@ std::size_t piece_of(const ClipSide& side, const std::vector<Vec2>& corners, Vec
 }
 
 /// From corners with side numbers to vertices with keys and segment labels; outline vertices inside a side are put in.
-std::vector<KeyedVertex> with_keys(const std::vector<Corner>& cell, int i, const ConvexRegion& region, const std::vector<Vec2>& corners) {
+std::vector<KeyedVertex> with_keys(const std::vector<Corner>& cell, int i, const ConvexRegion& region,
+                                   const std::vector<Vec2>& corners) {
     const int sides = static_cast<int>(region.size());
     std::vector<KeyedVertex> result;
     for (std::size_t k = 0; k < cell.size(); ++k) {
@@ -175,7 +179,8 @@ std::vector<KeyedVertex> with_keys(const std::vector<Corner>& cell, int i, const
 }
 
 /// Where the edge p-q enters and leaves the circle, in the order of the plane (smaller x first), each if it does.
-std::array<std::optional<Vec2>, 2> crossings_with_circle(Vec2 p, Vec2 q, bool p_inside, bool q_inside, Vec2 centre, double radius) {
+std::array<std::optional<Vec2>, 2> crossings_with_circle(Vec2 p, Vec2 q, bool p_inside, bool q_inside, Vec2 centre,
+                                                         double radius) {
     const bool swapped = before_in_plane(q, p);
     if (swapped) {
         std::swap(p, q);
@@ -202,11 +207,14 @@ std::array<std::optional<Vec2>, 2> crossings_with_circle(Vec2 p, Vec2 q, bool p_
 
 // Segments in the keys of a disc's vertices: a cell's edge crosses the circle once or twice, and a flat once.
 constexpr int first_crossing = 0, flat_crossing = 2;
-int disc_edge_of(const VertexKey& crossing) { return -1 - crossing[2] < flat_crossing ? circle_edge : -1 - crossing[2] - flat_crossing + top_flat; }
+int disc_edge_of(const VertexKey& crossing) {
+    return -1 - crossing[2] < flat_crossing ? circle_edge : -1 - crossing[2] - flat_crossing + top_flat;
+}
 
 /// Keeps what lies between the flats; edges along them are labelled as the outline's.
 std::vector<Corner> clip_by_flats(const std::vector<Corner>& cell, const Outline& outline) {
-    const auto corners = flat_corners(outline);   // inside lies to the left of the top from right to left, and of the bottom from left to right
+    const auto corners =
+        flat_corners(outline);  // inside lies to the left of the top from right to left, and of the bottom from left to right
     return clip_by_side(clip_by_side(cell, top_flat, corners[1], corners[0]), bottom_flat, corners[2], corners[3]);
 }
 
@@ -216,9 +224,12 @@ std::vector<KeyedVertex> clip_by_circle(const std::vector<Corner>& cell, int i, 
     std::vector<KeyedVertex> result;
     const auto own_key = [&](const Corner& c) {
         const int label = std::min(c.before, c.after);
-        return label >= 0 ? cell_key(i, c.before, c.after) : crossing_key(i, std::max(c.before, c.after), flat_crossing + (-1 - label) - top_flat);
+        return label >= 0 ? cell_key(i, c.before, c.after)
+                          : crossing_key(i, std::max(c.before, c.after), flat_crossing + (-1 - label) - top_flat);
     };
-    const auto inside = [&](Vec2 p) { return dot(p - outline.centre, p - outline.centre) <= outline.radius_m * outline.radius_m; };
+    const auto inside = [&](Vec2 p) {
+        return dot(p - outline.centre, p - outline.centre) <= outline.radius_m * outline.radius_m;
+    };
     for (std::size_t k = 0; k < cell.size(); ++k) {
         const Corner& c = cell[k];
         const Vec2 next = cell[(k + 1) % cell.size()].at;
@@ -234,7 +245,7 @@ std::vector<KeyedVertex> clip_by_circle(const std::vector<Corner>& cell, int i, 
             const int label = exit ? outline_label(circle_edge) : c.after;
             if (c.after >= 0) {
                 result.push_back({crossing_key(i, c.after, first_crossing + which), *crossings[which], label});
-            } else {   // where a flat meets the circle
+            } else {  // where a flat meets the circle
                 const int corner = 2 * (-1 - c.after - top_flat) + which;
                 result.push_back({corner_key(corner), flat_corners(outline)[static_cast<std::size_t>(corner)], label});
             }
@@ -244,8 +255,8 @@ std::vector<KeyedVertex> clip_by_circle(const std::vector<Corner>& cell, int i, 
 }
 
 /// Gives every key one number and one position.
-CellGraph number_vertices(const std::vector<std::vector<KeyedVertex>>& faces, const std::vector<int>& owner, const Outline& outline,
-                          int sites) {
+CellGraph number_vertices(const std::vector<std::vector<KeyedVertex>>& faces, const std::vector<int>& owner,
+                          const Outline& outline, int sites) {
     std::vector<VertexKey> keys;
     for (const auto& face : faces) {
         for (const KeyedVertex& v : face) keys.push_back(v.key);
@@ -258,9 +269,12 @@ CellGraph number_vertices(const std::vector<std::vector<KeyedVertex>>& faces, co
     const int outline_edges = static_cast<int>(outline.vertices.size());
     for (const VertexKey& key : keys) {
         int place = place_inside;
-        if (key[0] < 0 && key[1] < 0) place = place_corner;
-        else if (key[2] < 0 && outline.is_disc) place = disc_edge_of(key);
-        else if (key[2] < 0) place = -1 - key[2] < outline_edges ? -1 - key[2] : place_cut;
+        if (key[0] < 0 && key[1] < 0)
+            place = place_corner;
+        else if (key[2] < 0 && outline.is_disc)
+            place = disc_edge_of(key);
+        else if (key[2] < 0)
+            place = -1 - key[2] < outline_edges ? -1 - key[2] : place_cut;
         if (key[2] >= sites && place != place_corner) {
             throw NumericalError("a Laguerre vertex inside the outline belongs to an auxiliary site");
         }
@@ -289,8 +303,9 @@ void reject_equal_centres(std::span<const Vec2> centres) {
     for (std::size_t k = 1; k < order.size(); ++k) {
         const Vec2 c = centres[order[k]];
         if (c == centres[order[k - 1]]) {
-            throw InputError({}, fmt::format("discs {} and {} have the same centre ({:.6g}, {:.6g}) m", std::min(order[k - 1], order[k]),
-                                             std::max(order[k - 1], order[k]), c.x, c.y),
+            throw InputError({},
+                             fmt::format("discs {} and {} have the same centre ({:.6g}, {:.6g}) m",
+                                         std::min(order[k - 1], order[k]), std::max(order[k - 1], order[k]), c.x, c.y),
                              "discs with different centres");
         }
     }
@@ -312,7 +327,8 @@ std::vector<ConvexRegion> convex_regions(const Outline& outline) {
     for (std::vector<int>& part : parts) {
         const std::size_t m = part.size();
         const auto turns = [&](std::size_t k) {
-            const Vec2 in = corners[part[k]] - corners[part[(k + m - 1) % m]], out = corners[part[(k + 1) % m]] - corners[part[k]];
+            const Vec2 in = corners[part[k]] - corners[part[(k + m - 1) % m]],
+                       out = corners[part[(k + 1) % m]] - corners[part[k]];
             return cross(in, out) > 1e-12 * norm(in) * norm(out);
         };
         std::size_t start = 0;
@@ -342,7 +358,8 @@ CellGraph clip_cells(std::span<const Vec2> centres, std::span<const double> weig
     std::vector<int> owner;
     for (int i = 0; i < std::ssize(cells); ++i) {
         const std::size_t before = faces.size();
-        if (outline.is_disc) faces.push_back(clip_by_circle(outline.flattened() ? clip_by_flats(cells[i], outline) : cells[i], i, outline));
+        if (outline.is_disc)
+            faces.push_back(clip_by_circle(outline.flattened() ? clip_by_flats(cells[i], outline) : cells[i], i, outline));
         for (const ConvexRegion& region : regions) {
             std::vector<Corner> cell = cells[i];
             for (int s = 0; s < std::ssize(region) && !cell.empty(); ++s) {
@@ -351,8 +368,9 @@ CellGraph clip_cells(std::span<const Vec2> centres, std::span<const double> weig
             if (cell.size() >= 3) faces.push_back(with_keys(cell, i, region, outline.vertices));
         }
         if (faces.size() == before || faces.back().size() < 3) {
-            throw InputError({}, fmt::format("the Laguerre cell of disc {} at ({:.6g}, {:.6g}) m has no area inside the outline", i,
-                                             centres[i].x, centres[i].y),
+            throw InputError({},
+                             fmt::format("the Laguerre cell of disc {} at ({:.6g}, {:.6g}) m has no area inside the outline", i,
+                                         centres[i].x, centres[i].y),
                              "discs inside the outline, and smaller grains if there are only a few");
         }
         owner.resize(faces.size(), i);

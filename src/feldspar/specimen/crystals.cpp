@@ -12,7 +12,8 @@ namespace feldspar {
 std::vector<int> group_into_crystals(const Tessellation& cells, const Packing& crystals) {
     std::vector<int> by_height(crystals.centres.size());
     std::iota(by_height.begin(), by_height.end(), 0);
-    std::stable_sort(by_height.begin(), by_height.end(), [&](int l, int r) { return crystals.centres[l].y < crystals.centres[r].y; });
+    std::stable_sort(by_height.begin(), by_height.end(),
+                     [&](int l, int r) { return crystals.centres[l].y < crystals.centres[r].y; });
     // Packed discs leave no gap as wide as the largest of them: the nearest one, by power, is within two of its diameters.
     const double reach = 4.0 * *std::max_element(crystals.radii_m.begin(), crystals.radii_m.end());
     std::map<int, int> number;
@@ -23,7 +24,8 @@ std::vector<int> group_into_crystals(const Tessellation& cells, const Packing& c
             const Vec2 r = x - crystals.centres[d];
             return dot(r, r) - crystals.radii_m[d] * crystals.radii_m[d];
         };
-        const auto from = std::lower_bound(by_height.begin(), by_height.end(), x.y - reach, [&](int d, double y) { return crystals.centres[d].y < y; });
+        const auto from = std::lower_bound(by_height.begin(), by_height.end(), x.y - reach,
+                                           [&](int d, double y) { return crystals.centres[d].y < y; });
         int nearest = -1;
         double least = std::numeric_limits<double>::infinity();
         for (auto d = from; d != by_height.end() && crystals.centres[*d].y <= x.y + reach; ++d)
@@ -31,7 +33,7 @@ std::vector<int> group_into_crystals(const Tessellation& cells, const Packing& c
                 least = p;
                 nearest = *d;
             }
-        if (nearest < 0)   // a loose packing
+        if (nearest < 0)  // a loose packing
             for (const int d : by_height)
                 if (const double p = power(d); p < least) {
                     least = p;

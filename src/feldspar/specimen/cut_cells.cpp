@@ -1,5 +1,7 @@
 #include "feldspar/specimen/cut_cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,8 +10,6 @@
 #include <optional>
 #include <set>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -22,15 +22,15 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Nearer than this share of a mean grain two points are one.
 constexpr double no_length = 1e-9;
-/// How far the centroid must lie to the left of every edge / root of the area: a cell beside a notch or hole that falls short is divided, and no piece is taken
-/// in by a cell that would. Regular cells have 0.4 to 0.5.
+/// How far the centroid must lie to the left of every edge / root of the area: a cell beside a notch or hole that falls short is
+/// divided, and no piece is taken in by a cell that would. Regular cells have 0.4 to 0.5.
 constexpr double sound_margin = 0.1;
 /// New cells are labelled by whom they border on at the end only.
 constexpr int some_neighbour = 0;
 
 /// What a new edge along a cutout borders on, by the side from which it is seen.
 struct Sides {
-    int left = 0, right = 0;   ///< outline edges
+    int left = 0, right = 0;  ///< outline edges
 };
 
 /// A part of a cutout's edge between two vertices of the graph.
@@ -42,14 +42,17 @@ struct Part {
 /// A directed edge while a cell is being taken apart.
 struct Dart {
     int from, to, label;
-    bool inside;   ///< of the cutout: what lies to its left goes
+    bool inside;  ///< of the cutout: what lies to its left goes
 };
 
 Box box_of(const std::vector<Vec2>& points) { return bounding_box(std::span<const Vec2>(points)); }
-bool overlap(const Box& a, const Box& b) { return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y; }
+bool overlap(const Box& a, const Box& b) {
+    return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y && b.lower.y <= a.upper.y;
+}
 Box widened(Box box, double by) { return {box.lower - Vec2{by, by}, box.upper + Vec2{by, by}}; }
 
-/// The least distance (m) of the centroid from the lines of the edges, over the root of the area; negative where it lies behind one.
+/// The least distance (m) of the centroid from the lines of the edges, over the root of the area; negative where it lies behind
+/// one.
 double margin_of(const std::vector<Vec2>& corners) {
     const double area = signed_area(corners);
     if (area <= 0.0) return -infinity;
@@ -71,7 +74,11 @@ double thickness_of(const std::vector<Vec2>& corners) {
 class CellCutter {
 public:
     CellCutter(CellGraph& graph, const Outline& outline, double mean_diameter, double merge_length)
-        : graph_(graph), outline_(outline), mean_diameter_(mean_diameter), snap_(std::max(merge_length, 1e-3 * mean_diameter)), eps_(no_length * mean_diameter),
+        : graph_(graph),
+          outline_(outline),
+          mean_diameter_(mean_diameter),
+          snap_(std::max(merge_length, 1e-3 * mean_diameter)),
+          eps_(no_length * mean_diameter),
           old_vertices_(static_cast<int>(graph.vertices.size())) {
         faces_at_.resize(graph.vertices.size());
         for (int f = 0; f < std::ssize(graph_.faces); ++f) {
@@ -84,11 +91,13 @@ public:
 
     CutCells run() {
         const double mean_area = mean_cell_area();
-        std::vector<char> done(outline_.cutouts.size(), 0);   // a cut that ends on another comes after it
+        std::vector<char> done(outline_.cutouts.size(), 0);  // a cut that ends on another comes after it
         for (std::size_t left = done.size(); left > 0;)
             for (std::size_t n = 0; n < done.size(); ++n) {
                 const Cutout& cutout = outline_.cutouts[n];
-                if (done[n] || std::any_of(cutout.ends_on.begin(), cutout.ends_on.end(), [&](int other) { return other >= 0 && !done[static_cast<std::size_t>(other)]; })) continue;
+                if (done[n] || std::any_of(cutout.ends_on.begin(), cutout.ends_on.end(),
+                                           [&](int other) { return other >= 0 && !done[static_cast<std::size_t>(other)]; }))
+                    continue;
                 cut(cutout);
                 done[n] = 1;
                 --left;
@@ -207,7 +216,8 @@ private:
         std::vector<int> ends;
         for (std::size_t e = 0; e < count; ++e) {
             const bool on_another = cutout.is_cut() && cutout.ends_on[e] >= 0;
-            ends.push_back(on_another ? vertex_on_face(cutout.vertices[e], cutout.vertices[1 - e]) : corner_vertex(cutout.vertices[e]));
+            ends.push_back(on_another ? vertex_on_face(cutout.vertices[e], cutout.vertices[1 - e])
+                                      : corner_vertex(cutout.vertices[e]));
         }
         std::vector<Part> parts;
         for (std::size_t k = 0; k < (cutout.is_cut() ? 1 : count); ++k) {
@@ -231,7 +241,8 @@ private:
         if (cutout.tips[0]) divide_at_end(ends[0], ends[3], v[0] - v[3]);
     }
 
-    /// The vertex for a corner of a cutout: one that is there, one put into an edge on which it lies, or one inside a cell, which is noted.
+    /// The vertex for a corner of a cutout: one that is there, one put into an edge on which it lies, or one inside a cell, which
+    /// is noted.
     int corner_vertex(Vec2 p) {
         for (const int f : near_) {
             for (const int v : graph_.faces[f].vertices) {
@@ -276,27 +287,36 @@ private:
                 return x;
             }
         }
-        throw NumericalError(fmt::format("no cell lies at the end of a cut on another, at ({:.6g}, {:.6g}) mm", 1e3 * p.x, 1e3 * p.y));
+        throw NumericalError(
+            fmt::format("no cell lies at the end of a cut on another, at ({:.6g}, {:.6g}) mm", 1e3 * p.x, 1e3 * p.y));
     }
 
-    /// Between vertices on the way; where the faces of another cut are crossed each has its own there, and one of either is of the cell between.
+    /// Between vertices on the way; where the faces of another cut are crossed each has its own there, and one of either is of
+    /// the cell between.
     Part part_between(const std::vector<int>& from, const std::vector<int>& to, const Sides& sides) const {
         if (from.size() > 1 || to.size() > 1)
             for (const int u : from)
                 for (const int v : to) {
-                    const bool edge = std::any_of(faces_at_[u].begin(), faces_at_[u].end(), [&](int f) { return edge_in(graph_.faces[f], u, v) || edge_in(graph_.faces[f], v, u); });
+                    const bool edge = std::any_of(faces_at_[u].begin(), faces_at_[u].end(), [&](int f) {
+                        return edge_in(graph_.faces[f], u, v) || edge_in(graph_.faces[f], v, u);
+                    });
                     if (edge || crossed_face({u, v, sides})) return {u, v, sides};
                 }
         return {from.front(), to.front(), sides};
     }
 
-    /// The vertices from `from` to `to`, in order: those of the graph on the way, and one where an edge of a cell is crossed; together those at one place.
+    /// The vertices from `from` to `to`, in order: those of the graph on the way, and one where an edge of a cell is crossed;
+    /// together those at one place.
     std::vector<std::vector<int>> chain_along(int from, int to, int edge) {
         const Vec2 a = graph_.vertices[from];
         const double length = norm(graph_.vertices[to] - a);
         const Vec2 along = (1.0 / length) * (graph_.vertices[to] - a);
         const Box box = widened(box_of({a, graph_.vertices[to]}), eps_);
-        struct Crossing { int a, b; Vec2 at; bool boundary; };
+        struct Crossing {
+            int a, b;
+            Vec2 at;
+            bool boundary;
+        };
         std::map<std::pair<int, int>, Crossing> crossings;
         std::map<int, double> on_way = {{from, 0.0}, {to, length}};
         for (const int f : near_) {
@@ -308,7 +328,7 @@ private:
                 const double du = cross(along, xu), dv = cross(along, xv);
                 if (std::abs(du) <= eps_ && dot(xu, along) > 0.0 && dot(xu, along) < length) on_way.emplace(u, dot(xu, along));
                 if (std::abs(du) <= eps_ || std::abs(dv) <= eps_ || (du > 0.0) == (dv > 0.0)) continue;
-                const auto [low, high] = std::minmax(u, v);   // the same bits from both cells
+                const auto [low, high] = std::minmax(u, v);  // the same bits from both cells
                 const double dl = low == u ? du : dv, dh = low == u ? dv : du;
                 const Vec2 at = graph_.vertices[low] + (dl / (dl - dh)) * (graph_.vertices[high] - graph_.vertices[low]);
                 const double s = dot(at - a, along);
@@ -351,9 +371,9 @@ private:
     }
 
     void split_faces(const std::vector<Part>& parts, const Cutout& cutout) {
-        std::map<int, std::vector<Part>> crossing;   // by face
+        std::map<int, std::vector<Part>> crossing;  // by face
         for (const Part& part : parts) {
-            bool edge = false;   // of a cell already
+            bool edge = false;  // of a cell already
             for (const int f : faces_at_[part.from]) {
                 Face& face = graph_.faces[f];
                 const auto left = edge_in(face, part.from, part.to), right = edge_in(face, part.to, part.from);
@@ -368,7 +388,8 @@ private:
         for (const auto& [f, inside] : crossing) {
             std::vector<Dart> darts;
             const Face& face = graph_.faces[f];
-            for (std::size_t k = 0; k < face.vertices.size(); ++k) darts.push_back({face.vertices[k], face.vertices[(k + 1) % face.vertices.size()], face.labels[k], false});
+            for (std::size_t k = 0; k < face.vertices.size(); ++k)
+                darts.push_back({face.vertices[k], face.vertices[(k + 1) % face.vertices.size()], face.labels[k], false});
             for (const Part& part : inside) {
                 darts.push_back({part.from, part.to, outline_label(std::max(0, part.sides.left)), !cutout.is_cut()});
                 darts.push_back({part.to, part.from, outline_label(part.sides.right), false});
@@ -376,7 +397,8 @@ private:
             if (!cutout.packed_around) reshaped_[f] = 1;
             const int cell = face.cell;
             std::vector<Face> kept = loops(darts, cell, cutout);
-            if (kept.empty()) remove(f);
+            if (kept.empty())
+                remove(f);
             else {
                 if (kept.size() > 1) reshaped_[f] = 1;
                 replace(f, std::move(kept));
@@ -405,17 +427,20 @@ private:
             if (inside) continue;
             if (signed_area(corners(face)) <= 0.0) {
                 const Vec2 at = cutout.vertices.front();
-                throw InputError({"", 0, 0, cutout.slit || cutout.is_cut() ? "specimen.notches" : "specimen.holes"},
-                                 fmt::format("{} at ({:.6g}, {:.6g}) mm lies within one grain", cutout.name, 1e3 * at.x, 1e3 * at.y), "holes and notches larger than the grains around them",
-                                 "make it larger, or take smaller grains");
+                throw InputError(
+                    {"", 0, 0, cutout.slit || cutout.is_cut() ? "specimen.notches" : "specimen.holes"},
+                    fmt::format("{} at ({:.6g}, {:.6g}) mm lies within one grain", cutout.name, 1e3 * at.x, 1e3 * at.y),
+                    "holes and notches larger than the grains around them", "make it larger, or take smaller grains");
             }
             faces.push_back(std::move(face));
         }
         return faces;
     }
 
-    /// Of the darts that leave where `arriving` ends, the one that turns most to the left, back along itself last; `start` closes the loop.
-    std::size_t leftmost(const std::vector<Dart>& darts, const std::vector<char>& used, const Dart& arriving, std::size_t start) const {
+    /// Of the darts that leave where `arriving` ends, the one that turns most to the left, back along itself last; `start` closes
+    /// the loop.
+    std::size_t leftmost(const std::vector<Dart>& darts, const std::vector<char>& used, const Dart& arriving,
+                         std::size_t start) const {
         std::size_t best = darts.size();
         double best_turn = -infinity;
         const Vec2 in = graph_.vertices[arriving.to] - graph_.vertices[arriving.from];
@@ -437,7 +462,8 @@ private:
         for (const int f : near_) {
             if (!alive(f)) continue;
             const std::vector<Vec2> all = corners(f);
-            const auto off = std::find_if(all.begin(), all.end(), [&](Vec2 p) { return distance_to_boundary(hole, p) > 10.0 * eps_; });
+            const auto off =
+                std::find_if(all.begin(), all.end(), [&](Vec2 p) { return distance_to_boundary(hole, p) > 10.0 * eps_; });
             if (contains(hole, off == all.end() ? centroid(all) : *off)) remove(f);
         }
     }
@@ -459,7 +485,8 @@ private:
                 if (cross(ab, centroid(corners(f)) - a) < 0.0) right.push_back(f);
             }
             if (right.empty() || right.size() == faces_at_[v].size()) continue;
-            const int copy = add_vertex(graph_.vertices[v], graph_.place[v] == cutout.first_edge ? cutout.first_edge + 1 : graph_.place[v]);
+            const int copy =
+                add_vertex(graph_.vertices[v], graph_.place[v] == cutout.first_edge ? cutout.first_edge + 1 : graph_.place[v]);
             for (const int f : right) {
                 std::replace(graph_.faces[f].vertices.begin(), graph_.faces[f].vertices.end(), v, copy);
                 std::erase(faces_at_[v], f);
@@ -472,21 +499,23 @@ private:
 
     /// Where a division from corner `from` of the cell in direction `towards` ends.
     struct Target {
-        std::size_t edge = 0;   ///< of the cell
+        std::size_t edge = 0;  ///< of the cell
         Vec2 at;
-        int vertex = -1;        ///< of the cell, if it ends in one
+        int vertex = -1;  ///< of the cell, if it ends in one
     };
 
     std::optional<Target> target_of(const Face& face, std::size_t from, Vec2 towards) const {
         const std::size_t n = face.vertices.size();
         const Vec2 start = graph_.vertices[face.vertices[from]], direction = (1.0 / norm(towards)) * towards;
-        const Vec2 out = graph_.vertices[face.vertices[(from + 1) % n]] - start, back = graph_.vertices[face.vertices[(from + n - 1) % n]] - start;
+        const Vec2 out = graph_.vertices[face.vertices[(from + 1) % n]] - start,
+                   back = graph_.vertices[face.vertices[(from + n - 1) % n]] - start;
         const auto turn_from_out = [&](Vec2 d) {
             const double turn = std::atan2(cross(out, d), dot(out, d));
             return turn <= 0.0 ? turn + 2.0 * std::numbers::pi : turn;
         };
-        constexpr double least_angle = 0.05;   // to either edge
-        if (turn_from_out(direction) < least_angle || turn_from_out(direction) > turn_from_out(back) - least_angle) return std::nullopt;
+        constexpr double least_angle = 0.05;  // to either edge
+        if (turn_from_out(direction) < least_angle || turn_from_out(direction) > turn_from_out(back) - least_angle)
+            return std::nullopt;
         double nearest = infinity;
         Target target;
         for (std::size_t k = 0; k < n; ++k) {
@@ -544,10 +573,12 @@ private:
         int x = target->vertex;
         if (x < 0) {
             const Face& face = graph_.faces[f];
-            const int a = face.vertices[target->edge], b = face.vertices[(target->edge + 1) % face.vertices.size()], label = face.labels[target->edge];
+            const int a = face.vertices[target->edge], b = face.vertices[(target->edge + 1) % face.vertices.size()],
+                      label = face.labels[target->edge];
             x = add_vertex(target->at, label < 0 ? -1 - label : place_inside);
             const int corner = face.vertices[from];
-            const std::size_t before = static_cast<std::size_t>(std::count(face.vertices.begin(), face.vertices.begin() + static_cast<std::ptrdiff_t>(from), corner));
+            const std::size_t before = static_cast<std::size_t>(
+                std::count(face.vertices.begin(), face.vertices.begin() + static_cast<std::ptrdiff_t>(from), corner));
             put_into_edge(a, b, x);
             from = position(graph_.faces[f], corner, before);
         }
@@ -579,7 +610,8 @@ private:
         for (const int f : faces_at_[tip]) {
             const Face& face = graph_.faces[f];
             const std::size_t n = face.vertices.size(), k = position(face, tip, 0);
-            if (face.vertices[(k + 1) % n] == face.vertices[(k + n - 1) % n]) throw NumericalError("the cell at the tip of a notch could not be divided");
+            if (face.vertices[(k + 1) % n] == face.vertices[(k + n - 1) % n])
+                throw NumericalError("the cell at the tip of a notch could not be divided");
         }
     }
 
@@ -587,11 +619,13 @@ private:
         const Face& face = graph_.faces[f];
         const std::size_t n = face.vertices.size();
         const Vec2 at = graph_.vertices[face.vertices[k]];
-        const Vec2 in = at - graph_.vertices[face.vertices[(k + n - 1) % n]], out = graph_.vertices[face.vertices[(k + 1) % n]] - at;
+        const Vec2 in = at - graph_.vertices[face.vertices[(k + n - 1) % n]],
+                   out = graph_.vertices[face.vertices[(k + 1) % n]] - at;
         return cross(in, out) < -1e-6 * norm(in) * norm(out) || face.vertices[(k + 1) % n] == face.vertices[(k + n - 1) % n];
     }
 
-    /// Cells at the end of a slit are divided along the line of its end, where they would bend around its corners: from vertex a away from b, and from b.
+    /// Cells at the end of a slit are divided along the line of its end, where they would bend around its corners: from vertex a
+    /// away from b, and from b.
     void divide_at_end(int a, int b, Vec2 from_b_to_a) {
         for (const auto& [v, towards] : {std::pair{a, from_b_to_a}, std::pair{b, -from_b_to_a}}) {
             for (const int f : std::vector<int>(faces_at_[v])) {
@@ -603,7 +637,7 @@ private:
 
     /// Cells that bend around a corner are divided, so that each part sees most of itself from its middle.
     void divide_bent() {
-        for (int f = 0; f < std::ssize(graph_.faces); ++f) {   // the parts come at the end
+        for (int f = 0; f < std::ssize(graph_.faces); ++f) {  // the parts come at the end
             if (!alive(f) || !touched_[f] || margin_of(corners(f)) >= sound_margin) continue;
             const Face face = graph_.faces[f];
             const std::size_t n = face.vertices.size();
@@ -613,11 +647,12 @@ private:
             for (std::size_t k = 0; k < n; ++k) {
                 if (!bends_at(f, k)) continue;
                 const Vec2 at = graph_.vertices[face.vertices[k]];
-                for (const Vec2 towards : {at - graph_.vertices[face.vertices[(k + n - 1) % n]], at - graph_.vertices[face.vertices[(k + 1) % n]]}) {
+                for (const Vec2 towards :
+                     {at - graph_.vertices[face.vertices[(k + n - 1) % n]], at - graph_.vertices[face.vertices[(k + 1) % n]]}) {
                     const auto target = target_of(face, k, towards);
                     if (!target) continue;
                     const int x = target->vertex < 0 ? static_cast<int>(graph_.vertices.size()) : target->vertex;
-                    if (target->vertex < 0) graph_.vertices.push_back(target->at);   // for a moment
+                    if (target->vertex < 0) graph_.vertices.push_back(target->at);  // for a moment
                     const auto two = halves(face, k, *target, x);
                     const double worst = std::min(margin_of(corners(two[0])), margin_of(corners(two[1])));
                     if (target->vertex < 0) graph_.vertices.pop_back();
@@ -627,7 +662,7 @@ private:
                     direction = towards;
                 }
             }
-            if (corner < n && !divide(f, corner, direction).empty()) --f;   // look at the first part again
+            if (corner < n && !divide(f, corner, direction).empty()) --f;  // look at the first part again
         }
     }
 
@@ -661,9 +696,9 @@ private:
     /// What would become of the faces if a piece went to a neighbour.
     struct Gift {
         int to = 0;
-        double shared = 0.0;            ///< length of their boundary (m)
-        double margin = -infinity;      ///< the least of the changed faces
-        std::map<int, Face> changed;    ///< the neighbour with the piece, and others that lose a vertex
+        double shared = 0.0;          ///< length of their boundary (m)
+        double margin = -infinity;    ///< the least of the changed faces
+        std::map<int, Face> changed;  ///< the neighbour with the piece, and others that lose a vertex
     };
 
     static Face without(Face face, int vertex) {
@@ -673,7 +708,8 @@ private:
         return face;
     }
 
-    /// The piece joined to face `to`. Where a third cell met both, the border to it is drawn straight if that makes sounder cells.
+    /// The piece joined to face `to`. Where a third cell met both, the border to it is drawn straight if that makes sounder
+    /// cells.
     std::optional<Gift> gift(int f, int to, double shared) const {
         const Face& piece = graph_.faces[f];
         std::vector<Face> both = united({graph_.faces[to], piece}, graph_.faces[to].cell, graph_.vertices);
@@ -684,12 +720,15 @@ private:
         Gift gift{to, shared, margin_of(corners(both.front())), {{to, both.front()}}};
         for (const int v : piece.vertices) {
             const std::vector<int>& faces = faces_at_[v];
-            if (graph_.place[v] != place_inside || faces.size() != 3 || std::find(faces.begin(), faces.end(), to) == faces.end()) continue;
+            if (graph_.place[v] != place_inside || faces.size() != 3 || std::find(faces.begin(), faces.end(), to) == faces.end())
+                continue;
             const int third = *std::find_if(faces.begin(), faces.end(), [&](int other) { return other != f && other != to; });
             const Face& before = gift.changed.contains(third) ? gift.changed[third] : graph_.faces[third];
             if (before.vertices.size() < 4 || gift.changed[to].vertices.size() < 4) continue;
             Face straight = without(gift.changed[to], v), beside = without(before, v);
-            if (margin_of(corners(beside)) < std::min(sound_margin, margin_of(corners(before))) || margin_of(corners(straight)) <= margin_of(corners(gift.changed[to]))) continue;
+            if (margin_of(corners(beside)) < std::min(sound_margin, margin_of(corners(before))) ||
+                margin_of(corners(straight)) <= margin_of(corners(gift.changed[to])))
+                continue;
             gift.changed[to] = std::move(straight);
             gift.changed[third] = std::move(beside);
         }
@@ -704,7 +743,8 @@ private:
         for (std::size_t k = 0; k < piece.vertices.size(); ++k) {
             const int a = piece.vertices[k], b = piece.vertices[(k + 1) % piece.vertices.size()];
             for (const int other : faces_at_[a]) {
-                if (other != f && edge_in(graph_.faces[other], b, a)) shared[other] += norm(graph_.vertices[b] - graph_.vertices[a]);
+                if (other != f && edge_in(graph_.faces[other], b, a))
+                    shared[other] += norm(graph_.vertices[b] - graph_.vertices[a]);
             }
         }
         std::optional<Gift> best;
@@ -721,7 +761,8 @@ private:
         return true;
     }
 
-    /// Vertices in the middle of a straight edge between the same two cells, or of an edge of the outline of one cell, are left over from pieces that were joined.
+    /// Vertices in the middle of a straight edge between the same two cells, or of an edge of the outline of one cell, are left
+    /// over from pieces that were joined.
     void remove_straight() {
         for (int v = 0; v < std::ssize(graph_.vertices); ++v) {
             const std::vector<int>& faces = faces_at_[v];
@@ -741,8 +782,10 @@ private:
                 fits = fits && face.vertices[(j + 1) % m] == before && face.vertices[(j + m - 1) % m] == after;
             }
             const bool boundary = first.labels[k] < 0 || first.labels[(k + n - 1) % n] < 0;
-            if (boundary) fits = fits && faces.size() == 1 && first.labels[k] == first.labels[(k + n - 1) % n];
-            else fits = fits && faces.size() == 2;
+            if (boundary)
+                fits = fits && faces.size() == 1 && first.labels[k] == first.labels[(k + n - 1) % n];
+            else
+                fits = fits && faces.size() == 2;
             if (!fits) continue;
             for (const int f : std::vector<int>(faces)) {
                 Face& face = graph_.faces[f];
@@ -776,10 +819,11 @@ private:
 
     /// @throws InputError if the cells do not hang together
     void require_one_piece() const {
-        if (std::any_of(outline_.cutouts.begin(), outline_.cutouts.end(), [](const Cutout& cutout) { return cutout.joined; })) return;   // what it divides stays in contact
+        if (std::any_of(outline_.cutouts.begin(), outline_.cutouts.end(), [](const Cutout& cutout) { return cutout.joined; }))
+            return;  // what it divides stays in contact
         std::vector<int> part(graph_.faces.size(), -1);
         int parts = 0;
-        std::vector<std::pair<int, int>> sizes;   // grains, and one of them
+        std::vector<std::pair<int, int>> sizes;  // grains, and one of them
         for (int start = 0; start < std::ssize(part); ++start) {
             if (part[start] >= 0) continue;
             std::vector<int> waiting = {start};
@@ -801,21 +845,23 @@ private:
         if (parts == 1) return;
         const auto [count, grain] = *std::min_element(sizes.begin(), sizes.end());
         const Vec2 at = centroid(corners(grain));
-        throw InputError({"", 0, 0, "specimen.notches"},
-                         fmt::format("holes and notches cut the specimen into {} parts; one of {} grains lies around ({:.6g}, {:.6g}) mm", parts, count, 1e3 * at.x, 1e3 * at.y),
-                         "holes and notches that leave the rock in one piece", "shorten a notch, or move it");
+        throw InputError(
+            {"", 0, 0, "specimen.notches"},
+            fmt::format("holes and notches cut the specimen into {} parts; one of {} grains lies around ({:.6g}, {:.6g}) mm",
+                        parts, count, 1e3 * at.x, 1e3 * at.y),
+            "holes and notches that leave the rock in one piece", "shorten a notch, or move it");
     }
 
     CellGraph& graph_;
     const Outline& outline_;
     double mean_diameter_, snap_, eps_;
     int old_vertices_;
-    std::vector<std::vector<int>> faces_at_;   ///< a vertex: the faces that name it
-    std::vector<Box> boxes_;                   ///< a face
-    std::vector<char> touched_;                ///< a face: something was cut out of it, or it has got a vertex more
-    std::vector<char> reshaped_;               ///< a face: see CutCells
-    std::vector<int> near_;                    ///< the faces that the cutout may cut
-    std::map<int, int> inside_of_;             ///< a corner of the cutout inside a cell: the face
+    std::vector<std::vector<int>> faces_at_;  ///< a vertex: the faces that name it
+    std::vector<Box> boxes_;                  ///< a face
+    std::vector<char> touched_;               ///< a face: something was cut out of it, or it has got a vertex more
+    std::vector<char> reshaped_;              ///< a face: see CutCells
+    std::vector<int> near_;                   ///< the faces that the cutout may cut
+    std::map<int, int> inside_of_;            ///< a corner of the cutout inside a cell: the face
 };
 
 }  // namespace
@@ -824,7 +870,8 @@ CutCells cut_cells(CellGraph& graph, const Outline& outline, double mean_diamete
     return CellCutter(graph, outline, mean_diameter_m, merge_length_m).run();
 }
 
-CutCells join_small_pieces(CellGraph& graph, const Outline& outline, double mean_diameter_m, double mean_area_m2, double merge_length_m, std::vector<char> reshaped) {
+CutCells join_small_pieces(CellGraph& graph, const Outline& outline, double mean_diameter_m, double mean_area_m2,
+                           double merge_length_m, std::vector<char> reshaped) {
     return CellCutter(graph, outline, mean_diameter_m, merge_length_m).join_pieces_of(std::move(reshaped), mean_area_m2);
 }
 

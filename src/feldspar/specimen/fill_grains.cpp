@@ -1,12 +1,12 @@
 #include "feldspar/specimen/fill_grains.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <numeric>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
@@ -22,7 +22,7 @@ namespace {
 constexpr double mean_spacing = 1.0;
 
 using Polygons = std::vector<std::vector<Vec2>>;
-using Rows = std::vector<std::vector<std::vector<int>>>;   // of each grain and edge
+using Rows = std::vector<std::vector<std::vector<int>>>;  // of each grain and edge
 
 Polygons polygons_of(const Tessellation& cells) {
     Polygons polygons;
@@ -42,7 +42,7 @@ void each(int count, Team* team, const Work& work) {
             errors[thread] = {g, std::current_exception()};
         }
     });
-    for (const auto& [g, error] : errors) {   // shares ascend
+    for (const auto& [g, error] : errors) {  // shares ascend
         if (error) std::rethrow_exception(error);
     }
 }
@@ -64,7 +64,8 @@ double discs_in_all(const Polygons& polygons, double diameter, Team* team) {
     return std::accumulate(counts.begin(), counts.end(), 0.0);
 }
 
-/// A grain that is so bent or narrow that its discs must be far smaller than the common diameter may have room for millions of them: it is refused.
+/// A grain that is so bent or narrow that its discs must be far smaller than the common diameter may have room for millions of
+/// them: it is refused.
 constexpr double smallest_share = 0.05, most_inside = 10000.0;
 
 void require_room(const Polygons& polygons, const std::vector<GrainRing>& rings, double diameter) {
@@ -72,8 +73,9 @@ void require_room(const Polygons& polygons, const std::vector<GrainRing>& rings,
         if (rings[g].diameter_m >= smallest_share * diameter || discs_inside(rings[g]) <= most_inside) continue;
         const Vec2 at = centroid(polygons[g]);
         throw InputError({"", 0, 0, "specimen.grains.particles_per_grain"},
-                         fmt::format("the grain at ({:.4g}, {:.4g}) mm is too narrow for inner particles of {:.3g} mm", 1e3 * at.x, 1e3 * at.y, 1e3 * diameter), "grains that are wider",
-                         "more particles a grain, a larger merge length, or another seed");
+                         fmt::format("the grain at ({:.4g}, {:.4g}) mm is too narrow for inner particles of {:.3g} mm",
+                                     1e3 * at.x, 1e3 * at.y, 1e3 * diameter),
+                         "grains that are wider", "more particles a grain, a larger merge length, or another seed");
     }
 }
 
@@ -105,7 +107,7 @@ std::vector<int> rounded(const std::vector<double>& numbers, long wanted) {
 /// A grain while it is being filled.
 struct Filled {
     GrainRing grain;
-    RandomStream random;   ///< after the inner discs were added, or later where some were put elsewhere
+    RandomStream random;  ///< after the inner discs were added, or later where some were put elsewhere
     bool used_random = false;
     std::vector<InsideContact> contacts;
 };
@@ -124,12 +126,12 @@ void append(const Filled& filled, Filling& filling, Rows& rows) {
     }
 }
 
-/// Fills the grains from `first` on that make a batch, side by side. All grains draw from one stream, each where the one before has
-/// stopped. Adding the discs is quick and done in turn; settling seldom draws (one grain of eighteen), so all of the batch settle
-/// at once as if none did, and those after one that has drawn are thrown away.
+/// Fills the grains from `first` on that make a batch, side by side. All grains draw from one stream, each where the one before
+/// has stopped. Adding the discs is quick and done in turn; settling seldom draws (one grain of eighteen), so all of the batch
+/// settle at once as if none did, and those after one that has drawn are thrown away.
 /// @returns the filled grains that count, at least one, in their order
-std::vector<Filled> fill_batch(const Polygons& polygons, const std::vector<GrainRing>& rings, const std::vector<int>& counts, int first,
-                               RandomStream random, Team* team) {
+std::vector<Filled> fill_batch(const Polygons& polygons, const std::vector<GrainRing>& rings, const std::vector<int>& counts,
+                               int first, RandomStream random, Team* team) {
     const int batch = team && team->size() > 1 ? 2 * team->size() : 1;
     std::vector<Filled> filled;
     for (int g = first; g < std::min(first + batch, static_cast<int>(rings.size())); ++g) {
@@ -171,7 +173,8 @@ Filling fill_grains(const Tessellation& cells, double particles_per_grain, std::
     RandomStream random(seed, "grain filling");
     Rows rows;
     while (std::ssize(rows) < grains) {
-        const std::vector<Filled> batch = fill_batch(polygons, rings, counts, static_cast<int>(rows.size()), random, control.team);
+        const std::vector<Filled> batch =
+            fill_batch(polygons, rings, counts, static_cast<int>(rows.size()), random, control.team);
         for (const Filled& one : batch) append(one, filling, rows);
         random = batch.back().random;
         control.done(static_cast<double>(rows.size()) / grains);

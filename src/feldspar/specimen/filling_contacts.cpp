@@ -33,9 +33,7 @@ private:
     double gap(int i, int j) const { return norm(centres_[j] - centres_[i]) - radii_[i] - radii_[j]; }
     std::size_t pair(int i, int j) const { return static_cast<std::size_t>(i) * centres_.size() + static_cast<std::size_t>(j); }
     bool touches(int i, int j) const { return touching_[pair(i, j)] != 0; }
-    void touch(int i, int j) {
-        touching_[pair(i, j)] = touching_[pair(j, i)] = 1;
-    }
+    void touch(int i, int j) { touching_[pair(i, j)] = touching_[pair(j, i)] = 1; }
     int holds_on(int i) const;
     void start();
     bool grow();
@@ -155,8 +153,8 @@ struct EdgeLine {
     }
 };
 
-/// (S11): bounds of the shares of successive places: the edge's two ends and, between, the midpoints, none nearer than the smallest
-/// share. Neighbouring shares get the same point, so no part of the edge is left out or counted twice.
+/// (S11): bounds of the shares of successive places: the edge's two ends and, between, the midpoints, none nearer than the
+/// smallest share. Neighbouring shares get the same point, so no part of the edge is left out or counted twice.
 std::vector<Vec2> share_bounds(const EdgeLine& edge, std::vector<double> places) {
     const int count = static_cast<int>(places.size());
     const double least = edge.length * std::min(smallest_share, 0.1 / count);

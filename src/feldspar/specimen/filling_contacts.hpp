@@ -9,7 +9,8 @@
 namespace feldspar {
 
 /// (S9): discs of one grain whose Laguerre cells are neighbours are in contact if the gap between them is at most this share of
-/// the diameter. With it the stiffness of Table 1 of the paper gives the paper's Young's modulus (docs/decisions: inner particles).
+/// the diameter. With it the stiffness of Table 1 of the paper gives the paper's Young's modulus (docs/decisions: inner
+/// particles).
 constexpr double contact_gap = 0.30;
 
 /// Pairs of discs of one grain in contact, by their numbers in the grain, ascending. Where these would leave a mechanism (discs

@@ -11,7 +11,7 @@ namespace {
 /// clear of the limit 2 / omega.
 constexpr double longest_step = 0.4;
 constexpr double first_mixing = 0.1;
-constexpr int patience = 5;   // steps downhill before the time step grows
+constexpr int patience = 5;  // steps downhill before the time step grows
 
 }  // namespace
 

@@ -11,10 +11,10 @@ namespace feldspar {
 
 /// What one use of FIRE has of its own.
 struct FireLimits {
-    double shortest_step = 0.01;      ///< unit of time (that of unit mass and stiffness), from 0 to the longest step of 0.4
-    bool steps_back = true;           ///< where the motion has turned uphill: go back by half a step before starting again
-    double farthest_move_m = 0.0;     ///< of a point in one step (> 0)
-    bool forget_speed = false;        ///< a point that would move farther keeps only the speed of the farthest move
+    double shortest_step = 0.01;   ///< unit of time (that of unit mass and stiffness), from 0 to the longest step of 0.4
+    bool steps_back = true;        ///< where the motion has turned uphill: go back by half a step before starting again
+    double farthest_move_m = 0.0;  ///< of a point in one step (> 0)
+    bool forget_speed = false;     ///< a point that would move farther keeps only the speed of the farthest move
 };
 
 /// Points of unit mass under forces whose stiffness is of the order of 1, so that a force is a length (m). They move by
@@ -37,9 +37,9 @@ private:
     void move(std::span<Vec2> points, std::span<const Vec2> forces, double turn, IndexRange range);
 
     FireLimits limits_;
-    std::vector<Vec2> velocity_;   ///< m per unit of time
+    std::vector<Vec2> velocity_;  ///< m per unit of time
     double time_step_ = 0.1;
-    double mixing_ = 0.1;          ///< share of the velocity that is turned into the direction of the force
+    double mixing_ = 0.1;  ///< share of the velocity that is turned into the direction of the force
     int steps_downhill_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "feldspar/specimen/fit_cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +11,6 @@
 #include <optional>
 #include <set>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -29,7 +29,7 @@ std::string in_mm(Vec2 at) { return fmt::format("({:.6g}, {:.6g}) mm", 1e3 * at.
 
 struct Circle {
     Vec2 centre;
-    double radius = 0.0, furthest = 0.0;   // how far a point is from it at most
+    double radius = 0.0, furthest = 0.0;  // how far a point is from it at most
 };
 
 /// Least squares: x^2 + y^2 = 2 a x + 2 b y + c.
@@ -55,7 +55,7 @@ Circle circle_through(const std::vector<Vec2>& points) {
 /// The corners of a closed line: without vertices that lie on the straight line between those that stay.
 std::vector<Vec2> corners_of(const std::vector<Vec2>& line, double reach) {
     const std::size_t n = line.size();
-    std::size_t first = 0;   // the vertex farthest from the middle is a corner
+    std::size_t first = 0;  // the vertex farthest from the middle is a corner
     Vec2 middle;
     for (const Vec2 p : line) middle += (1.0 / static_cast<double>(n)) * p;
     for (std::size_t k = 1; k < n; ++k)
@@ -102,7 +102,8 @@ double rounded(double value) {
 
 class Fitter {
 public:
-    Fitter(const GivenCellsSpec& spec, const Outline& outline, Shape shape) : spec_(spec), cells_(*spec.cells), outline_(outline), mean_(cells_.mean_diameter_m), reach_(spec.tolerance * mean_) {
+    Fitter(const GivenCellsSpec& spec, const Outline& outline, Shape shape)
+        : spec_(spec), cells_(*spec.cells), outline_(outline), mean_(cells_.mean_diameter_m), reach_(spec.tolerance * mean_) {
         result_.shift = shift(shape);
         graph_.vertices = cells_.vertices;
         if (result_.shift != Vec2{})
@@ -119,8 +120,10 @@ public:
     }
 
     FittedCells fit() {
-        if (outline_.is_disc) fit_disc();
-        else fit_polygon();
+        if (outline_.is_disc)
+            fit_disc();
+        else
+            fit_polygon();
         check_area();
         return finished();
     }
@@ -137,7 +140,8 @@ public:
             }
         } else {
             const std::size_t n = outline_.vertices.size();
-            for (std::size_t k = 0; k < n; ++k) cut_by_line(outline_.vertices[k], outline_.vertices[(k + 1) % n], static_cast<int>(k));
+            for (std::size_t k = 0; k < n; ++k)
+                cut_by_line(outline_.vertices[k], outline_.vertices[(k + 1) % n], static_cast<int>(k));
         }
         if (graph_.faces.empty()) fail("the outline lies outside the cells", "an outline within the cells");
         label_remaining();
@@ -150,7 +154,9 @@ public:
     }
 
 private:
-    [[noreturn]] void fail(const std::string& problem, const std::string& allowed, const std::string& suggestion = {}) const { throw InputError({spec_.file.string(), 0, 0, {}}, problem, allowed, suggestion); }
+    [[noreturn]] void fail(const std::string& problem, const std::string& allowed, const std::string& suggestion = {}) const {
+        throw InputError({spec_.file.string(), 0, 0, {}}, problem, allowed, suggestion);
+    }
 
     Outline outline_without_cutouts() const {
         Outline outline = outline_;
@@ -181,16 +187,19 @@ private:
         } else if (outline_.is_disc) {
             by = outline_.centre - circle_through(line).centre;
         }
-        return norm(by) > reach_ ? by : Vec2{};   // within the tolerance vertices are moved one by one
+        return norm(by) > reach_ ? by : Vec2{};  // within the tolerance vertices are moved one by one
     }
 
-    std::string off(double distance) const { return fmt::format("{:.4g} mm ({:.3g} mean grain diameters)", 1e3 * distance, distance / mean_); }
+    std::string off(double distance) const {
+        return fmt::format("{:.4g} mm ({:.3g} mean grain diameters)", 1e3 * distance, distance / mean_);
+    }
     std::string of_file(Vec2 at) const {
         const Vec2 there = (1.0 / spec_.unit_m) * (at - result_.shift);
         return fmt::format("({:.6g}, {:.6g}) of the file", there.x, there.y);
     }
     static constexpr const char* filled = "cells that fill the outline to the key tolerance, in mean grain diameters";
-    static constexpr const char* other_ways = "shape = \"from-file\" takes the outline from the cells; is unit the length of one unit of the file?";
+    static constexpr const char* other_ways =
+        "shape = \"from-file\" takes the outline from the cells; is unit the length of one unit of the file?";
 
     void move(int v, Vec2 to) {
         Vec2& at = graph_.vertices[v];
@@ -216,8 +225,9 @@ private:
             const Vec2 out = graph_.vertices[v] - outline_.centre;
             const double distance = norm(out) - outline_.radius_m;
             if (std::abs(distance) > reach_)
-                fail(fmt::format("the cells do not fill the disc: their boundary at {} lies {} {} its circle", in_mm(out + outline_.centre), off(std::abs(distance)), distance > 0.0 ? "outside" : "inside"), filled,
-                     std::string(other_ways) + " A polygon around a disc needs a larger tolerance");
+                fail(fmt::format("the cells do not fill the disc: their boundary at {} lies {} {} its circle",
+                                 in_mm(out + outline_.centre), off(std::abs(distance)), distance > 0.0 ? "outside" : "inside"),
+                     filled, std::string(other_ways) + " A polygon around a disc needs a larger tolerance");
             if (std::abs(distance) > no_length * mean_) move(v, outline_.centre + (outline_.radius_m / norm(out)) * out);
             graph_.place[v] = circle_edge;
         }
@@ -249,7 +259,9 @@ private:
                 if (distance < nearest) nearest = distance, edge = k;
             }
             if (nearest > reach_)
-                fail(fmt::format("the cells do not fill the outline: their boundary at {}, {}, lies {} {} it", in_mm(at), of_file(at), off(nearest), contains(std::span<const Vec2>(outline), at) ? "inside" : "outside"), filled, other_ways);
+                fail(fmt::format("the cells do not fill the outline: their boundary at {}, {}, lies {} {} it", in_mm(at),
+                                 of_file(at), off(nearest), contains(std::span<const Vec2>(outline), at) ? "inside" : "outside"),
+                     filled, other_ways);
             graph_.place[v] = static_cast<int>(edge);
             const Vec2 a = outline[edge], b = outline[(edge + 1) % n];
             Vec2 to = at;
@@ -260,7 +272,8 @@ private:
         }
         for (Face& face : graph_.faces)
             for (std::size_t k = 0; k < face.labels.size(); ++k)
-                if (face.labels[k] == not_cut) face.labels[k] = outline_label(edge_between(face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]));
+                if (face.labels[k] == not_cut)
+                    face.labels[k] = outline_label(edge_between(face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]));
     }
 
     /// A corner of the outline in the middle of an edge of a cell.
@@ -275,7 +288,8 @@ private:
             line.insert(line.begin() + static_cast<std::ptrdiff_t>(k) + 1, v);
             for (Face& face : graph_.faces)
                 for (std::size_t j = 0; j < face.vertices.size(); ++j) {
-                    if (face.vertices[j] != a || face.vertices[(j + 1) % face.vertices.size()] != b || face.labels[j] != not_cut) continue;
+                    if (face.vertices[j] != a || face.vertices[(j + 1) % face.vertices.size()] != b || face.labels[j] != not_cut)
+                        continue;
                     face.vertices.insert(face.vertices.begin() + static_cast<std::ptrdiff_t>(j) + 1, v);
                     face.labels.insert(face.labels.begin() + static_cast<std::ptrdiff_t>(j) + 1, not_cut);
                     return;
@@ -283,8 +297,11 @@ private:
         }
         double nearest = std::numeric_limits<double>::infinity();
         for (std::size_t k = 0; k < n; ++k)
-            nearest = std::min(nearest, distance_to_segment(corner, graph_.vertices[line[k]], graph_.vertices[static_cast<std::size_t>(line[(k + 1) % n])]));
-        fail(fmt::format("the cells do not fill the outline: its corner at {} lies {} from their boundary", in_mm(corner), off(nearest)), filled, other_ways);
+            nearest = std::min(nearest, distance_to_segment(corner, graph_.vertices[line[k]],
+                                                            graph_.vertices[static_cast<std::size_t>(line[(k + 1) % n])]));
+        fail(fmt::format("the cells do not fill the outline: its corner at {} lies {} from their boundary", in_mm(corner),
+                         off(nearest)),
+             filled, other_ways);
     }
 
     /// The edge of the outline on which both vertices lie.
@@ -299,16 +316,22 @@ private:
             if (farthest < nearest && dot(q - p, to - from) > 0.0) nearest = farthest, edge = k;
         }
         if (edge < 0 || nearest > reach_)
-            fail(fmt::format("the cells do not fill the outline: an edge of a cell from {} to {} cuts a corner of it", in_mm(p), in_mm(q)), filled, other_ways);
+            fail(fmt::format("the cells do not fill the outline: an edge of a cell from {} to {} cuts a corner of it", in_mm(p),
+                             in_mm(q)),
+                 filled, other_ways);
         return edge;
     }
 
     void check_area() const {
         for (const Face& face : graph_.faces)
-            if (signed_area(corners(face)) <= 0.0) fail(fmt::format("cell {} has no area left where it was moved onto the outline", cells_.names[face.cell]), "a smaller tolerance");
+            if (signed_area(corners(face)) <= 0.0)
+                fail(fmt::format("cell {} has no area left where it was moved onto the outline", cells_.names[face.cell]),
+                     "a smaller tolerance");
         if (outline_.is_disc) return;
         const double whole = signed_area(outline_.vertices), area = total_area();
-        if (std::abs(area - whole) > 1e-6 * whole) fail(fmt::format("the cells have an area of {:.6g} mm2, the outline {:.6g} mm2", 1e6 * area, 1e6 * whole), filled, other_ways);
+        if (std::abs(area - whole) > 1e-6 * whole)
+            fail(fmt::format("the cells have an area of {:.6g} mm2, the outline {:.6g} mm2", 1e6 * area, 1e6 * whole), filled,
+                 other_ways);
     }
 
     FittedCells finished() {
@@ -325,13 +348,14 @@ private:
     void cut_by(int edge, const SideOf& side_of, const Crossings& crossings) {
         std::vector<Side> side;
         for (const Vec2 at : graph_.vertices) side.push_back(side_of(at));
-        std::map<std::pair<int, int>, std::vector<int>> cuts;   // of an edge, from its lower vertex on
+        std::map<std::pair<int, int>, std::vector<int>> cuts;  // of an edge, from its lower vertex on
         const auto cuts_between = [&](int a, int b) {
             const std::pair<int, int> key = std::minmax(a, b);
             auto found = cuts.find(key);
             if (found == cuts.end()) {
                 std::vector<int> numbers;
-                for (const Vec2 at : crossings(graph_.vertices[key.first], graph_.vertices[key.second], side[key.first], side[key.second])) {
+                for (const Vec2 at :
+                     crossings(graph_.vertices[key.first], graph_.vertices[key.second], side[key.first], side[key.second])) {
                     numbers.push_back(static_cast<int>(graph_.vertices.size()));
                     graph_.vertices.push_back(at);
                     graph_.place.push_back(place_inside);
@@ -352,12 +376,15 @@ private:
                 touched.push_back(touched_[f]);
                 continue;
             }
-            struct Part { int from, to, label; };
-            std::vector<Part> parts;   // of the edges, what stays; a vertex on the line alone is one without length
+            struct Part {
+                int from, to, label;
+            };
+            std::vector<Part> parts;  // of the edges, what stays; a vertex on the line alone is one without length
             for (std::size_t k = 0; k < n; ++k) {
                 const int a = face.vertices[k], b = face.vertices[(k + 1) % n];
                 const Side at_a = side[a], at_b = side[b];
-                const std::vector<int> between = at_a != Side::outside && at_b != Side::outside ? std::vector<int>{} : cuts_between(a, b);
+                const std::vector<int> between =
+                    at_a != Side::outside && at_b != Side::outside ? std::vector<int>{} : cuts_between(a, b);
                 std::vector<int> stops;
                 if (at_a != Side::outside) stops.push_back(a);
                 stops.insert(stops.end(), between.begin(), between.end());
@@ -376,7 +403,8 @@ private:
             std::vector<int> once = left.vertices;
             std::sort(once.begin(), once.end());
             if (std::adjacent_find(once.begin(), once.end()) != once.end() || !is_simple_polygon(corners(left)))
-                fail(fmt::format("the outline cuts cell {}, which is not convex, into several pieces", cells_.names[face.cell]), "convex cells where the outline runs through them");
+                fail(fmt::format("the outline cuts cell {}, which is not convex, into several pieces", cells_.names[face.cell]),
+                     "convex cells where the outline runs through them");
             touched.push_back(left.vertices != face.vertices || touched_[f] ? 1 : 0);
             faces.push_back(std::move(left));
         }
@@ -385,10 +413,12 @@ private:
         // an edge inside that runs along the cut has no other side any more
         std::set<std::pair<int, int>> darts;
         for (const Face& face : graph_.faces)
-            for (std::size_t k = 0; k < face.vertices.size(); ++k) darts.insert({face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]});
+            for (std::size_t k = 0; k < face.vertices.size(); ++k)
+                darts.insert({face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]});
         for (Face& face : graph_.faces)
             for (std::size_t k = 0; k < face.vertices.size(); ++k)
-                if (face.labels[k] >= 0 && !darts.contains({face.vertices[(k + 1) % face.vertices.size()], face.vertices[k]})) face.labels[k] = outline_label(edge);
+                if (face.labels[k] >= 0 && !darts.contains({face.vertices[(k + 1) % face.vertices.size()], face.vertices[k]}))
+                    face.labels[k] = outline_label(edge);
     }
 
     void cut_by_line(Vec2 a, Vec2 b, int edge) {
@@ -402,12 +432,17 @@ private:
         };
         for (Vec2& at : graph_.vertices)
             if (std::abs(height(at)) <= reach_) at = onto(at);
-        cut_by(edge, [&](Vec2 at) { return std::abs(height(at)) <= reach_ ? Side::on : height(at) > 0.0 ? Side::inside : Side::outside; },
-               [&](Vec2 p, Vec2 q, Side at_p, Side at_q) {
-                   std::vector<Vec2> found;
-                   if ((at_p == Side::inside && at_q == Side::outside) || (at_p == Side::outside && at_q == Side::inside)) found.push_back(onto(p + height(p) / (height(p) - height(q)) * (q - p)));
-                   return found;
-               });
+        cut_by(
+            edge,
+            [&](Vec2 at) { return std::abs(height(at)) <= reach_ ? Side::on
+                                  : height(at) > 0.0             ? Side::inside
+                                                                 : Side::outside; },
+            [&](Vec2 p, Vec2 q, Side at_p, Side at_q) {
+                std::vector<Vec2> found;
+                if ((at_p == Side::inside && at_q == Side::outside) || (at_p == Side::outside && at_q == Side::inside))
+                    found.push_back(onto(p + height(p) / (height(p) - height(q)) * (q - p)));
+                return found;
+            });
     }
 
     void cut_by_circle() {
@@ -416,23 +451,32 @@ private:
         const auto onto = [&](Vec2 at) { return c + (R / norm(at - c)) * (at - c); };
         for (Vec2& at : graph_.vertices)
             if (std::abs(norm(at - c) - R) <= reach_) at = onto(at);
-        cut_by(circle_edge, [&](Vec2 at) { return std::abs(norm(at - c) - R) <= reach_ ? Side::on : norm(at - c) < R ? Side::inside : Side::outside; },
-               [&](Vec2 p, Vec2 q, Side at_p, Side at_q) {
-                   std::vector<Vec2> found;
-                   if (at_p != Side::outside && at_q != Side::outside) return found;
-                   const double length = norm(q - p);
-                   const Vec2 along = (1.0 / length) * (q - p);
-                   const double foot = dot(c - p, along), half2 = R * R - dot(p + foot * along - c, p + foot * along - c);
-                   if (!(half2 > 0.0)) return found;
-                   const double half = std::sqrt(half2);
-                   const auto take = [&](double share) { found.push_back(onto(p + share * along)); };
-                   if (at_p == Side::inside) take(foot + half);
-                   else if (at_q == Side::inside) take(foot - half);
-                   else if (at_p == Side::on) { if (foot + half > reach_ && foot > reach_) take(std::min(foot + half, length)); }
-                   else if (at_q == Side::on) { if (length - foot > reach_) take(std::max(foot - half, 0.0)); }
-                   else if (foot - half > 0.0 && foot + half < length && R - std::sqrt(std::max(0.0, R * R - half2)) > reach_) take(foot - half), take(foot + half);
-                   return found;
-               });
+        cut_by(
+            circle_edge,
+            [&](Vec2 at) {
+                return std::abs(norm(at - c) - R) <= reach_ ? Side::on : norm(at - c) < R ? Side::inside : Side::outside;
+            },
+            [&](Vec2 p, Vec2 q, Side at_p, Side at_q) {
+                std::vector<Vec2> found;
+                if (at_p != Side::outside && at_q != Side::outside) return found;
+                const double length = norm(q - p);
+                const Vec2 along = (1.0 / length) * (q - p);
+                const double foot = dot(c - p, along), half2 = R * R - dot(p + foot * along - c, p + foot * along - c);
+                if (!(half2 > 0.0)) return found;
+                const double half = std::sqrt(half2);
+                const auto take = [&](double share) { found.push_back(onto(p + share * along)); };
+                if (at_p == Side::inside)
+                    take(foot + half);
+                else if (at_q == Side::inside)
+                    take(foot - half);
+                else if (at_p == Side::on) {
+                    if (foot + half > reach_ && foot > reach_) take(std::min(foot + half, length));
+                } else if (at_q == Side::on) {
+                    if (length - foot > reach_) take(std::max(foot - half, 0.0));
+                } else if (foot - half > 0.0 && foot + half < length && R - std::sqrt(std::max(0.0, R * R - half2)) > reach_)
+                    take(foot - half), take(foot + half);
+                return found;
+            });
     }
 
     /// Edges of the cells' own boundary that are left must lie on the outline.
@@ -440,14 +484,18 @@ private:
         for (Face& face : graph_.faces)
             for (std::size_t k = 0; k < face.vertices.size(); ++k) {
                 if (face.labels[k] != not_cut) continue;
-                const Vec2 p = graph_.vertices[face.vertices[k]], q = graph_.vertices[static_cast<std::size_t>(face.vertices[(k + 1) % face.vertices.size()])];
+                const Vec2 p = graph_.vertices[face.vertices[k]],
+                           q = graph_.vertices[static_cast<std::size_t>(face.vertices[(k + 1) % face.vertices.size()])];
                 if (!outline_.is_disc) {
                     face.labels[k] = outline_label(edge_of_cut(p, q));
                     continue;
                 }
                 // chords of the circle, and sides of the cells that touch it
-                const double gap = outline_.radius_m - std::sqrt(std::max(0.0, dot(0.5 * (p + q) - outline_.centre, 0.5 * (p + q) - outline_.centre)));
-                const bool ends_on = std::max(std::abs(norm(p - outline_.centre) - outline_.radius_m), std::abs(norm(q - outline_.centre) - outline_.radius_m)) <= 1.01 * reach_;
+                const double gap =
+                    outline_.radius_m -
+                    std::sqrt(std::max(0.0, dot(0.5 * (p + q) - outline_.centre, 0.5 * (p + q) - outline_.centre)));
+                const bool ends_on = std::max(std::abs(norm(p - outline_.centre) - outline_.radius_m),
+                                              std::abs(norm(q - outline_.centre) - outline_.radius_m)) <= 1.01 * reach_;
                 if (!ends_on || gap > mean_) not_covered(0.5 * (p + q));
                 face.labels[k] = outline_label(circle_edge);
             }
@@ -456,16 +504,21 @@ private:
         const std::vector<Vec2>& outline = outline_.vertices;
         for (std::size_t k = 0; k < outline.size(); ++k) {
             const Vec2 from = outline[k], to = outline[(k + 1) % outline.size()];
-            if (dot(q - p, to - from) > 0.0 && std::max(distance_to_segment(p, from, to), distance_to_segment(q, from, to)) <= 1.01 * reach_) return static_cast<int>(k);
+            if (dot(q - p, to - from) > 0.0 &&
+                std::max(distance_to_segment(p, from, to), distance_to_segment(q, from, to)) <= 1.01 * reach_)
+                return static_cast<int>(k);
         }
         not_covered(0.5 * (p + q));
     }
     [[noreturn]] void not_covered(Vec2 at) const {
         const auto line = boundary_points(cells_);
         const Box box = bounding_box(std::span<const Vec2>(line)), wanted = bounding_box(outline_);
-        fail(fmt::format("the cells do not cover the outline: they end inside it at {}. They reach over {:.6g} x {:.6g} mm, the outline over {:.6g} x {:.6g} mm", in_mm(at), 1e3 * (box.upper.x - box.lower.x), 1e3 * (box.upper.y - box.lower.y),
+        fail(fmt::format("the cells do not cover the outline: they end inside it at {}. They reach over {:.6g} x {:.6g} mm, the "
+                         "outline over {:.6g} x {:.6g} mm",
+                         in_mm(at), 1e3 * (box.upper.x - box.lower.x), 1e3 * (box.upper.y - box.lower.y),
                          1e3 * (wanted.upper.x - wanted.lower.x), 1e3 * (wanted.upper.y - wanted.lower.y)),
-             "an outline within the cells; it is cut out of their middle", "make the specimen of the test smaller, or take more cells");
+             "an outline within the cells; it is cut out of their middle",
+             "make the specimen of the test smaller, or take more cells");
     }
 
     /// Where vertices may go, from the edges of the outline that meet there.
@@ -474,7 +527,8 @@ private:
         for (const Face& face : graph_.faces)
             for (std::size_t k = 0; k < face.vertices.size(); ++k) {
                 if (face.labels[k] >= 0) continue;
-                for (const int v : {face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]}) edges[v].insert(-1 - face.labels[k]);
+                for (const int v : {face.vertices[k], face.vertices[(k + 1) % face.vertices.size()]})
+                    edges[v].insert(-1 - face.labels[k]);
             }
         // A flat meets the chord of a cell somewhat inside of the circle.
         std::vector<Vec2> exact = outline_.vertices;
@@ -507,12 +561,13 @@ OutlineSpec outline_of_cells(const GivenCells& cells, double tolerance) {
     OutlineSpec outline;
     const Box box = bounding_box(std::span<const Vec2>(line));
     const auto near = [&](double a, double b) { return std::abs(a - b) <= reach; };
-    const bool box_corners = corners.size() == 4 && std::all_of(corners.begin(), corners.end(), [&](Vec2 p) {
-        return (near(p.x, box.lower.x) || near(p.x, box.upper.x)) && (near(p.y, box.lower.y) || near(p.y, box.upper.y));
-    });
+    const bool box_corners =
+        corners.size() == 4 && std::all_of(corners.begin(), corners.end(), [&](Vec2 p) {
+            return (near(p.x, box.lower.x) || near(p.x, box.upper.x)) && (near(p.y, box.lower.y) || near(p.y, box.upper.y));
+        });
     if (box_corners) {
         outline.shape = Shape::rectangle;
-        const bool at_origin = std::abs(box.lower.x) <= reach && std::abs(box.lower.y) <= reach;   // then its cells are not moved
+        const bool at_origin = std::abs(box.lower.x) <= reach && std::abs(box.lower.y) <= reach;  // then its cells are not moved
         outline.width_m = at_origin ? box.upper.x : box.upper.x - box.lower.x;
         outline.height_m = at_origin ? box.upper.y : box.upper.y - box.lower.y;
         return outline;

@@ -150,7 +150,9 @@ bool clear_overlaps(GrainRing& ring) {
 /// @returns false if a row has none left
 bool clear_rows(GrainRing& ring, const CellEdges& edges) {
     for (int k = 0; k < edges.count(); ++k) {
-        const auto behind = [&](int i) { return dot(ring.centres[i] - edges.start(k), edges.inward(k)) < 0.25 * ring.diameter_m; };
+        const auto behind = [&](int i) {
+            return dot(ring.centres[i] - edges.start(k), edges.inward(k)) < 0.25 * ring.diameter_m;
+        };
         std::erase_if(ring.rows[k], behind);
         if (ring.rows[k].empty()) return false;
     }

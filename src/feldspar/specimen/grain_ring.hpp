@@ -12,13 +12,13 @@ namespace feldspar {
 /// Discs along a grain's edges, all of one diameter; later also those inside.
 struct GrainRing {
     double diameter_m = 0.0;
-    std::vector<Vec2> centres;              ///< m, counter-clockwise
-    std::vector<double> radii_m;            ///< half the diameter, until inner discs are added
-    std::vector<ParticlePlace> places;      ///< vertex or edge
-    std::vector<Vec2> along;                ///< edge discs: direction of their edge, on which they may slide; vertex discs: zero
-    std::vector<std::vector<int>> rows;     ///< for each edge of the cell: the discs along it, from its first vertex to its last
-    double area_m2 = 0.0;                   ///< of the polygon through the corner discs
-    double perimeter_m = 0.0;               ///< of the same polygon
+    std::vector<Vec2> centres;           ///< m, counter-clockwise
+    std::vector<double> radii_m;         ///< half the diameter, until inner discs are added
+    std::vector<ParticlePlace> places;   ///< vertex or edge
+    std::vector<Vec2> along;             ///< edge discs: direction of their edge, on which they may slide; vertex discs: zero
+    std::vector<std::vector<int>> rows;  ///< for each edge of the cell: the discs along it, from its first vertex to its last
+    double area_m2 = 0.0;                ///< of the polygon through the corner discs
+    double perimeter_m = 0.0;            ///< of the same polygon
 };
 
 /// Two discs of one grain overlap by at most this share of their diameter; a third disc is taken away before that.

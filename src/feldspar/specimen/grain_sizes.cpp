@@ -1,12 +1,12 @@
 #include "feldspar/specimen/grain_sizes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <boost/math/special_functions/erf.hpp>
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -47,14 +47,16 @@ void check_bounds(const GrainSizeSpec& spec) {
 void check_log_normal(const GrainSizeSpec& spec) {
     check_bounds(spec);
     if (!(spec.median_m > 0.0) || !(spec.log_standard_deviation > 0.0) || !std::isfinite(spec.log_standard_deviation)) {
-        throw InputError({"", 0, 0, diameter_key},
-                         fmt::format("median {:g} m, standard deviation of ln(diameter) {:g}", spec.median_m, spec.log_standard_deviation),
-                         "both greater than zero");
+        throw InputError(
+            {"", 0, 0, diameter_key},
+            fmt::format("median {:g} m, standard deviation of ln(diameter) {:g}", spec.median_m, spec.log_standard_deviation),
+            "both greater than zero");
     }
     const LogNormal d(spec);
     if (!(phi_between(d.a, d.b) > 1e-6)) {
         throw InputError({"", 0, 0, diameter_key},
-                         fmt::format("hardly any grain of the log-normal distribution lies between {:g} m and {:g} m", spec.minimum_m, spec.maximum_m),
+                         fmt::format("hardly any grain of the log-normal distribution lies between {:g} m and {:g} m",
+                                     spec.minimum_m, spec.maximum_m),
                          "bounds that hold at least a millionth of the distribution");
     }
 }
@@ -62,8 +64,9 @@ void check_log_normal(const GrainSizeSpec& spec) {
 void check_sieve(const GrainSizeSpec& spec) {
     const auto& sieve = spec.sieve;
     if (sieve.size() < 2 || sieve.front().passing != 0.0 || sieve.back().passing != 1.0 || !(sieve.front().diameter_m > 0.0)) {
-        throw InputError({"", 0, 0, diameter_key}, fmt::format("a sieve curve of {} points", sieve.size()),
-                         "at least two points, the first with passing 0 at a diameter greater than zero, the last with passing 1");
+        throw InputError(
+            {"", 0, 0, diameter_key}, fmt::format("a sieve curve of {} points", sieve.size()),
+            "at least two points, the first with passing 0 at a diameter greater than zero, the last with passing 1");
     }
     for (std::size_t i = 1; i < sieve.size(); ++i) {
         if (!(sieve[i].diameter_m > sieve[i - 1].diameter_m) || !(sieve[i].passing >= sieve[i - 1].passing)) {
@@ -79,9 +82,12 @@ void check_sieve(const GrainSizeSpec& spec) {
 
 void check_grain_sizes(const GrainSizeSpec& spec) {
     switch (spec.kind) {
-        case GrainSizeKind::uniform: return check_bounds(spec);
-        case GrainSizeKind::log_normal: return check_log_normal(spec);
-        case GrainSizeKind::sieve: return check_sieve(spec);
+        case GrainSizeKind::uniform:
+            return check_bounds(spec);
+        case GrainSizeKind::log_normal:
+            return check_log_normal(spec);
+        case GrainSizeKind::sieve:
+            return check_sieve(spec);
     }
 }
 
@@ -98,7 +104,8 @@ DiameterMoments diameter_moments(const GrainSizeSpec& spec) {
     for (std::size_t i = 1; i < spec.sieve.size(); ++i) {
         const SievePoint low = spec.sieve[i - 1], high = spec.sieve[i];
         number += interval_number(low, high);
-        first += (high.passing - low.passing) / std::log(high.diameter_m / low.diameter_m) * (1.0 / low.diameter_m - 1.0 / high.diameter_m);
+        first += (high.passing - low.passing) / std::log(high.diameter_m / low.diameter_m) *
+                 (1.0 / low.diameter_m - 1.0 / high.diameter_m);
     }
     return {first / number, 1.0 / number};  // the integral of d^2 d^-3, weighted so, is the whole area: 1
 }
@@ -144,9 +151,12 @@ constexpr double most_area_missed = 0.1;
 
 double diameter_at(const GrainSizeSpec& spec, const std::vector<double>& cumulative, double u) {
     switch (spec.kind) {
-        case GrainSizeKind::uniform: return spec.minimum_m + u * (spec.maximum_m - spec.minimum_m);
-        case GrainSizeKind::log_normal: return sample_log_normal(spec, u);
-        case GrainSizeKind::sieve: return sample_sieve(spec.sieve, cumulative, u);
+        case GrainSizeKind::uniform:
+            return spec.minimum_m + u * (spec.maximum_m - spec.minimum_m);
+        case GrainSizeKind::log_normal:
+            return sample_log_normal(spec, u);
+        case GrainSizeKind::sieve:
+            return sample_sieve(spec.sieve, cumulative, u);
     }
     return spec.minimum_m;
 }
@@ -168,18 +178,21 @@ std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, Rando
     }
     const double wanted = count * diameter_moments(spec).mean_square_m2;
     if (std::abs(squares - wanted) <= most_area_missed * wanted) return diameters;
-    for (int i = 0; i < count; ++i) diameters[static_cast<std::size_t>(i)] = diameter_at(spec, cumulative, (i + random.uniform()) / count);
+    for (int i = 0; i < count; ++i)
+        diameters[static_cast<std::size_t>(i)] = diameter_at(spec, cumulative, (i + random.uniform()) / count);
     return diameters;
 }
 
 double smallest_of(const GrainSizeSpec& spec) {
     if (spec.kind != GrainSizeKind::sieve) return spec.minimum_m;
-    std::size_t first = 0;   // below the last sieve that nothing passes there are no grains
+    std::size_t first = 0;  // below the last sieve that nothing passes there are no grains
     while (first + 1 < spec.sieve.size() && spec.sieve[first + 1].passing <= 0.0) ++first;
     return spec.sieve[first].diameter_m;
 }
 
-double largest_of(const GrainSizeSpec& spec) { return spec.kind == GrainSizeKind::sieve ? largest_of_sieve_m(spec.sieve) : spec.maximum_m; }
+double largest_of(const GrainSizeSpec& spec) {
+    return spec.kind == GrainSizeKind::sieve ? largest_of_sieve_m(spec.sieve) : spec.maximum_m;
+}
 
 SizeSummary summary_of(std::vector<double> diameters) {
     if (diameters.empty()) return {};
@@ -201,8 +214,9 @@ SizeSummary summary_of(std::vector<double> diameters) {
 
 namespace {
 
-/// Grains of each phase for a unit of area, 1/m^2, by (H7) and (H8): each cell is a disc with a film e = e0 D / (d + D) around it, where D is the mean diameter of
-/// the neighbours, by their perimeters; e0 is such that the discs have the share 1 - n of the area.
+/// Grains of each phase for a unit of area, 1/m^2, by (H7) and (H8): each cell is a disc with a film e = e0 D / (d + D) around
+/// it, where D is the mean diameter of the neighbours, by their perimeters; e0 is such that the discs have the share 1 - n of the
+/// area.
 std::vector<double> grains_per_area(const std::vector<PhaseSizes>& phases, double porosity) {
     std::vector<DiameterMoments> moments;
     double widest = 0.0;
@@ -222,7 +236,7 @@ std::vector<double> grains_per_area(const std::vector<PhaseSizes>& phases, doubl
         }
         return sum;
     };
-    for (int round = 0; round < 20; ++round) {   // each numbers for the next mean of the neighbours
+    for (int round = 0; round < 20; ++round) {  // each numbers for the next mean of the neighbours
         double low = 0.0, high = widest;
         while (share_of_discs(high) > 1.0 - porosity) high *= 2.0;
         for (int i = 0; i < 100; ++i) {
@@ -256,8 +270,11 @@ double partial_square(const GrainSizeSpec& spec, double d) {
     double passing = 0.0;
     for (std::size_t i = 1; i < spec.sieve.size(); ++i) {
         const SievePoint low = spec.sieve[i - 1], high = spec.sieve[i];
-        if (d >= high.diameter_m) passing = high.passing;
-        else if (d > low.diameter_m) passing = low.passing + (high.passing - low.passing) * std::log(d / low.diameter_m) / std::log(high.diameter_m / low.diameter_m);
+        if (d >= high.diameter_m)
+            passing = high.passing;
+        else if (d > low.diameter_m)
+            passing = low.passing +
+                      (high.passing - low.passing) * std::log(d / low.diameter_m) / std::log(high.diameter_m / low.diameter_m);
     }
     return passing * diameter_moments(spec).mean_square_m2;
 }
@@ -270,16 +287,22 @@ std::vector<int> grains_of_phases(const std::vector<PhaseSizes>& phases, double 
         check_grain_sizes(phase.sizes);
         sum += phase.share;
     }
-    if (!(std::abs(sum - 1.0) < 1e-6)) throw InputError({"", 0, 0, "material.phase.share"}, fmt::format("the shares of the minerals add up to {:.6g}", sum), "1 (100 %)");
+    if (!(std::abs(sum - 1.0) < 1e-6))
+        throw InputError({"", 0, 0, "material.phase.share"}, fmt::format("the shares of the minerals add up to {:.6g}", sum),
+                         "1 (100 %)");
     const std::vector<double> numbers = grains_per_area(phases, porosity);
     std::vector<int> counts;
     for (std::size_t p = 0; p < phases.size(); ++p) {
         const PhaseSizes& phase = phases[p];
         const double count = area_m2 * numbers[p];
         if (count < 0.5)
-            throw InputError({"", 0, 0, "material.phase.diameter"}, fmt::format("the share of \"{}\", {:.3g} %, is less than half a grain of its size", phase.name, 100.0 * phase.share), "a share of a grain or more",
-                             "smaller grains of it, a larger share, or a larger specimen");
-        if (count > 1e8) throw InputError({"", 0, 0, "material.phase.diameter"}, fmt::format("the grains of \"{}\" would be {:.3g}", phase.name, count), "larger grains");
+            throw InputError({"", 0, 0, "material.phase.diameter"},
+                             fmt::format("the share of \"{}\", {:.3g} %, is less than half a grain of its size", phase.name,
+                                         100.0 * phase.share),
+                             "a share of a grain or more", "smaller grains of it, a larger share, or a larger specimen");
+        if (count > 1e8)
+            throw InputError({"", 0, 0, "material.phase.diameter"},
+                             fmt::format("the grains of \"{}\" would be {:.3g}", phase.name, count), "larger grains");
         counts.push_back(static_cast<int>(std::lround(count)));
     }
     return counts;
@@ -290,7 +313,8 @@ PhasedDiameters sample_by_phase(const std::vector<PhaseSizes>& phases, const std
     for (std::size_t p = 0; p < phases.size(); ++p) {
         const GrainSizeSpec& spec = phases[p].sizes;
         std::vector<double> cumulative = {0.0};
-        for (std::size_t i = 1; i < spec.sieve.size() && spec.kind == GrainSizeKind::sieve; ++i) cumulative.push_back(cumulative.back() + interval_number(spec.sieve[i - 1], spec.sieve[i]));
+        for (std::size_t i = 1; i < spec.sieve.size() && spec.kind == GrainSizeKind::sieve; ++i)
+            cumulative.push_back(cumulative.back() + interval_number(spec.sieve[i - 1], spec.sieve[i]));
         for (int i = 0; i < counts[p]; ++i) {
             sample.diameters_m.push_back(diameter_at(spec, cumulative, (i + random.uniform()) / counts[p]));
             sample.phases.push_back(static_cast<int>(p));
@@ -313,7 +337,8 @@ std::vector<PhaseFill> fill_of_phases(const Specimen& specimen) {
         cells[p].push_back(2.0 * std::sqrt(area / std::numbers::pi));
     }
     const Packing& packed = specimen.packed.centres.empty() ? specimen.packing : specimen.packed;
-    for (std::size_t i = 0; i < packed.phases.size(); ++i) discs[static_cast<std::size_t>(packed.phases[i])].push_back(2.0 * packed.radii_m[i]);
+    for (std::size_t i = 0; i < packed.phases.size(); ++i)
+        discs[static_cast<std::size_t>(packed.phases[i])].push_back(2.0 * packed.radii_m[i]);
     for (std::size_t p = 0; p < phases; ++p) {
         fills[p].area_share /= total;
         fills[p].discs = summary_of(std::move(discs[p]));
@@ -344,7 +369,8 @@ GrainSizeSpec mixture_of(const std::vector<PhaseSizes>& phases, double porosity)
         for (std::size_t p = 0; p < phases.size(); ++p) passing += numbers[p] * partial_square(phases[p].sizes, d) / all;
         mixture.sieve.push_back({d, i == 0 ? 0.0 : i == kPoints ? 1.0 : std::min(passing, 1.0)});
     }
-    for (std::size_t i = 1; i < mixture.sieve.size(); ++i) mixture.sieve[i].passing = std::max(mixture.sieve[i].passing, mixture.sieve[i - 1].passing);   // rounding
+    for (std::size_t i = 1; i < mixture.sieve.size(); ++i)
+        mixture.sieve[i].passing = std::max(mixture.sieve[i].passing, mixture.sieve[i - 1].passing);  // rounding
     return mixture;
 }
 

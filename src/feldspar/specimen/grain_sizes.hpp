@@ -10,8 +10,8 @@ namespace feldspar {
 
 /// Moments of the distribution by NUMBER of grains.
 struct DiameterMoments {
-    double mean_m = 0.0;             ///< E[d]
-    double mean_square_m2 = 0.0;     ///< E[d^2]
+    double mean_m = 0.0;          ///< E[d]
+    double mean_square_m2 = 0.0;  ///< E[d^2]
 };
 
 /// @throws InputError naming the key, for bounds that are not positive or not ordered, a standard deviation that is not
@@ -36,8 +36,8 @@ double largest_of_sieve_m(const std::vector<SievePoint>& sieve);
 
 /// Draws `count` diameters (m) in the stream's order, by inversion of the distribution function: one uniform number each.
 /// Sieve fractions are of area: the share of the area in grains finer than d follows the curve.
-/// Of a wide distribution a few large grains decide the area. Where the sample's area misses that of the distribution by more than a
-/// tenth, another is taken: one grain of each of `count` equal parts of the distribution.
+/// Of a wide distribution a few large grains decide the area. Where the sample's area misses that of the distribution by more
+/// than a tenth, another is taken: one grain of each of `count` equal parts of the distribution.
 std::vector<double> sample_diameters(const GrainSizeSpec& spec, int count, RandomStream& random);
 
 /// The smallest and the largest diameter (m) of a distribution.
@@ -50,28 +50,31 @@ SizeSummary summary_of(std::vector<double> diameters);
 /// Grains of minerals that have sizes of their own.
 struct PhasedDiameters {
     std::vector<double> diameters_m;
-    std::vector<int> phases;   ///< of each
+    std::vector<int> phases;  ///< of each
 };
 
-/// How many grains each mineral has in a packing of this area (docs/theory/heterogeneity.md, H7 and H8). The cells fill the plane: each has, beside its
-/// disc, a film around it, which is wider around small grains. The counts are such that the cells, not the discs, have the shares.
+/// How many grains each mineral has in a packing of this area (docs/theory/heterogeneity.md, H7 and H8). The cells fill the
+/// plane: each has, beside its disc, a film around it, which is wider around small grains. The counts are such that the cells,
+/// not the discs, have the shares.
 /// @throws InputError  shares that do not add up to 1; what check_grain_sizes refuses
 std::vector<int> grains_of_phases(const std::vector<PhaseSizes>& phases, double area_m2, double porosity);
 
-/// One grain of each of `count` equal parts of the distribution, for each mineral: so the area of a mineral does not depend on a few large grains.
+/// One grain of each of `count` equal parts of the distribution, for each mineral: so the area of a mineral does not depend on a
+/// few large grains.
 PhasedDiameters sample_by_phase(const std::vector<PhaseSizes>& phases, const std::vector<int>& counts, RandomStream& random);
 
 /// What the grains of a mineral with sizes of its own have come to.
 struct PhaseFill {
     int grains = 0;
-    double area_share = 0.0;    ///< of the cells
-    SizeSummary discs, cells;   ///< as they were packed; diameters of circles of the cells' areas
+    double area_share = 0.0;   ///< of the cells
+    SizeSummary discs, cells;  ///< as they were packed; diameters of circles of the cells' areas
 };
 
 /// Of each mineral; none where sizes belong to no mineral.
 std::vector<PhaseFill> fill_of_phases(const Specimen& specimen);
 
-/// The distribution of all grains together, as a sieve curve of discs by area: by which grains are judged that are not drawn from it. To a percent.
+/// The distribution of all grains together, as a sieve curve of discs by area: by which grains are judged that are not drawn from
+/// it. To a percent.
 GrainSizeSpec mixture_of(const std::vector<PhaseSizes>& phases, double porosity);
 
 }  // namespace feldspar

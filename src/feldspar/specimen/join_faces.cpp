@@ -15,7 +15,12 @@ namespace {
 class FaceJoiner {
 public:
     /// @param crossings  vertices where cuts meet, which stay where they are
-    FaceJoiner(Tessellation& cells, const Cutout& cut, double snap_m, const std::set<int>& crossings) : cells_(cells), cut_(cut), snap_(snap_m), crossings_(crossings), along_((1.0 / norm(cut.vertices[1] - cut.vertices[0])) * (cut.vertices[1] - cut.vertices[0])) {}
+    FaceJoiner(Tessellation& cells, const Cutout& cut, double snap_m, const std::set<int>& crossings)
+        : cells_(cells),
+          cut_(cut),
+          snap_(snap_m),
+          crossings_(crossings),
+          along_((1.0 / norm(cut.vertices[1] - cut.vertices[0])) * (cut.vertices[1] - cut.vertices[0])) {}
 
     void run() {
         share_vertices();
@@ -57,8 +62,10 @@ private:
                     nearest = it->second;
                 }
             if (nearest < 0 || nearest == v) continue;
-            if (crossings_.contains(v)) instead[nearest] = v;
-            else instead.emplace(v, nearest);
+            if (crossings_.contains(v))
+                instead[nearest] = v;
+            else
+                instead.emplace(v, nearest);
         }
         for (auto& [v, other] : instead)
             if (const auto further = instead.find(other); further != instead.end()) other = further->second;
@@ -68,8 +75,10 @@ private:
         // An edge both ends of which have become one is none.
         for (Cell& cell : cells_.cells)
             for (std::size_t k = 0; k < cell.vertices.size();)
-                if (cell.vertices.size() > 3 && cell.vertices[k] == cell.vertices[(k + 1) % cell.vertices.size()]) erase(cell, k);
-                else ++k;
+                if (cell.vertices.size() > 3 && cell.vertices[k] == cell.vertices[(k + 1) % cell.vertices.size()])
+                    erase(cell, k);
+                else
+                    ++k;
     }
 
     static void erase(Cell& cell, std::size_t k) {
@@ -91,7 +100,9 @@ private:
                     // the missing vertex that comes first on the way from a
                     int missing = -1;
                     for (const auto& [s, v] : other)
-                        if (v != a && v != b && s > from && s < to && (missing < 0 || std::abs(s - place(a)) < std::abs(place(missing) - place(a)))) missing = v;
+                        if (v != a && v != b && s > from && s < to &&
+                            (missing < 0 || std::abs(s - place(a)) < std::abs(place(missing) - place(a))))
+                            missing = v;
                     if (missing < 0) continue;
                     const auto at = k + 1;
                     cell.vertices.insert(cell.vertices.begin() + at, missing);
@@ -102,7 +113,7 @@ private:
     }
 
     void name_neighbours() {
-        std::map<std::pair<int, int>, std::pair<int, int>> right;   // by its directed vertices
+        std::map<std::pair<int, int>, std::pair<int, int>> right;  // by its directed vertices
         for_each_edge(1, [&](int c, int k) { right[{vertex(c, k), vertex(c, k + 1)}] = {c, k}; });
         std::vector<std::array<int, 4>> pairs;
         for_each_edge(0, [&](int c, int k) {
@@ -129,7 +140,7 @@ private:
     double snap_;
     const std::set<int>& crossings_;
     Vec2 along_;
-    std::vector<std::pair<int, int>> seams_;   // cell and edge
+    std::vector<std::pair<int, int>> seams_;  // cell and edge
 };
 
 }  // namespace
@@ -138,7 +149,7 @@ namespace {
 
 // Where cuts meet each has made vertices of its own: they become one. @return these, one a place
 std::set<int> share_crossings(Tessellation& cells, const Outline& outline, double snap_m) {
-    std::map<int, std::set<int>> cuts_at;   // of vertices on joined cuts: which
+    std::map<int, std::set<int>> cuts_at;  // of vertices on joined cuts: which
     for (const Cell& cell : cells.cells)
         for (std::size_t k = 0; k < cell.vertices.size(); ++k)
             for (int n = 0; n < std::ssize(outline.cutouts); ++n) {
@@ -147,11 +158,13 @@ std::set<int> share_crossings(Tessellation& cells, const Outline& outline, doubl
                 cuts_at[cell.vertices[k]].insert(n);
                 cuts_at[cell.vertices[(k + 1) % cell.vertices.size()]].insert(n);
             }
-    std::vector<std::pair<int, std::set<int>>> several;   // a place by its first vertex
+    std::vector<std::pair<int, std::set<int>>> several;  // a place by its first vertex
     std::map<int, int> instead;
     for (const auto& [v, cuts] : cuts_at)
         if (cuts.size() > 1) {
-            const auto known = std::find_if(several.begin(), several.end(), [&, place = cells.vertices[v]](const auto& one) { return norm(cells.vertices[one.first] - place) < 1e-6 * snap_m; });
+            const auto known = std::find_if(several.begin(), several.end(), [&, place = cells.vertices[v]](const auto& one) {
+                return norm(cells.vertices[one.first] - place) < 1e-6 * snap_m;
+            });
             if (known == several.end()) several.push_back({v, cuts});
         }
     for (const auto& [v, cuts] : cuts_at)
@@ -169,13 +182,16 @@ std::set<int> share_crossings(Tessellation& cells, const Outline& outline, doubl
 
 int join_faces(Tessellation& cells, const Outline& outline, double snap_m) {
     std::set<int> crossings;
-    if (std::count_if(outline.cutouts.begin(), outline.cutouts.end(), [](const Cutout& cut) { return cut.joined; }) > 1) crossings = share_crossings(cells, outline, snap_m);
-    std::map<std::pair<int, int>, int> seam_of_pair;   // of two cells; those of one joint may meet on several edges, of which all lie on it or none
+    if (std::count_if(outline.cutouts.begin(), outline.cutouts.end(), [](const Cutout& cut) { return cut.joined; }) > 1)
+        crossings = share_crossings(cells, outline, snap_m);
+    std::map<std::pair<int, int>, int>
+        seam_of_pair;  // of two cells; those of one joint may meet on several edges, of which all lie on it or none
     for (int n = 0; n < std::ssize(outline.cutouts); ++n) {
         if (!outline.cutouts[n].joined) continue;
         FaceJoiner joiner(cells, outline.cutouts[n], snap_m, crossings);
         joiner.run();
-        for (const auto& [c, k] : joiner.seams()) seam_of_pair[{std::min(c, cells.cells[c].neighbours[k]), std::max(c, cells.cells[c].neighbours[k])}] = n;
+        for (const auto& [c, k] : joiner.seams())
+            seam_of_pair[{std::min(c, cells.cells[c].neighbours[k]), std::max(c, cells.cells[c].neighbours[k])}] = n;
     }
     if (seam_of_pair.empty()) return 0;
     for (int c = 0; c < std::ssize(cells.cells); ++c) {

@@ -1,12 +1,12 @@
 #include "feldspar/specimen/join_pieces.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -61,7 +61,8 @@ std::vector<Face> united(const std::vector<Face>& pieces, int cell, const std::v
         all.insert(all.end(), more.begin(), more.end());
     }
     for (const HalfEdge& e : all) {
-        const bool inner = std::any_of(all.begin(), all.end(), [&](const HalfEdge& o) { return o.from == e.to && o.to == e.from; });
+        const bool inner =
+            std::any_of(all.begin(), all.end(), [&](const HalfEdge& o) { return o.from == e.to && o.to == e.from; });
         if (!inner) edges.push_back(e);
     }
     std::vector<char> used(edges.size(), 0);
@@ -106,7 +107,8 @@ EdgeOwner edge_owners(const std::vector<Face>& faces) {
 }
 
 /// The cell with which a stray piece shares the longest boundary, and to which it can be added in one piece; nothing if none.
-std::optional<int> adopter(const Face& stray, const std::vector<Face>& cells, const EdgeOwner& owner, const std::vector<Vec2>& vertices) {
+std::optional<int> adopter(const Face& stray, const std::vector<Face>& cells, const EdgeOwner& owner,
+                           const std::vector<Vec2>& vertices) {
     std::map<int, double> shared;
     for (const HalfEdge& e : half_edges(stray)) {
         const auto other = owner.find({e.to, e.from});

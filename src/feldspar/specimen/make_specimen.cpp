@@ -1,12 +1,12 @@
 // Outline -> grain sizes -> packing -> Laguerre cells -> grain mesh, and what a user should know of the result.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/mean.hpp"
@@ -27,20 +27,25 @@ namespace feldspar {
 namespace {
 
 constexpr double most_grains = 1e7;
-constexpr double most_slant_rad = 8.0 * std::numbers::pi / 180.0;   // of contacts: even Voronoi cells have 1 degree, cells twice as long as wide 24
+constexpr double most_slant_rad =
+    8.0 * std::numbers::pi / 180.0;  // of contacts: even Voronoi cells have 1 degree, cells twice as long as wide 24
 
 void check_numbers(const SpecimenSpec& spec) {
     if (!(spec.porosity >= 0.0 && spec.porosity < 1.0)) {
-        throw InputError({"", 0, 0, "specimen.grains.porosity"}, fmt::format("{:g} is not allowed", spec.porosity), "from 0 to below 1");
+        throw InputError({"", 0, 0, "specimen.grains.porosity"}, fmt::format("{:g} is not allowed", spec.porosity),
+                         "from 0 to below 1");
     }
     if (!(spec.thickness_m > 0.0) || !std::isfinite(spec.thickness_m)) {
-        throw InputError({"", 0, 0, "specimen.thickness"}, fmt::format("{:g} m is not allowed", spec.thickness_m), "a length greater than zero");
+        throw InputError({"", 0, 0, "specimen.thickness"}, fmt::format("{:g} m is not allowed", spec.thickness_m),
+                         "a length greater than zero");
     }
     if (spec.merge_length_m && !(*spec.merge_length_m >= 0.0 && std::isfinite(*spec.merge_length_m))) {
-        throw InputError({"", 0, 0, "specimen.grains.merge_length"}, fmt::format("{:g} m is not allowed", *spec.merge_length_m), "a length, or 0 for never");
+        throw InputError({"", 0, 0, "specimen.grains.merge_length"}, fmt::format("{:g} m is not allowed", *spec.merge_length_m),
+                         "a length, or 0 for never");
     }
     if (spec.triangles_per_grain < 0) {
-        throw InputError({"", 0, 0, "specimen.grains.triangles_per_grain"}, fmt::format("{} is not allowed", spec.triangles_per_grain),
+        throw InputError({"", 0, 0, "specimen.grains.triangles_per_grain"},
+                         fmt::format("{} is not allowed", spec.triangles_per_grain),
                          "0 for the fixed topology, or a number of triangles");
     }
     const double particles = spec.particles_per_grain;
@@ -54,9 +59,7 @@ double largest_diameter(const GrainSizeSpec& grains) {
     return grains.kind == GrainSizeKind::sieve ? largest_of_sieve_m(grains.sieve) : grains.maximum_m;
 }
 
-double mean_diameter(const Packing& packing) {
-    return 2.0 * mean_of(packing.radii_m);
-}
+double mean_diameter(const Packing& packing) { return 2.0 * mean_of(packing.radii_m); }
 
 double smaller_side(const Outline& outline) {
     const Box box = bounding_box(outline);
@@ -71,8 +74,8 @@ public:
     /// How many grains there will be; to be said before the first stage.
     void expect(std::size_t grains) { grains_ = static_cast<int>(grains); }
 
-    /// Begins a stage. One of small pieces, each a matter of microseconds, is shared out only if it is long: otherwise the threads
-    /// would wait for each other longer than they work.
+    /// Begins a stage. One of small pieces, each a matter of microseconds, is shared out only if it is long: otherwise the
+    /// threads would wait for each other longer than they work.
     StageControl stage(std::string_view name, bool small_pieces) {
         tell(name, 0.0);
         StageControl stage;
@@ -112,27 +115,34 @@ Packing make_packing(const SpecimenSpec& spec, const Outline& outline, std::uint
     RandomStream sizes(seed, "grain sizes");
     RandomStream places(seed, "packing positions");
     PhasedDiameters sample;
-    if (spec.phase_sizes.empty()) sample.diameters_m = sample_diameters(spec.grain_sizes, count, sizes);
-    else sample = sample_by_phase(spec.phase_sizes, grains_of_phases(spec.phase_sizes, packed_area_m2(outline), spec.porosity), sizes);
+    if (spec.phase_sizes.empty())
+        sample.diameters_m = sample_diameters(spec.grain_sizes, count, sizes);
+    else
+        sample =
+            sample_by_phase(spec.phase_sizes, grains_of_phases(spec.phase_sizes, packed_area_m2(outline), spec.porosity), sizes);
     const std::vector<double>& diameters = sample.diameters_m;
     try {
         Packing packing = pack_discs(outline, diameters, places, making.stage("packing", true), sample.phases);
         for (const PhaseSizes& phase : spec.phase_sizes) packing.phase_names.push_back(phase.name);
         return packing;
-    } catch (const NumericalError& problem) {   // there is no other way out than another specimen
+    } catch (const NumericalError& problem) {  // there is no other way out than another specimen
         throw InputError({"", 0, 0, "specimen.grains.diameter"}, fmt::format("these grains do not pack: {}", problem.what()),
                          fmt::format("sizes closer together (now {:.3g} to {:.3g} mm), or fewer grains by a porosity above {:g}",
-                                     1e3 * *std::min_element(diameters.begin(), diameters.end()), 1e3 * *std::max_element(diameters.begin(), diameters.end()),
-                                     spec.porosity),
+                                     1e3 * *std::min_element(diameters.begin(), diameters.end()),
+                                     1e3 * *std::max_element(diameters.begin(), diameters.end()), spec.porosity),
                          "raise the smallest diameter first: the finest grains hold little of the area; or try another seed");
     }
 }
 
-/// A loaded packing says which of its grains are of which mineral, if these have sizes of their own; its names become the numbers that the spec gives them.
+/// A loaded packing says which of its grains are of which mineral, if these have sizes of their own; its names become the numbers
+/// that the spec gives them.
 void number_phases(Packing& packing, const SpecimenSpec& spec, std::vector<std::string>& warnings) {
     if (spec.phase_sizes.empty()) {
         if (!packing.phases.empty())
-            warnings.push_back(fmt::format("{} says of which mineral its grains are, which does not count: the minerals of this rock have no sizes of their own, and are drawn anew", spec.packing_file.filename().string()));
+            warnings.push_back(
+                fmt::format("{} says of which mineral its grains are, which does not count: the minerals of this rock have no "
+                            "sizes of their own, and are drawn anew",
+                            spec.packing_file.filename().string()));
         packing.phases.clear();
         packing.phase_names.clear();
         return;
@@ -140,12 +150,14 @@ void number_phases(Packing& packing, const SpecimenSpec& spec, std::vector<std::
     std::string names;
     for (const PhaseSizes& phase : spec.phase_sizes) names += (names.empty() ? "\"" : ", \"") + phase.name + "\"";
     const auto refuse = [&](const std::string& problem) {
-        throw InputError({"", 0, 0, "specimen.packing"}, fmt::format("\"{}\" {}", spec.packing_file.string(), problem), "a packing made for minerals of these sizes: " + names, "leave `packing` out to make one");
+        throw InputError({"", 0, 0, "specimen.packing"}, fmt::format("\"{}\" {}", spec.packing_file.string(), problem),
+                         "a packing made for minerals of these sizes: " + names, "leave `packing` out to make one");
     };
     if (packing.phases.empty()) refuse("does not say of which mineral its grains are, but each mineral has sizes of its own");
     std::vector<int> number;
     for (const std::string& name : packing.phase_names) {
-        const auto found = std::find_if(spec.phase_sizes.begin(), spec.phase_sizes.end(), [&](const PhaseSizes& phase) { return phase.name == name; });
+        const auto found = std::find_if(spec.phase_sizes.begin(), spec.phase_sizes.end(),
+                                        [&](const PhaseSizes& phase) { return phase.name == name; });
         number.push_back(static_cast<int>(found - spec.phase_sizes.begin()));
         if (found == spec.phase_sizes.end()) refuse(fmt::format("has grains of \"{}\", which the rock does not have", name));
     }
@@ -154,8 +166,8 @@ void number_phases(Packing& packing, const SpecimenSpec& spec, std::vector<std::
     for (const PhaseSizes& phase : spec.phase_sizes) packing.phase_names.push_back(phase.name);
 }
 
-/// Where cells were cut, `packing` gets one disc a grain. Discs of reshaped cells are at the centroid and have the share of the cell that the discs have of the
-/// specimen, since the discs' circles are the frame of contacts.
+/// Where cells were cut, `packing` gets one disc a grain. Discs of reshaped cells are at the centroid and have the share of the
+/// cell that the discs have of the specimen, since the discs' circles are the frame of contacts.
 void give_discs_to_pieces(Specimen& specimen) {
     const Tessellation& cells = specimen.cells;
     if (cells.disc_of_cell.empty()) return;
@@ -170,7 +182,8 @@ void give_discs_to_pieces(Specimen& specimen) {
         const std::size_t disc = static_cast<std::size_t>(cells.disc_of_cell[g]);
         const std::vector<Vec2> corners = corners_of_cell(cells, g);
         specimen.packing.centres.push_back(cells.reshaped[g] ? centroid(corners) : packed.centres[disc]);
-        specimen.packing.radii_m.push_back(cells.reshaped[g] ? std::sqrt(share * signed_area(corners) / std::numbers::pi) : packed.radii_m[disc]);
+        specimen.packing.radii_m.push_back(cells.reshaped[g] ? std::sqrt(share * signed_area(corners) / std::numbers::pi)
+                                                             : packed.radii_m[disc]);
     }
     if (packed.phases.empty()) return;
     specimen.packing.phases.clear();
@@ -183,13 +196,15 @@ void add_circle(Packing& packing, const std::vector<Vec2>& corners) {
     packing.radii_m.push_back(std::sqrt(signed_area(corners) / std::numbers::pi));
 }
 
-/// Cells of a file in the outline, in place of a packing and its Laguerre cells. Each has the circle of its area; where cells were cut, those of the whole cells are kept besides.
+/// Cells of a file in the outline, in place of a packing and its Laguerre cells. Each has the circle of its area; where cells
+/// were cut, those of the whole cells are kept besides.
 void take_given_cells(Specimen& specimen) {
     const GivenCellsSpec& spec = specimen.spec.given_cells;
     const GivenCells& given = *spec.cells;
     FittedCells fitted = fit_cells(spec, specimen.outline, specimen.spec.outline.shape);
     const int joined = fitted.joined;
-    specimen.cells = tessellation_of(std::move(fitted.graph), specimen.outline, given.mean_diameter_m, specimen.spec.merge_length_m.value_or(given.mean_diameter_m / 12.0));
+    specimen.cells = tessellation_of(std::move(fitted.graph), specimen.outline, given.mean_diameter_m,
+                                     specimen.spec.merge_length_m.value_or(given.mean_diameter_m / 12.0));
     specimen.cells.joined_pieces += joined;
     if (!fitted.origin.empty()) {
         Tessellation& cells = specimen.cells;
@@ -219,12 +234,16 @@ void take_given_cells(Specimen& specimen) {
     const std::string file = spec.file.filename().string();
     for (const std::string& remark : given.remarks) quality.warnings.push_back(fmt::format("{}: {}", file, remark));
     if (given.inserted > 0)
-        quality.warnings.push_back(fmt::format("{}: {} corners lay on an edge of a neighbour and were put into it", file, given.inserted));
+        quality.warnings.push_back(
+            fmt::format("{}: {} corners lay on an edge of a neighbour and were put into it", file, given.inserted));
     if (fitted.moved > 0)
-        quality.warnings.push_back(fmt::format("{}: {} corners on the boundary were moved onto the outline, by {:.2g} mm at most", file, fitted.moved, 1e3 * fitted.furthest_m));
+        quality.warnings.push_back(fmt::format("{}: {} corners on the boundary were moved onto the outline, by {:.2g} mm at most",
+                                               file, fitted.moved, 1e3 * fitted.furthest_m));
     if (!spec.cut && fitted.shift != Vec2{})
-        quality.warnings.push_back(fmt::format("{}: the cells were moved by ({:.6g}, {:.6g}) mm, to where the outline is", file, 1e3 * fitted.shift.x, 1e3 * fitted.shift.y));
-    if (given.concave > 0) quality.warnings.push_back(fmt::format("{}: {} of {} cells are not convex", file, given.concave, given.cells.size()));
+        quality.warnings.push_back(fmt::format("{}: the cells were moved by ({:.6g}, {:.6g}) mm, to where the outline is", file,
+                                               1e3 * fitted.shift.x, 1e3 * fitted.shift.y));
+    if (given.concave > 0)
+        quality.warnings.push_back(fmt::format("{}: {} of {} cells are not convex", file, given.concave, given.cells.size()));
 }
 
 /// The discs as they were packed.
@@ -285,7 +304,8 @@ double hexatic_order(const Specimen& specimen) {
         Vec2 order;
         double weights = 0.0;
         for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
-            const double length = norm(specimen.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] - specimen.cells.vertices[cell.vertices[k]]);
+            const double length = norm(specimen.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] -
+                                       specimen.cells.vertices[cell.vertices[k]]);
             const Vec2 apart = centres[cell.neighbours[k]] - centres[g];
             const double angle = 6.0 * std::atan2(apart.y, apart.x);
             order += length * Vec2{std::cos(angle), std::sin(angle)};
@@ -297,15 +317,16 @@ double hexatic_order(const Specimen& specimen) {
     return inner > 0 ? sum / inner : 0.0;
 }
 
-/// The angle (rad) between an edge's normal and the line of the centroids of its two cells, mean over the length of all edges inside. Contacts take that line for
-/// their normal.
+/// The angle (rad) between an edge's normal and the line of the centroids of its two cells, mean over the length of all edges
+/// inside. Contacts take that line for their normal.
 double mean_slant(const Specimen& specimen) {
     double sum = 0.0, lengths = 0.0;
     for (int g = 0; g < std::ssize(specimen.cells.cells); ++g) {
         const Cell& cell = specimen.cells.cells[g];
         for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
             if (cell.neighbours[k] <= g) continue;
-            const Vec2 along = specimen.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] - specimen.cells.vertices[cell.vertices[k]];
+            const Vec2 along = specimen.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] -
+                               specimen.cells.vertices[cell.vertices[k]];
             const Vec2 apart = specimen.packing.centres[cell.neighbours[k]] - specimen.packing.centres[g];
             sum += norm(along) * std::atan2(std::abs(dot(along, apart)), std::abs(cross(along, apart)));
             lengths += norm(along);
@@ -331,28 +352,34 @@ void measure_mesh(const GrainMesh& mesh, SpecimenQuality& quality) {
 std::vector<std::string> warnings_about(const SpecimenQuality& quality, bool given) {
     std::vector<std::string> warnings;
     if (quality.width_over_largest_grain < 10.0) {
-        warnings.push_back(fmt::format("the specimen is only {:.1f} times as wide as its largest grain; ISRM suggests at least 10",
-                                       quality.width_over_largest_grain));
+        warnings.push_back(
+            fmt::format("the specimen is only {:.1f} times as wide as its largest grain; ISRM suggests at least 10",
+                        quality.width_over_largest_grain));
     }
     if (quality.area_error > 1e-9) {
         warnings.push_back(fmt::format("the cells miss the outline's area by a share of {:.1e}", quality.area_error));
     }
     if (quality.overlap_mean > 0.15) {
-        warnings.push_back(fmt::format("the discs overlap by {:.0f} % of the mean diameter on average: the grain sizes will differ from the "
-                                       "distribution; a larger porosity gives fewer grains", 100.0 * quality.overlap_mean));
+        warnings.push_back(
+            fmt::format("the discs overlap by {:.0f} % of the mean diameter on average: the grain sizes will differ from the "
+                        "distribution; a larger porosity gives fewer grains",
+                        100.0 * quality.overlap_mean));
     }
     if (!given && quality.overlap_mean < 1e-5 && quality.grains > 1) {
-        warnings.push_back("the packing is loose: cells are larger than their discs, and grain sizes differ from the distribution");
+        warnings.push_back(
+            "the packing is loose: cells are larger than their discs, and grain sizes differ from the distribution");
     }
     if (!given && quality.size_spread < least_size_spread && quality.grains > 20) {
-        warnings.push_back(fmt::format("the grains are of nearly one size (coefficient of variation {:.1f} %): equal discs crystallise in rows, along which "
-                                       "the rock is anisotropic (hexatic order {:.2f}; 0.5 at a coefficient of variation of 20 %); "
-                                       "a coefficient of variation of {:.0f} % or more avoids it", 100.0 * quality.size_spread, quality.hexatic_order,
-                                       100.0 * least_size_spread));
+        warnings.push_back(fmt::format(
+            "the grains are of nearly one size (coefficient of variation {:.1f} %): equal discs crystallise in rows, along which "
+            "the rock is anisotropic (hexatic order {:.2f}; 0.5 at a coefficient of variation of 20 %); "
+            "a coefficient of variation of {:.0f} % or more avoids it",
+            100.0 * quality.size_spread, quality.hexatic_order, 100.0 * least_size_spread));
     }
     if (quality.smallest_triangle_height_m < 0.005 * quality.mean_diameter_m) {
-        warnings.push_back(fmt::format("the flattest triangle is only {:.2g} mm high, which slows explicit steps; a larger merge length helps",
-                                       1e3 * quality.smallest_triangle_height_m));
+        warnings.push_back(
+            fmt::format("the flattest triangle is only {:.2g} mm high, which slows explicit steps; a larger merge length helps",
+                        1e3 * quality.smallest_triangle_height_m));
     }
     return warnings;
 }
@@ -367,7 +394,8 @@ int grain_count(const SpecimenSpec& spec) {
         return std::accumulate(counts.begin(), counts.end(), 0);
     }
     const double d = counting_diameter(spec.grain_sizes);
-    const double count = std::round((1.0 - spec.porosity) * packed_area_m2(make_outline(spec)) / (0.25 * std::numbers::pi * d * d));
+    const double count =
+        std::round((1.0 - spec.porosity) * packed_area_m2(make_outline(spec)) / (0.25 * std::numbers::pi * d * d));
     if (count > most_grains) {
         throw InputError({"", 0, 0, "specimen.grains.diameter"}, fmt::format("these grain sizes ask for {:.3g} grains", count),
                          fmt::format("at most {:.0e}", most_grains));
@@ -390,7 +418,8 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
         take_given_cells(specimen);
         quality.mean_diameter_m = mean_diameter(specimen.packing);
     } else {
-        specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making) : load_packing(spec.packing_file, specimen.outline);
+        specimen.packing = spec.packing_file.empty() ? make_packing(spec, specimen.outline, seed, making)
+                                                     : load_packing(spec.packing_file, specimen.outline);
         if (!spec.packing_file.empty()) number_phases(specimen.packing, spec, quality.warnings);
         making.expect(specimen.packing.centres.size());
         quality.mean_diameter_m = mean_diameter(specimen.packing);
@@ -403,9 +432,11 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
         SpecimenSpec crystals = spec;
         crystals.grain_sizes = *spec.crystal_sizes;
         crystals.phase_sizes.clear();
-        crystals.given_cells = {};   // their discs are packed, whatever the grains are
-        constexpr std::uint64_t kOthers = 0x9E3779B97F4A7C15;   // the streams of another seed: crystals and grains have nothing to do with each other
-        specimen.crystal_of_cell = group_into_crystals(specimen.cells, make_packing(crystals, specimen.outline, seed ^ kOthers, making));
+        crystals.given_cells = {};  // their discs are packed, whatever the grains are
+        constexpr std::uint64_t kOthers =
+            0x9E3779B97F4A7C15;  // the streams of another seed: crystals and grains have nothing to do with each other
+        specimen.crystal_of_cell =
+            group_into_crystals(specimen.cells, make_packing(crystals, specimen.outline, seed ^ kOthers, making));
         quality.crystals = 1 + *std::max_element(specimen.crystal_of_cell.begin(), specimen.crystal_of_cell.end());
     }
     label_by_place(specimen.outline, specimen.cells, spec.outline);
@@ -422,8 +453,8 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     quality.overlap_mean = specimen.packing.overlap_mean;
     quality.overlap_max = specimen.packing.overlap_max;
     quality.relaxation_residual = specimen.packing.residual;
-    quality.width_over_largest_grain =
-        smaller_side(specimen.outline) / (2.0 * *std::max_element(specimen.packing.radii_m.begin(), specimen.packing.radii_m.end()));
+    quality.width_over_largest_grain = smaller_side(specimen.outline) / (2.0 * *std::max_element(specimen.packing.radii_m.begin(),
+                                                                                                 specimen.packing.radii_m.end()));
     measure_cells(specimen, quality);
     measure_sizes(specimen, quality);
     quality.hexatic_order = hexatic_order(specimen);
@@ -432,9 +463,12 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
     quality.inside_contacts = static_cast<int>(specimen.filling.inside.size());
     quality.across_contacts = static_cast<int>(specimen.filling.across.size());
     if (const double slant = mean_slant(specimen); given && slant > most_slant_rad) {
-        quality.warnings.push_back(fmt::format("the lines between the centres of neighbours are {:.0f} degrees from the normals of their edges on average: contacts of flexible and rigid grains take these lines for their normals, and "
-                                               "cells that are longer than wide then have strengths in compression that depend on their direction more than a rock's (docs/theory/specimen.md, section 7)",
-                                               slant * 180.0 / std::numbers::pi));
+        quality.warnings.push_back(
+            fmt::format("the lines between the centres of neighbours are {:.0f} degrees from the normals of their edges on "
+                        "average: contacts of flexible and rigid grains take these lines for their normals, and "
+                        "cells that are longer than wide then have strengths in compression that depend on their direction more "
+                        "than a rock's (docs/theory/specimen.md, section 7)",
+                        slant * 180.0 / std::numbers::pi));
     }
     for (std::string& warning : warnings_about(quality, given)) quality.warnings.push_back(std::move(warning));
     return specimen;

@@ -1,11 +1,11 @@
 #include "feldspar/specimen/mesh_grains.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -54,8 +54,9 @@ std::vector<Vec2> kernel_of(const std::vector<Vec2>& corners) {
 Vec2 centre_of(const std::vector<Vec2>& corners, int cell) {
     if (const auto centre = centre_of_grain(corners)) return *centre;
     const Vec2 middle = centroid(corners);
-    throw InputError({}, fmt::format("grain {} at ({:.6g}, {:.6g}) m bends around a corner of the outline and cannot be meshed", cell,
-                                     middle.x, middle.y),
+    throw InputError({},
+                     fmt::format("grain {} at ({:.6g}, {:.6g}) m bends around a corner of the outline and cannot be meshed", cell,
+                                 middle.x, middle.y),
                      "grains smaller against the outline's re-entrant corners");
 }
 
@@ -157,9 +158,11 @@ OneGrain mesh_finely(const std::vector<Vec2>& corners, Vec2 centre, int wanted_t
     return grain;
 }
 
-/// Where a vertex lies in the middle of a straight side, as at the end of a notch, a triangulation may join it to both ends of the side.
+/// Where a vertex lies in the middle of a straight side, as at the end of a notch, a triangulation may join it to both ends of
+/// the side.
 bool has_flat_triangle(const OneGrain& grain, double cell_area) {
-    return std::any_of(grain.triangles.begin(), grain.triangles.end(), [&](const auto& t) { return triangle_area(grain, t) <= 1e-9 * cell_area; });
+    return std::any_of(grain.triangles.begin(), grain.triangles.end(),
+                       [&](const auto& t) { return triangle_area(grain, t) <= 1e-9 * cell_area; });
 }
 
 }  // namespace
@@ -185,7 +188,8 @@ GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const 
         if (g % 1000 == 0) control.done(static_cast<double>(g) / static_cast<double>(cells.cells.size()));
         const std::vector<Vec2> corners = corners_of_cell(cells, g);
         const Vec2 centre = centre_of(corners, g);
-        OneGrain grain = triangles_per_grain > 0 ? mesh_finely(corners, centre, triangles_per_grain) : mesh_with_ring(corners, centre);
+        OneGrain grain =
+            triangles_per_grain > 0 ? mesh_finely(corners, centre, triangles_per_grain) : mesh_with_ring(corners, centre);
         if (triangles_per_grain > 0 && has_flat_triangle(grain, signed_area(corners))) grain = mesh_with_ring(corners, centre);
 
         const int first_node = mesh.node_begin.back();

@@ -29,8 +29,8 @@ namespace feldspar {
 /// @throws InputError if a cell has no kernel: the grains are too large for the outline's re-entrant corners
 GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const StageControl& control = {});
 
-/// Where the middle node of a cell stands (m): its centroid, or the centroid of its kernel if the centroid does not see all corners. Nothing if no point does: such a
-/// cell cannot be meshed. @param corners  counter-clockwise
+/// Where the middle node of a cell stands (m): its centroid, or the centroid of its kernel if the centroid does not see all
+/// corners. Nothing if no point does: such a cell cannot be meshed. @param corners  counter-clockwise
 std::optional<Vec2> centre_of_grain(const std::vector<Vec2>& corners);
 
 }  // namespace feldspar

@@ -1,11 +1,11 @@
 #include "feldspar/specimen/outline.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/angle.hpp"
 #include "feldspar/base/error.hpp"
@@ -17,7 +17,8 @@ namespace {
 
 void require_length(double value, const char* key) {
     if (!(value > 0.0) || !std::isfinite(value)) {
-        throw InputError({"", 0, 0, key}, fmt::format("{:g} m is not a length of a specimen", value), "a length greater than zero");
+        throw InputError({"", 0, 0, key}, fmt::format("{:g} m is not a length of a specimen", value),
+                         "a length greater than zero");
     }
 }
 
@@ -50,7 +51,9 @@ Extremes extreme_widths(const Outline& outline, double low, double high) {
     return extremes;
 }
 
-std::string in_mm(Vec2 a, Vec2 b) { return fmt::format("from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) mm", 1e3 * a.x, 1e3 * a.y, 1e3 * b.x, 1e3 * b.y); }
+std::string in_mm(Vec2 a, Vec2 b) {
+    return fmt::format("from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}) mm", 1e3 * a.x, 1e3 * a.y, 1e3 * b.x, 1e3 * b.y);
+}
 
 [[noreturn]] void refuse_arc(const ArcSpec& arc, const char* what, const char* allowed) {
     throw InputError({"", 0, 0, "specimen.arcs"}, fmt::format("the arc of edge {} {}", arc.edge, what), allowed);
@@ -60,14 +63,15 @@ std::string in_mm(Vec2 a, Vec2 b) { return fmt::format("from ({:.4g}, {:.4g}) to
 std::vector<Vec2> corners_between(const ArcSpec& arc, Vec2 from, Vec2 to, const GrainScale& grains) {
     const Vec2 a = arc.through_m - from, b = to - from;
     const double twice = 2.0 * cross(a, b), chord = norm(b);
-    constexpr double kFlat = 1e-6;   // of the chord: from there on the circle is larger than any specimen
-    if (!(std::abs(twice) > 2.0 * kFlat * chord * chord)) refuse_arc(arc, "goes through a point on the straight edge", "a point beside the edge, through which the arc goes");
+    constexpr double kFlat = 1e-6;  // of the chord: from there on the circle is larger than any specimen
+    if (!(std::abs(twice) > 2.0 * kFlat * chord * chord))
+        refuse_arc(arc, "goes through a point on the straight edge", "a point beside the edge, through which the arc goes");
     const Vec2 centre = from + (1.0 / twice) * Vec2{b.y * dot(a, a) - a.y * dot(b, b), a.x * dot(b, b) - b.x * dot(a, a)};
     const double radius = norm(from - centre), pi = std::numbers::pi;
     const auto angle = [&](Vec2 p) { return std::atan2(p.y - centre.y, p.x - centre.x); };
     const auto turn = [&](double to_rad) { return to_rad - std::floor(to_rad / (2.0 * pi)) * 2.0 * pi; };
     const double begin = angle(from), through = turn(angle(arc.through_m) - begin), whole = turn(angle(to) - begin);
-    const double swept = through < whole ? whole : whole - 2.0 * pi;   // the way round on which the point lies
+    const double swept = through < whole ? whole : whole - 2.0 * pi;  // the way round on which the point lies
     const int edges = std::max(2, static_cast<int>(std::lround(arc_edges(radius, grains.mean_m) * std::abs(swept) / (2.0 * pi))));
     std::vector<Vec2> corners = arc_corners(centre, radius, begin, begin + swept, edges);
     return {corners.begin() + 1, corners.end() - 1};
@@ -90,13 +94,16 @@ void bend_edges(Outline& outline, const std::vector<ArcSpec>& arcs, const GrainS
         vertices.push_back(from);
         labels.push_back(label);
         if (of_edge[k] == nullptr) continue;
-        if (label == top_label || label == bottom_label) refuse_arc(*of_edge[k], "is labelled as an end that platens press on, which is flat", "another label");
+        if (label == top_label || label == bottom_label)
+            refuse_arc(*of_edge[k], "is labelled as an end that platens press on, which is flat", "another label");
         for (const Vec2 corner : corners_between(*of_edge[k], from, outline.vertices[(k + 1) % of_edge.size()], grains)) {
             vertices.push_back(corner);
             labels.push_back(label);
         }
     }
-    if (!is_simple_polygon(vertices)) throw InputError({"", 0, 0, "specimen.arcs"}, "an arc crosses or touches the rest of the outline", "arcs that bulge less, or to the other side");
+    if (!is_simple_polygon(vertices))
+        throw InputError({"", 0, 0, "specimen.arcs"}, "an arc crosses or touches the rest of the outline",
+                         "arcs that bulge less, or to the other side");
     outline.vertices = std::move(vertices);
     outline.edge_labels = std::move(labels);
 }
@@ -112,7 +119,8 @@ Outline make_polygon(const OutlineSpec& spec, const GrainScale& grains) {
         throw InputError({"", 0, 0, "specimen.edge_labels"}, fmt::format("{} labels for {} edges", spec.edge_labels.size(), n),
                          "one label an edge, or none at all");
     }
-    if (const auto fault = end_fault(spec)) throw InputError({"", 0, 0, "specimen.edge_labels"}, fault->problem, fault->allowed, fault->suggestion);
+    if (const auto fault = end_fault(spec))
+        throw InputError({"", 0, 0, "specimen.edge_labels"}, fault->problem, fault->allowed, fault->suggestion);
     Outline outline;
     outline.vertices = spec.vertices_m;
     outline.edge_labels = spec.edge_labels;
@@ -121,7 +129,8 @@ Outline make_polygon(const OutlineSpec& spec, const GrainScale& grains) {
     }
     if (!spec.arcs.empty()) bend_edges(outline, spec.arcs, grains);
     if (signed_area(outline.vertices) < 0.0) {
-        // Of n vertices, vertex k becomes n - 1 - k, so edge k (from k to k + 1) becomes edge n - 2 - k, and the last edge stays last.
+        // Of n vertices, vertex k becomes n - 1 - k, so edge k (from k to k + 1) becomes edge n - 2 - k, and the last edge stays
+        // last.
         std::reverse(outline.vertices.begin(), outline.vertices.end());
         std::reverse(outline.edge_labels.begin(), outline.edge_labels.end() - 1);
     }
@@ -131,7 +140,8 @@ Outline make_polygon(const OutlineSpec& spec, const GrainScale& grains) {
 /// Cuts the two flats: a segment of the circle is gone at the top and one at the bottom.
 void flatten(Outline& outline, double angle_rad) {
     if (!(angle_rad > 0.0) || !(angle_rad < std::numbers::pi))
-        throw InputError({"", 0, 0, "test.flat_angle"}, fmt::format("{:g} degrees is no angle of two flats", in_degrees(angle_rad)),
+        throw InputError({"", 0, 0, "test.flat_angle"},
+                         fmt::format("{:g} degrees is no angle of two flats", in_degrees(angle_rad)),
                          "greater than 0 and less than 180 degrees");
     outline.flat_height_m = outline.radius_m * std::cos(0.5 * angle_rad);
     outline.edge_labels = {"circle", top_label, bottom_label};
@@ -154,8 +164,10 @@ void make_half_disc(Outline& outline, double radius_m, const GrainScale& grains)
 }  // namespace
 
 std::array<Vec2, 4> flat_corners(const Outline& outline) {
-    const double height = outline.flat_height_m, half = std::sqrt(std::max(0.0, outline.radius_m * outline.radius_m - height * height));
-    return {outline.centre + Vec2{-half, height}, outline.centre + Vec2{half, height}, outline.centre + Vec2{-half, -height}, outline.centre + Vec2{half, -height}};
+    const double height = outline.flat_height_m,
+                 half = std::sqrt(std::max(0.0, outline.radius_m * outline.radius_m - height * height));
+    return {outline.centre + Vec2{-half, height}, outline.centre + Vec2{half, height}, outline.centre + Vec2{-half, -height},
+            outline.centre + Vec2{half, -height}};
 }
 
 std::optional<EndFault> end_fault(const OutlineSpec& spec) {
@@ -180,8 +192,10 @@ std::optional<EndFault> end_fault(const OutlineSpec& spec) {
         }
     }
     if (first_top < 0 || first_bottom < 0) return {};
-    const std::string allowed = "\"top\" on the upper end and \"bottom\" on the lower one, both within 10 degrees of horizontal; y points up, and the load acts along it";
-    constexpr double least_cosine = 0.984807753012208;   // of 10 degrees
+    const std::string allowed =
+        "\"top\" on the upper end and \"bottom\" on the lower one, both within 10 degrees of horizontal; y points up, and the "
+        "load acts along it";
+    constexpr double least_cosine = 0.984807753012208;  // of 10 degrees
     const double turn = signed_area(corners) > 0.0 ? 1.0 : -1.0;
     for (int k = 0; k < n; ++k) {
         const bool top = spec.edge_labels[k] == top_label;
@@ -189,22 +203,31 @@ std::optional<EndFault> end_fault(const OutlineSpec& spec) {
         const Vec2 a = corners[k], b = corners[(k + 1) % n];
         if (std::abs(b.x - a.x) < least_cosine * norm(b - a)) {
             const double slope = in_degrees(std::atan2(std::abs(b.y - a.y), std::abs(b.x - a.x)));
-            return EndFault{k, fmt::format("the edge labelled \"{}\", {}, is {:.0f} degrees from horizontal", spec.edge_labels[k], in_mm(a, b), slope), allowed,
-                            "turn the outline so that the load acts along y, or label the horizontal ends; edge i runs from vertex i to vertex i + 1"};
+            return EndFault{k,
+                            fmt::format("the edge labelled \"{}\", {}, is {:.0f} degrees from horizontal", spec.edge_labels[k],
+                                        in_mm(a, b), slope),
+                            allowed,
+                            "turn the outline so that the load acts along y, or label the horizontal ends; edge i runs from "
+                            "vertex i to vertex i + 1"};
         }
     }
     if (mean_top / tops < mean_bottom / bottoms)
-        return EndFault{first_top, "the label \"top\" lies below \"bottom\"", allowed, "exchange the labels \"top\" and \"bottom\""};
+        return EndFault{first_top, "the label \"top\" lies below \"bottom\"", allowed,
+                        "exchange the labels \"top\" and \"bottom\""};
     for (int k = 0; k < n; ++k) {
         const bool top = spec.edge_labels[k] == top_label;
         if (!top && spec.edge_labels[k] != bottom_label) continue;
         const Vec2 a = corners[k], b = corners[(k + 1) % n];
-        if ((turn * (b.x - a.x) < 0.0) != top)   // counter-clockwise, the rock lies left of an edge: under one that runs to the left
-            return EndFault{k, fmt::format("the edge labelled \"{}\", {}, has the rock {} it", spec.edge_labels[k], in_mm(a, b), top ? "above" : "below"), allowed,
-                            "label the other side; edge i runs from vertex i to vertex i + 1"};
+        if ((turn * (b.x - a.x) < 0.0) !=
+            top)  // counter-clockwise, the rock lies left of an edge: under one that runs to the left
+            return EndFault{k,
+                            fmt::format("the edge labelled \"{}\", {}, has the rock {} it", spec.edge_labels[k], in_mm(a, b),
+                                        top ? "above" : "below"),
+                            allowed, "label the other side; edge i runs from vertex i to vertex i + 1"};
     }
     if (!(lowest_top > highest_bottom))
-        return EndFault{first_top, "an edge labelled \"top\" does not lie above every edge labelled \"bottom\"", allowed, "label one end with each"};
+        return EndFault{first_top, "an edge labelled \"top\" does not lie above every edge labelled \"bottom\"", allowed,
+                        "label one end with each"};
     return {};
 }
 
@@ -254,7 +277,8 @@ Outline make_outline(const OutlineSpec& spec, const GrainScale& grains) {
             require_length(spec.diameter_m, "specimen.diameter");
             require_length(spec.hole_diameter_m, "specimen.hole_diameter");
             if (!(spec.hole_diameter_m < spec.diameter_m))
-                throw InputError({"", 0, 0, "specimen.hole_diameter"}, "the hole of the ring is not smaller than the ring", "less than the diameter");
+                throw InputError({"", 0, 0, "specimen.hole_diameter"}, "the hole of the ring is not smaller than the ring",
+                                 "less than the diameter");
             outline.is_disc = true;
             outline.radius_m = 0.5 * spec.diameter_m;
             outline.edge_labels = {"circle"};
@@ -266,16 +290,20 @@ Outline make_outline(const OutlineSpec& spec, const GrainScale& grains) {
 }
 
 Outline make_outline(const SpecimenSpec& spec) {
-    if (!spec.outline.is_cut() && spec.outline.shape != Shape::half_disc && spec.outline.arcs.empty()) return make_outline(spec.outline);
+    if (!spec.outline.is_cut() && spec.outline.shape != Shape::half_disc && spec.outline.arcs.empty())
+        return make_outline(spec.outline);
     const GrainSizeSpec& sizes = spec.grain_sizes;
-    if (spec.given_cells.given()) return make_outline(spec.outline, {spec.given_cells.cells->mean_diameter_m, spec.given_cells.cells->largest_diameter_m});
-    return make_outline(spec.outline, {counting_diameter(sizes), sizes.kind == GrainSizeKind::sieve ? largest_of_sieve_m(sizes.sieve) : sizes.maximum_m});
+    if (spec.given_cells.given())
+        return make_outline(spec.outline, {spec.given_cells.cells->mean_diameter_m, spec.given_cells.cells->largest_diameter_m});
+    return make_outline(spec.outline, {counting_diameter(sizes),
+                                       sizes.kind == GrainSizeKind::sieve ? largest_of_sieve_m(sizes.sieve) : sizes.maximum_m});
 }
 
 int arc_edges(double radius_m, double mean_grain_m) {
-    constexpr int least = 24, most = 3600;   // multiples of four: an edge across each axis
+    constexpr int least = 24, most = 3600;  // multiples of four: an edge across each axis
     if (!(mean_grain_m > 0.0)) return least;
-    return std::clamp(4 * static_cast<int>(std::ceil(0.5 * std::numbers::pi * std::min(radius_m / mean_grain_m, 1e4))), least, most);
+    return std::clamp(4 * static_cast<int>(std::ceil(0.5 * std::numbers::pi * std::min(radius_m / mean_grain_m, 1e4))), least,
+                      most);
 }
 
 double packed_area_m2(const Outline& outline) {
@@ -315,11 +343,15 @@ OutlineSpec scaled(const OutlineSpec& spec, double factor) {
 Box bounding_box(const OutlineSpec& spec) {
     const double radius = 0.5 * spec.diameter_m;
     switch (spec.shape) {
-        case Shape::rectangle: return {{0.0, 0.0}, {spec.width_m, spec.height_m}};
-        case Shape::polygon: return spec.arcs.empty() ? bounding_box(std::span<const Vec2>(spec.vertices_m)) : bounding_box(make_outline(spec));
-        case Shape::half_disc: return {{-radius, 0.0}, {radius, radius}};
+        case Shape::rectangle:
+            return {{0.0, 0.0}, {spec.width_m, spec.height_m}};
+        case Shape::polygon:
+            return spec.arcs.empty() ? bounding_box(std::span<const Vec2>(spec.vertices_m)) : bounding_box(make_outline(spec));
+        case Shape::half_disc:
+            return {{-radius, 0.0}, {radius, radius}};
         case Shape::disc:
-        case Shape::ring: break;
+        case Shape::ring:
+            break;
     }
     return {{-radius, -radius}, {radius, radius}};
 }
@@ -341,8 +373,9 @@ bool contains_uncut(const Outline& outline, Vec2 point) {
 double distance_uncut(const Outline& outline, Vec2 point) {
     if (outline.flattened()) {
         const auto corners = flat_corners(outline);
-        const double to_flats = std::min(distance_to_segment(point, corners[0], corners[1]), distance_to_segment(point, corners[2], corners[3]));
-        const Vec2 out = point - outline.centre;   // the arcs are nearest along the radius, where they have not been cut off
+        const double to_flats =
+            std::min(distance_to_segment(point, corners[0], corners[1]), distance_to_segment(point, corners[2], corners[3]));
+        const Vec2 out = point - outline.centre;  // the arcs are nearest along the radius, where they have not been cut off
         const bool faces_arc = std::abs(out.y) * outline.radius_m <= outline.flat_height_m * norm(out);
         return faces_arc ? std::min(to_flats, std::abs(outline.radius_m - norm(out))) : to_flats;
     }
@@ -353,9 +386,10 @@ double distance_uncut(const Outline& outline, Vec2 point) {
 }  // namespace
 
 bool contains(const Outline& outline, Vec2 point) {
-    return contains_uncut(outline, point) && std::none_of(outline.cutouts.begin(), outline.cutouts.end(), [&](const Cutout& cutout) {
-        return cutout.packed_around && contains(std::span<const Vec2>(cutout.vertices), point);
-    });
+    return contains_uncut(outline, point) &&
+           std::none_of(outline.cutouts.begin(), outline.cutouts.end(), [&](const Cutout& cutout) {
+               return cutout.packed_around && contains(std::span<const Vec2>(cutout.vertices), point);
+           });
 }
 
 double distance_to_boundary(const Outline& outline, Vec2 point) {

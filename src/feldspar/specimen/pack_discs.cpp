@@ -1,11 +1,11 @@
 #include "feldspar/specimen/pack_discs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/mean.hpp"
@@ -15,8 +15,8 @@
 namespace feldspar {
 namespace {
 
-constexpr double insertion_scale = 0.5;   // of the radius: four tenths of the area that random insertion could fill
-constexpr int most_attempts = 200000;     // for one disc
+constexpr double insertion_scale = 0.5;  // of the radius: four tenths of the area that random insertion could fill
+constexpr int most_attempts = 200000;    // for one disc
 
 /// A random place for disc `number` at the insertion scale, away from the discs in `grid` and from the outline.
 Vec2 find_room(int number, const Outline& outline, const Box& box, const DiscGrid& grid, const Packing& packing,
@@ -63,13 +63,15 @@ void sort_in_rows(Packing& packing, const Box& box) {
 
 }  // namespace
 
-Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control, std::span<const int> phases) {
+Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control,
+                   std::span<const int> phases) {
     Packing packing;
     for (const double d : diameters_m) packing.radii_m.push_back(0.5 * d);
     if (!phases.empty()) {
         std::vector<std::size_t> order(diameters_m.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return diameters_m[l] > diameters_m[r]; });
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t l, std::size_t r) { return diameters_m[l] > diameters_m[r]; });
         for (const std::size_t i : order) packing.phases.push_back(phases[i]);
     }
     std::stable_sort(packing.radii_m.begin(), packing.radii_m.end(), std::greater<>());

@@ -15,7 +15,8 @@ namespace feldspar {
 /// @param phases  of each disc its mineral, which stays with it; may be empty
 /// @throws InputError      if a disc finds no room: the grains are too large for the outline
 /// @throws NumericalError  from the relaxation
-Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control = {}, std::span<const int> phases = {});
+Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random,
+                   const StageControl& control = {}, std::span<const int> phases = {});
 
 /// When the relaxation may stop.
 struct RelaxationCriterion {
@@ -31,6 +32,7 @@ struct RelaxationCriterion {
 /// Fills overlap_mean, overlap_max, residual and relaxation_steps. Same input, same bits, for any
 /// number of threads.
 /// @throws NumericalError  if the criterion is not met in the most steps, or a disc has left the outline
-void relax_discs(Packing& packing, const Outline& outline, const RelaxationCriterion& criterion = {}, const StageControl& control = {});
+void relax_discs(Packing& packing, const Outline& outline, const RelaxationCriterion& criterion = {},
+                 const StageControl& control = {});
 
 }  // namespace feldspar

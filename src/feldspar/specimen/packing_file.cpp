@@ -1,4 +1,6 @@
 // A packing as text, so that it can be kept, exchanged and loaded again with the same bits.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -7,8 +9,6 @@
 #include <sstream>
 #include <string_view>
 #include <system_error>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/plain_text.hpp"
@@ -26,7 +26,9 @@ public:
     explicit PackingReader(const std::filesystem::path& file) : name_(file.string()), stream_(file) {
         if (!stream_) throw InputError({name_, 0, 0, ""}, "the packing file cannot be opened", "a file saved with save_packing");
         std::error_code ignored;
-        if (!std::filesystem::is_regular_file(file, ignored)) throw InputError({name_, 0, 0, ""}, "is no file of a packing", "a file saved with save_packing");   // a device has no end
+        if (!std::filesystem::is_regular_file(file, ignored))
+            throw InputError({name_, 0, 0, ""}, "is no file of a packing",
+                             "a file saved with save_packing");  // a device has no end
     }
 
     [[noreturn]] void fail(const std::string& problem, const std::string& allowed) const {
@@ -57,7 +59,8 @@ public:
 
     /// The numbers of the next line, which must start with `keyword` (if not empty) and hold `count` finite numbers.
     std::vector<double> numbers(const std::string& keyword, std::size_t count) {
-        const std::string what = keyword.empty() ? fmt::format("{} numbers", count) : fmt::format("'{}' and {} numbers", keyword, count);
+        const std::string what =
+            keyword.empty() ? fmt::format("{} numbers", count) : fmt::format("'{}' and {} numbers", keyword, count);
         std::vector<std::string> words = next(what);
         if (!keyword.empty()) {
             if (words.empty() || words[0] != keyword) fail(fmt::format("'{}'", text_), what);
@@ -89,8 +92,10 @@ private:
 
 std::string outer_text(const Outline& outline) {
     if (outline.flattened())
-        return fmt::format("flattened-disc {:.17g} {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m, outline.flat_height_m);
-    if (outline.is_disc) return fmt::format("disc {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m);
+        return fmt::format("flattened-disc {:.17g} {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y,
+                           outline.radius_m, outline.flat_height_m);
+    if (outline.is_disc)
+        return fmt::format("disc {:.17g} {:.17g} {:.17g}\n", outline.centre.x, outline.centre.y, outline.radius_m);
     std::string text = fmt::format("polygon {}\n", outline.vertices.size());
     for (const Vec2 v : outline.vertices) text += fmt::format("{:.17g} {:.17g}\n", v.x, v.y);
     return text;
@@ -118,22 +123,28 @@ void require_same_cutouts(PackingReader& reader, const Outline& outline, double 
     const std::vector<const Cutout*> cutouts = packed_around(outline);
     for (std::size_t k = 0; k < cutouts.size(); ++k) {
         const Cutout& cutout = *cutouts[k];
-        const std::string allowed = fmt::format("a packing around {} of {} corners, as this specimen has it", cutout.name, cutout.vertices.size());
+        const std::string allowed =
+            fmt::format("a packing around {} of {} corners, as this specimen has it", cutout.name, cutout.vertices.size());
         if (reader.next_word() != "without") {
             reader.next(allowed);
-            reader.fail(k == 0 ? "the packing was made without holes or wide notches" : fmt::format("the packing was made with {} holes and wide notches", k), allowed);
+            reader.fail(k == 0 ? "the packing was made without holes or wide notches"
+                               : fmt::format("the packing was made with {} holes and wide notches", k),
+                        allowed);
         }
-        if (reader.count("without", 3) != cutout.vertices.size()) reader.fail("the packing was made for a hole or notch of another number of corners", allowed);
+        if (reader.count("without", 3) != cutout.vertices.size())
+            reader.fail("the packing was made for a hole or notch of another number of corners", allowed);
         for (const Vec2 v : cutout.vertices) {
             const auto xy = reader.numbers("", 2);
             if (norm(Vec2{xy[0], xy[1]} - v) > tolerance)
-                reader.fail(fmt::format("the packing was made for a hole or notch with a corner at ({:.9g}, {:.9g}) m", xy[0], xy[1]),
-                            fmt::format("this specimen's corner of {} at ({:.9g}, {:.9g}) m", cutout.name, v.x, v.y));
+                reader.fail(
+                    fmt::format("the packing was made for a hole or notch with a corner at ({:.9g}, {:.9g}) m", xy[0], xy[1]),
+                    fmt::format("this specimen's corner of {} at ({:.9g}, {:.9g}) m", cutout.name, v.x, v.y));
         }
     }
     if (reader.next_word() != "without") return;
     reader.next("");
-    reader.fail(fmt::format("the packing was made around {} holes or wide notches and more", cutouts.size()), fmt::format("{}, as this specimen has", cutouts.size()));
+    reader.fail(fmt::format("the packing was made around {} holes or wide notches and more", cutouts.size()),
+                fmt::format("{}, as this specimen has", cutouts.size()));
 }
 
 void require_same_outer(PackingReader& reader, const Outline& outline) {
@@ -142,10 +153,14 @@ void require_same_outer(PackingReader& reader, const Outline& outline) {
     const auto same = [&](Vec2 a, Vec2 b) { return norm(a - b) <= tolerance; };
     if (outline.flattened()) {
         const auto disc = reader.numbers("flattened-disc", 4);
-        const bool same_lengths = std::abs(disc[2] - outline.radius_m) <= tolerance && std::abs(disc[3] - outline.flat_height_m) <= tolerance;
+        const bool same_lengths =
+            std::abs(disc[2] - outline.radius_m) <= tolerance && std::abs(disc[3] - outline.flat_height_m) <= tolerance;
         if (!same({disc[0], disc[1]}, outline.centre) || !same_lengths) {
-            const auto in_words = [](double radius_m, double flat_m) { return fmt::format("a disc of radius {:.9g} m with flats {:.9g} m from its centre", radius_m, flat_m); };
-            reader.fail("the packing was made for " + in_words(disc[2], disc[3]), "the outline of this specimen: " + in_words(outline.radius_m, outline.flat_height_m));
+            const auto in_words = [](double radius_m, double flat_m) {
+                return fmt::format("a disc of radius {:.9g} m with flats {:.9g} m from its centre", radius_m, flat_m);
+            };
+            reader.fail("the packing was made for " + in_words(disc[2], disc[3]),
+                        "the outline of this specimen: " + in_words(outline.radius_m, outline.flat_height_m));
         }
         return;
     }
@@ -204,7 +219,8 @@ void save_packing(const Specimen& specimen, const std::filesystem::path& file) {
     try {
         throw reason;
     } catch (const std::system_error&) {
-        std::throw_with_nested(OutputError(fmt::format("the packing could not be written to {}: {}", file.string(), reason.code().message())));
+        std::throw_with_nested(
+            OutputError(fmt::format("the packing could not be written to {}: {}", file.string(), reason.code().message())));
     }
 }
 
@@ -221,13 +237,16 @@ Packing load_packing(const std::filesystem::path& file, const Outline& outline) 
     packing.overlap_mean = relaxation[0];
     packing.overlap_max = relaxation[1];
     packing.residual = relaxation[2];
-    if (relaxation[3] != std::floor(relaxation[3]) || !(relaxation[3] >= 0.0 && relaxation[3] < 1e9)) reader.fail(fmt::format("'{}' is no number of steps", relaxation[3]), "a whole number, zero or more");
+    if (relaxation[3] != std::floor(relaxation[3]) || !(relaxation[3] >= 0.0 && relaxation[3] < 1e9))
+        reader.fail(fmt::format("'{}' is no number of steps", relaxation[3]), "a whole number, zero or more");
     packing.relaxation_steps = static_cast<int>(relaxation[3]);
     if (reader.next_word() == "minerals") {
         const std::size_t minerals = reader.count("minerals", 1);
         for (std::size_t p = 0; p < minerals; ++p) {
             const std::vector<std::string> words = reader.next("the name of a mineral");
-            if (words.size() != 1 || std::find(packing.phase_names.begin(), packing.phase_names.end(), words.front()) != packing.phase_names.end()) reader.fail("this is not the name of a mineral", "a word, each mineral once");
+            if (words.size() != 1 ||
+                std::find(packing.phase_names.begin(), packing.phase_names.end(), words.front()) != packing.phase_names.end())
+                reader.fail("this is not the name of a mineral", "a word, each mineral once");
             packing.phase_names.push_back(words.front());
         }
     }
@@ -236,13 +255,16 @@ Packing load_packing(const std::filesystem::path& file, const Outline& outline) 
     for (std::size_t i = 0; i < discs; ++i) {
         const auto disc = reader.numbers("", phased ? 4 : 3);
         const Vec2 centre = {disc[0], disc[1]};
-        if (!contains(outline, centre)) reader.fail(fmt::format("the centre of disc {} lies outside the outline", i), "a centre inside");
-        if (!(disc[2] > 0.0)) reader.fail(fmt::format("the radius of disc {} is {:g} m", i, disc[2]), "a radius greater than zero");
+        if (!contains(outline, centre))
+            reader.fail(fmt::format("the centre of disc {} lies outside the outline", i), "a centre inside");
+        if (!(disc[2] > 0.0))
+            reader.fail(fmt::format("the radius of disc {} is {:g} m", i, disc[2]), "a radius greater than zero");
         packing.centres.push_back(centre);
         packing.radii_m.push_back(disc[2]);
         if (!phased) continue;
         if (disc[3] != std::floor(disc[3]) || disc[3] < 0.0 || disc[3] >= static_cast<double>(packing.phase_names.size()))
-            reader.fail(fmt::format("the mineral of disc {} is {:g}", i, disc[3]), fmt::format("from 0 to {}", packing.phase_names.size() - 1));
+            reader.fail(fmt::format("the mineral of disc {} is {:g}", i, disc[3]),
+                        fmt::format("from 0 to {}", packing.phase_names.size() - 1));
         packing.phases.push_back(static_cast<int>(disc[3]));
     }
     if (reader.next("'end'") != std::vector<std::string>{"end"}) reader.fail("more lines than discs", "'end'");

@@ -1,11 +1,11 @@
 // Relaxation of a packing of overlapping discs; the method stands in pack_discs.hpp.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/mean.hpp"
@@ -18,16 +18,16 @@
 namespace feldspar {
 namespace {
 
-/// By how much discs may come closer to each other before the list of near pairs, or that of far ones, is made again / mean diameter.
-/// A few loose discs fly about to the last, so the near list, which costs in every step, is short and often sifted from the far one,
-/// for which the discs must be searched.
+/// By how much discs may come closer to each other before the list of near pairs, or that of far ones, is made again / mean
+/// diameter. A few loose discs fly about to the last, so the near list, which costs in every step, is short and often sifted from
+/// the far one, for which the discs must be searched.
 constexpr double near_skin_share = 0.2, far_skin_share = 1.3;
-/// A distribution is wide when its largest disc is more than so many times its smallest. In a wide one large discs, which overlap by
-/// many radii of the small ones at first, would gather speed, fly out through the outline and carry small ones along: so no disc keeps
-/// more speed than the farthest move needs, and masses grow with the near discs. Others are relaxed without either.
+/// A distribution is wide when its largest disc is more than so many times its smallest. In a wide one large discs, which overlap
+/// by many radii of the small ones at first, would gather speed, fly out through the outline and carry small ones along: so no
+/// disc keeps more speed than the farthest move needs, and masses grow with the near discs. Others are relaxed without either.
 constexpr double wide_ratio = 8.0;
-/// In a wide distribution, a disc's mass is its number of near discs over this, at least 1. A contact has stiffness 1, so a large disc among
-/// many small ones would otherwise swing faster than a step of FIRE can follow (fire.cpp).
+/// In a wide distribution, a disc's mass is its number of near discs over this, at least 1. A contact has stiffness 1, so a large
+/// disc among many small ones would otherwise swing faster than a step of FIRE can follow (fire.cpp).
 constexpr int near_per_mass = 12;
 /// Discs whose sums are taken together, in the order of the discs: fixed, so that sums do not depend on the number of threads.
 constexpr int block = 1024;
@@ -35,24 +35,27 @@ constexpr int block = 1024;
 /// What one thread has of the neighbours: the discs of its share, each with those of lower number near it.
 struct Share {
     IndexRange discs;
-    std::vector<DiscPair> far;          ///< pairs from which the near ones are sifted, in the same order
-    std::vector<DiscPair> near;         ///< by the first disc, then by the second: forces are added in this order
-    std::vector<DistantPush> distant;   ///< forces on discs of the shares before, in the order of the pairs
+    std::vector<DiscPair> far;         ///< pairs from which the near ones are sifted, in the same order
+    std::vector<DiscPair> near;        ///< by the first disc, then by the second: forces are added in this order
+    std::vector<DistantPush> distant;  ///< forces on discs of the shares before, in the order of the pairs
 };
 
 /// Pairs of a disc and a piece of the outline that may touch before the lists are made again.
 struct NearWall {
     int disc = 0;
-    int wall = 0;   ///< edge k as k (circle_edge and flats of a disc first), re-entrant corner k as -1 - k; whole_boundary for a disc that has got outside
+    int wall = 0;  ///< edge k as k (circle_edge and flats of a disc first), re-entrant corner k as -1 - k; whole_boundary for a
+                   ///< disc that has got outside
 
     static constexpr int whole_boundary = std::numeric_limits<int>::min();
-    static constexpr int arc = whole_boundary + 1;   ///< of a half disc: as a circle, since two edges of its polygon would both push near their common corner
+    static constexpr int arc =
+        whole_boundary +
+        1;  ///< of a half disc: as a circle, since two edges of its polygon would both push near their common corner
 };
 
 /// A straight piece of the boundary, with the rock to its left.
 struct WallEdge {
     Vec2 from, to;
-    int before = 0, next = 0;   ///< edges
+    int before = 0, next = 0;  ///< edges
 };
 
 /// Those of the polygon and of what is packed around, loop by loop.
@@ -73,7 +76,7 @@ std::vector<WallEdge> wall_edges(const Outline& outline) {
 struct Sums {
     double overlap = 0.0;
     double largest_overlap = 0.0;
-    double unbalanced = 0.0;   ///< of the lengths of the forces on the discs
+    double unbalanced = 0.0;  ///< of the lengths of the forces on the discs
     long touching = 0;
 
     void touch(double by) {
@@ -109,7 +112,8 @@ public:
         edges_ = wall_edges(outline);
         has_arc_ = !outline.is_disc && outline.radius_m > 0.0;
         first_edge_ = outline.is_disc ? bottom_flat + 1 : 0;
-        const bool packed_around = std::any_of(outline.cutouts.begin(), outline.cutouts.end(), [](const Cutout& cutout) { return cutout.packed_around; });
+        const bool packed_around = std::any_of(outline.cutouts.begin(), outline.cutouts.end(),
+                                               [](const Cutout& cutout) { return cutout.packed_around; });
         convex_ = !packed_around && (outline.is_disc || is_convex_polygon(outline.vertices));
     }
 
@@ -136,15 +140,15 @@ private:
     std::vector<Vec2>& centres_;
     const std::vector<double>& radii_;
     int count_;
-    std::vector<Vec2> force_;   ///< m (stiffness 1)
-    std::vector<double> inverse_mass_;   ///< a disc; empty where all are 1
-    std::vector<Vec2> acceleration_;     ///< m, where masses differ
-    std::vector<Vec2> sifted_at_, searched_at_;   ///< where the discs were when the lists were made; empty before
+    std::vector<Vec2> force_;                    ///< m (stiffness 1)
+    std::vector<double> inverse_mass_;           ///< a disc; empty where all are 1
+    std::vector<Vec2> acceleration_;             ///< m, where masses differ
+    std::vector<Vec2> sifted_at_, searched_at_;  ///< where the discs were when the lists were made; empty before
     DiscGrid grid_;
-    std::vector<Share> shares_;   ///< one a thread
+    std::vector<Share> shares_;  ///< one a thread
     std::vector<WallEdge> edges_;
-    bool has_arc_ = false;   ///< a half disc
-    int first_edge_ = 0;   ///< number of edges_[0] as a wall
+    bool has_arc_ = false;  ///< a half disc
+    int first_edge_ = 0;    ///< number of edges_[0] as a wall
     std::vector<NearWall> walls_;
     double smallest_radius_ = 0.0, largest_radius_ = 0.0;
     double mean_diameter_ = 0.0;
@@ -219,13 +223,15 @@ void Relaxation::find_walls() {
     if (outline_.is_disc) {
         for (int i = 0; i < count_; ++i) {
             if (norm(centres_[i] - outline_.centre) + radii_[i] + skin_ > outline_.radius_m) walls_.push_back({i, circle_edge});
-            if (!outline_.flattened() || std::abs(centres_[i].y - outline_.centre.y) + radii_[i] + skin_ <= outline_.flat_height_m) continue;
+            if (!outline_.flattened() ||
+                std::abs(centres_[i].y - outline_.centre.y) + radii_[i] + skin_ <= outline_.flat_height_m)
+                continue;
             walls_.push_back({i, centres_[i].y > outline_.centre.y ? top_flat : bottom_flat});
         }
         if (edges_.empty()) return;
     }
     const double far = largest_radius_ + skin_;
-    const int arc_end = has_arc_ ? static_cast<int>(outline_.vertices.size()) : 0;   // edge 0 is the flat
+    const int arc_end = has_arc_ ? static_cast<int>(outline_.vertices.size()) : 0;  // edge 0 is the flat
     for (int i = 0; has_arc_ && i < count_; ++i) {
         if (norm(centres_[i] - outline_.centre) + radii_[i] + skin_ > outline_.radius_m) walls_.push_back({i, NearWall::arc});
     }
@@ -233,7 +239,8 @@ void Relaxation::find_walls() {
         if (k > 0 && k < arc_end) continue;
         const Vec2 a = edges_[k].from, b = edges_[k].to, c = edges_[edges_[k].next].to;
         const bool reentrant = cross(b - a, c - b) < 0.0;
-        const Vec2 lower = {std::min(a.x, b.x) - far, std::min(a.y, b.y) - far}, upper = {std::max(a.x, b.x) + far, std::max(a.y, b.y) + far};
+        const Vec2 lower = {std::min(a.x, b.x) - far, std::min(a.y, b.y) - far},
+                   upper = {std::max(a.x, b.x) + far, std::max(a.y, b.y) + far};
         const std::ptrdiff_t before = std::ssize(walls_);
         for (int i = 0; i < count_; ++i) {
             const Vec2 p = centres_[i];
@@ -252,7 +259,7 @@ void Relaxation::find_walls() {
 /// A small disc that large ones have squeezed far out, or past a corner, faces no edge any more.
 void Relaxation::call_back() {
     const Box box = bounding_box(outline_);
-    std::vector<int> outside;   // in the order of the discs
+    std::vector<int> outside;  // in the order of the discs
     for (int i = 0; i < count_; ++i) {
         const Vec2 p = centres_[i];
         const bool in_box = p.x > box.lower.x && p.x < box.upper.x && p.y > box.lower.y && p.y < box.upper.y;
@@ -336,8 +343,8 @@ double Relaxation::wall_overlap(NearWall pair, Vec2& inward) const {
     return radius - height;
 }
 
-/// Forces of the pairs in the order of their discs, whoever computes them: each thread adds those between its own discs, and hands
-/// those on discs of earlier shares over to their owners, who add them after their own. Then the walls.
+/// Forces of the pairs in the order of their discs, whoever computes them: each thread adds those between its own discs, and
+/// hands those on discs of earlier shares over to their owners, who add them after their own. Then the walls.
 void Relaxation::forces() {
     if (moved_beyond(0.5 * skin_, sifted_at_)) sift_near();
     in_shares(control_.team, count_, [&](IndexRange discs, int thread) {
@@ -365,7 +372,8 @@ Sums Relaxation::measure(IndexRange discs) const {
     Sums sums;
     const auto at = std::find_if(shares_.begin(), shares_.end(), [&](const Share& s) { return discs.begin < s.discs.end; });
     for (auto share = at; share != shares_.end() && share->discs.begin < discs.end; ++share) {
-        auto pair = std::lower_bound(share->near.begin(), share->near.end(), discs.begin, [](DiscPair p, int i) { return p.a < i; });
+        auto pair =
+            std::lower_bound(share->near.begin(), share->near.end(), discs.begin, [](DiscPair p, int i) { return p.a < i; });
         for (; pair != share->near.end() && pair->a < discs.end; ++pair) {
             const Vec2 apart = centres_[pair->a] - centres_[pair->b];
             const double reach = radii_[pair->a] + radii_[pair->b], distance2 = dot(apart, apart);
@@ -380,7 +388,8 @@ Sums Relaxation::measure() const {
     const int blocks = (count_ + block - 1) / block;
     std::vector<Sums> parts(static_cast<std::size_t>(blocks));
     in_shares(control_.team, blocks, [&](IndexRange range, int) {
-        for (int k = range.begin; k < range.end; ++k) parts[k] = measure(IndexRange{k * block, std::min(count_, (k + 1) * block)});
+        for (int k = range.begin; k < range.end; ++k)
+            parts[k] = measure(IndexRange{k * block, std::min(count_, (k + 1) * block)});
     });
     Sums sums;
     for (const Sums& part : parts) sums += part;
@@ -392,7 +401,8 @@ Sums Relaxation::measure() const {
     return sums;
 }
 
-/// The residual falls by and large as a power of the steps, with ups and downs: the share done is told on its logarithm, and never falls.
+/// The residual falls by and large as a power of the steps, with ups and downs: the share done is told on its logarithm, and
+/// never falls.
 void Relaxation::tell(double residual, double wanted) {
     first_residual_ = std::max(first_residual_, residual);
     if (residual > wanted && wanted > 0.0 && first_residual_ > wanted) {
@@ -402,7 +412,8 @@ void Relaxation::tell(double residual, double wanted) {
 }
 
 void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
-    Fire fire(radii_.size(), {.shortest_step = 0.01, .steps_back = true, .farthest_move_m = 0.1 * smallest_radius_, .forget_speed = wide()});
+    Fire fire(radii_.size(),
+              {.shortest_step = 0.01, .steps_back = true, .farthest_move_m = 0.1 * smallest_radius_, .forget_speed = wide()});
     for (int step = 0; step <= criterion.most_steps; ++step) {
         forces();
         if (step % 10 != 0) {  // the criterion costs another look at all pairs, so it is judged at every tenth step
@@ -420,8 +431,9 @@ void Relaxation::run(const RelaxationCriterion& criterion, Packing& packing) {
         tell(packing.residual, criterion.residual);
         fire.advance(centres_, accelerations(), control_.team);
     }
-    throw NumericalError(fmt::format("the relaxation of the packing stopped after {} steps at a residual of {:.2e} (allowed {:.1e})",
-                                     criterion.most_steps, packing.residual, criterion.residual));
+    throw NumericalError(
+        fmt::format("the relaxation of the packing stopped after {} steps at a residual of {:.2e} (allowed {:.1e})",
+                    criterion.most_steps, packing.residual, criterion.residual));
 }
 
 }  // namespace

@@ -14,15 +14,16 @@ constexpr int chunk = 256;
 struct Overlapping {
     // One place more than pairs: every pair is written, those that count are kept.
     std::array<DiscPair, chunk + 1> discs;
-    std::array<Vec2, chunk + 1> apart;         ///< from the second centre to the first, m
-    std::array<double, chunk + 1> reach;       ///< m; then the force / distance
-    std::array<double, chunk + 1> distance2;   ///< m^2
+    std::array<Vec2, chunk + 1> apart;        ///< from the second centre to the first, m
+    std::array<double, chunk + 1> reach;      ///< m; then the force / distance
+    std::array<double, chunk + 1> distance2;  ///< m^2
     int count = 0;
-    bool coincident = false;   ///< some centres may lie in one place
+    bool coincident = false;  ///< some centres may lie in one place
 };
 
 // Whether a pair overlaps is hard to guess and a wrong guess costs more than the pair, so there is no branch.
-void collect(std::span<const DiscPair> pairs, std::span<const Vec2> centres, std::span<const double> radii_m, double factor, Overlapping& found) {
+void collect(std::span<const DiscPair> pairs, std::span<const Vec2> centres, std::span<const double> radii_m, double factor,
+             Overlapping& found) {
     int n = 0, coincident = 0;
     for (const DiscPair pair : pairs) {
         const Vec2 apart = centres[pair.a] - centres[pair.b];
@@ -41,7 +42,7 @@ void collect(std::span<const DiscPair> pairs, std::span<const Vec2> centres, std
 
 // From the reach to the force / distance; roots and quotients side by side in vectors.
 void find_forces(std::span<const double> radii_m, double factor, Overlapping& found) {
-    const int count = found.count;   // a count of its own, without which the loop is not turned into vectors
+    const int count = found.count;  // a count of its own, without which the loop is not turned into vectors
     double* reach = found.reach.data();
     const double* distance2 = found.distance2.data();
     for (int k = 0; k < count; ++k) {
@@ -51,7 +52,7 @@ void find_forces(std::span<const double> radii_m, double factor, Overlapping& fo
     if (!found.coincident) return;
     for (int k = 0; k < count; ++k) {
         if (found.distance2[k] != 0.0) continue;
-        found.apart[k] = {1.0, 0.0};   // any direction will do as long as it is always the same
+        found.apart[k] = {1.0, 0.0};  // any direction will do as long as it is always the same
         found.reach[k] = factor * (radii_m[found.discs[k].a] + radii_m[found.discs[k].b]);
     }
 }

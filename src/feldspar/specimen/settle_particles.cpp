@@ -63,7 +63,7 @@ private:
     std::vector<Vec2> force_;
     Fire fire_;
     double skin_;
-    std::vector<DiscPair> near_;   ///< by the second disc, then by the first
+    std::vector<DiscPair> near_;  ///< by the second disc, then by the first
     std::vector<DistantPush> nothing_distant_;
     std::vector<Vec2> listed_at_;  ///< where the discs were and how far they reached when the list was made; empty before
     std::vector<double> listed_reach_;

@@ -13,9 +13,9 @@ namespace feldspar {
 void add_inner_discs(GrainRing& ring, std::span<const Vec2> corners, int count, RandomStream& random);
 
 /// Lets all discs settle: those that overlap push each other apart, inner discs move freely, edge discs along their edge, corner
-/// discs not at all. Minimised as in relax_discs. Inner and edge discs grow or shrink, by 15 % at most, until their neighbours just
-/// hold them. An inner disc that overlaps another too much is put elsewhere; one that finds no place is taken away again, and so
-/// is an edge disc in the way.
+/// discs not at all. Minimised as in relax_discs. Inner and edge discs grow or shrink, by 15 % at most, until their neighbours
+/// just hold them. An inner disc that overlaps another too much is put elsewhere; one that finds no place is taken away again,
+/// and so is an edge disc in the way.
 /// @param corners  the cell, counter-clockwise
 /// @returns true if discs were put elsewhere, for which numbers of the stream were used
 bool settle_discs(GrainRing& ring, std::span<const Vec2> corners, RandomStream& random);

@@ -9,8 +9,9 @@ namespace feldspar {
 
 /// Threads and a listener for one stage.
 struct StageControl {
-    Team* team = nullptr;                      ///< to share the work with; none: the caller's thread alone
-    std::function<void(double share)> tell;    ///< hears the share done, 0 to 1, now and then; may be empty; may throw to end the work
+    Team* team = nullptr;  ///< to share the work with; none: the caller's thread alone
+    std::function<void(double share)>
+        tell;  ///< hears the share done, 0 to 1, now and then; may be empty; may throw to end the work
 
     /// Tells that `share` of the stage, 0 to 1, is done.
     void done(double share) const {

@@ -1,9 +1,9 @@
 #include "feldspar/specimen/tessellate_laguerre.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -56,7 +56,7 @@ Tessellation tessellation_of(CellGraph graph, const Outline& outline, double mea
     Tessellation result;
     const double least_length = std::max(merge_length_m, no_length * mean_diameter);
     if (!outline.cutouts.empty()) {
-        result.merged_edges = merge_short_edges(graph, outline, no_length * mean_diameter);   // edges are cut that have a length
+        result.merged_edges = merge_short_edges(graph, outline, no_length * mean_diameter);  // edges are cut that have a length
         CutCells cut = cut_cells(graph, outline, mean_diameter, least_length);
         result.disc_of_cell = std::move(cut.disc);
         result.reshaped = std::move(cut.reshaped);
@@ -79,7 +79,10 @@ std::vector<Vec2> corners_of_cell(const Tessellation& cells, int cell) {
 }
 
 void check_conforming(const Tessellation& cells) {
-    struct Side { int low, high, cell, neighbour; bool forward; };
+    struct Side {
+        int low, high, cell, neighbour;
+        bool forward;
+    };
     std::vector<Side> sides;
     for (int i = 0; i < std::ssize(cells.cells); ++i) {
         const Cell& cell = cells.cells[i];
@@ -100,7 +103,8 @@ void check_conforming(const Tessellation& cells) {
         const bool shared = end - k == 2 && first.forward != sides[k + 1].forward && first.neighbour == sides[k + 1].cell &&
                             sides[k + 1].neighbour == first.cell;
         if (!outline_edge && !shared) {
-            throw NumericalError(fmt::format("the cells do not fit together: an edge of cell {} is named by {} cells", first.cell, end - k));
+            throw NumericalError(
+                fmt::format("the cells do not fit together: an edge of cell {} is named by {} cells", first.cell, end - k));
         }
         k = end;
     }

@@ -1,5 +1,7 @@
 #include "feldspar/specimen/weld_cells.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +11,6 @@
 #include <optional>
 #include <unordered_map>
 #include <utility>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
@@ -38,7 +38,7 @@ Common common_part(const std::vector<Vec2>& polygon, const std::vector<Vec2>& co
 }
 
 std::vector<std::vector<Vec2>> convex_parts(const std::vector<Vec2>& corners) {
-    if (!is_simple_polygon(corners)) return {};   // bent by what was put into its edges: other cells tell where
+    if (!is_simple_polygon(corners)) return {};  // bent by what was put into its edges: other cells tell where
     if (is_convex_polygon(corners)) return {corners};
     std::vector<std::vector<Vec2>> parts;
     for (const std::vector<int>& part : convex_partition(corners)) {
@@ -51,7 +51,8 @@ std::vector<std::vector<Vec2>> convex_parts(const std::vector<Vec2>& corners) {
 /// Works in the file's unit.
 class Welder {
 public:
-    Welder(const CellsOfFile& read, double tolerance, const std::filesystem::path& file) : read_(read), file_(file.string()), vertices_(read.vertices) {
+    Welder(const CellsOfFile& read, double tolerance, const std::filesystem::path& file)
+        : read_(read), file_(file.string()), vertices_(read.vertices) {
         check_each();
         mean_ = mean_diameter();
         reach_ = tolerance * mean_;
@@ -59,7 +60,8 @@ public:
 
     GivenCells weld(double unit_m) {
         weld_vertices();
-        for (int round = 0; round < 4 && insert_on_edges(); ++round) {}
+        for (int round = 0; round < 4 && insert_on_edges(); ++round) {
+        }
         name_neighbours();
         check_whole();
         check_seen();
@@ -67,7 +69,8 @@ public:
     }
 
 private:
-    [[noreturn]] void fail(int cell, const std::string& problem, const std::string& allowed, const std::string& suggestion = {}) const {
+    [[noreturn]] void fail(int cell, const std::string& problem, const std::string& allowed,
+                           const std::string& suggestion = {}) const {
         const int line = cell >= 0 ? read_.cells[cell].line : 0;
         throw InputError({file_, line, line > 0 ? 1 : 0, {}}, problem, allowed, suggestion);
     }
@@ -86,17 +89,25 @@ private:
             std::vector<int> around;
             for (const int v : read_.cells[c].corners)
                 if (around.empty() || vertices_[static_cast<std::size_t>(around.back())] != vertices_[v]) around.push_back(v);
-            while (around.size() > 1 && vertices_[static_cast<std::size_t>(around.front())] == vertices_[static_cast<std::size_t>(around.back())]) around.pop_back();
+            while (around.size() > 1 &&
+                   vertices_[static_cast<std::size_t>(around.front())] == vertices_[static_cast<std::size_t>(around.back())])
+                around.pop_back();
             repeated_ += static_cast<int>(read_.cells[c].corners.size() - around.size());
-            if (around.size() < 3) fail(c, fmt::format("cell {} has {} different corners", name(c), around.size()), "three or more");
+            if (around.size() < 3)
+                fail(c, fmt::format("cell {} has {} different corners", name(c), around.size()), "three or more");
             cells_.push_back(std::move(around));
             std::vector<Vec2> polygon = corners(c);
             const double area = signed_area(polygon);
             const Box box = bounding_box(std::span<const Vec2>(polygon));
             const double size = norm(box.upper - box.lower);
-            if (!std::isfinite(size * size)) fail(c, fmt::format("cell {} is too large to be computed with", name(c)), "lengths that are not beyond reason");
-            if (!(std::abs(area) > 1e-9 * size * size)) fail(c, fmt::format("cell {} has no area: its corners lie on a line", name(c)), "cells with an area");
-            if (!is_simple_polygon(polygon)) fail(c, fmt::format("the boundary of cell {} crosses or touches itself, near {}", name(c), place(centroid(polygon))), "corners in the order around the cell");
+            if (!std::isfinite(size * size))
+                fail(c, fmt::format("cell {} is too large to be computed with", name(c)), "lengths that are not beyond reason");
+            if (!(std::abs(area) > 1e-9 * size * size))
+                fail(c, fmt::format("cell {} has no area: its corners lie on a line", name(c)), "cells with an area");
+            if (!is_simple_polygon(polygon))
+                fail(c,
+                     fmt::format("the boundary of cell {} crosses or touches itself, near {}", name(c), place(centroid(polygon))),
+                     "corners in the order around the cell");
             if (area < 0.0) std::reverse(cells_.back().begin(), cells_.back().end());
         }
     }
@@ -107,17 +118,21 @@ private:
         return sum / static_cast<double>(cells_.size());
     }
 
-    /// Vertices of different cells that are nearer than the tolerance become one, the nearest pair first; the one with the lower number stays.
+    /// Vertices of different cells that are nearer than the tolerance become one, the nearest pair first; the one with the lower
+    /// number stays.
     void weld_vertices() {
         const std::size_t n = vertices_.size();
         std::vector<std::vector<int>> cells_at(n);
         for (int c = 0; c < std::ssize(cells_); ++c)
-            for (const int v : cells_[c]) cells_at[v].push_back(c);   // ascending
+            for (const int v : cells_[c]) cells_at[v].push_back(c);  // ascending
         std::vector<Vec2> used;
         for (std::size_t v = 0; v < n; ++v)
             if (!cells_at[v].empty()) used.push_back(vertices_[v]);
         CellGrid grid(bounding_box(std::span<const Vec2>(used)), std::max(2.0 * reach_, 0.1 * mean_), used.size());
-        struct Pair { double distance; int a, b; };
+        struct Pair {
+            double distance;
+            int a, b;
+        };
         std::vector<Pair> pairs;
         for (int v = 0; v < static_cast<int>(n); ++v) {
             if (cells_at[v].empty()) continue;
@@ -128,7 +143,9 @@ private:
             });
             grid.insert(v, at);
         }
-        std::sort(pairs.begin(), pairs.end(), [](const Pair& l, const Pair& r) { return l.distance != r.distance ? l.distance < r.distance : l.a != r.a ? l.a < r.a : l.b < r.b; });
+        std::sort(pairs.begin(), pairs.end(), [](const Pair& l, const Pair& r) {
+            return l.distance != r.distance ? l.distance < r.distance : l.a != r.a ? l.a < r.a : l.b < r.b;
+        });
         std::vector<int> leader(n);
         std::iota(leader.begin(), leader.end(), 0);
         const auto find = [&](int v) {
@@ -161,7 +178,9 @@ private:
     }
 
     /// Edges that have no other side.
-    struct Open { int cell, corner, from, to; };
+    struct Open {
+        int cell, corner, from, to;
+    };
     std::vector<Open> open_edges() const {
         std::unordered_map<std::uint64_t, int> cell_of;
         for (int c = 0; c < std::ssize(cells_); ++c) {
@@ -189,13 +208,15 @@ private:
         ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
         CellGrid grid(bounding_box(std::span<const Vec2>(vertices_)), mean_, ends.size());
         for (const int v : ends) grid.insert(v, vertices_[v]);
-        std::map<std::pair<int, int>, std::vector<std::pair<double, int>>> additions;   // cell and corner -> share of the edge and vertex
+        std::map<std::pair<int, int>, std::vector<std::pair<double, int>>>
+            additions;  // cell and corner -> share of the edge and vertex
         for (const Open& edge : open) {
             const Vec2 a = vertices_[edge.from], b = vertices_[edge.to], along = b - a;
             const double length2 = dot(along, along);
             const std::vector<int>& cell = cells_[edge.cell];
             const Vec2 margin{reach_, reach_};
-            const Box box{Vec2{std::min(a.x, b.x), std::min(a.y, b.y)} - margin, Vec2{std::max(a.x, b.x), std::max(a.y, b.y)} + margin};
+            const Box box{Vec2{std::min(a.x, b.x), std::min(a.y, b.y)} - margin,
+                          Vec2{std::max(a.x, b.x), std::max(a.y, b.y)} + margin};
             std::vector<std::pair<double, int>> found;
             grid.for_each_in(box, [&](int v) {
                 const double share = dot(vertices_[v] - a, along) / length2;
@@ -274,14 +295,16 @@ private:
             const std::size_t n = cell.size();
             for (std::size_t k = 0; k < n; ++k) {
                 const Vec2 at = vertices_[cell[k]];
-                const Vec2 in = at - vertices_[static_cast<std::size_t>(cell[(k + n - 1) % n])], out = vertices_[static_cast<std::size_t>(cell[(k + 1) % n])] - at;
+                const Vec2 in = at - vertices_[static_cast<std::size_t>(cell[(k + n - 1) % n])],
+                           out = vertices_[static_cast<std::size_t>(cell[(k + 1) % n])] - at;
                 turn[cell[k]] += std::numbers::pi - std::atan2(cross(in, out), dot(in, out));
             }
         }
         std::vector<char> outside(vertices_.size(), 0);
         for (const int v : lines.front()) outside[v] = 1;
         for (std::size_t v = 0; v < turn.size(); ++v)
-            if (turn[v] > 2.0 * std::numbers::pi + 1e-6 || (outside[v] == 0 && turn[v] < 2.0 * std::numbers::pi - 1e-6)) explain(-1);
+            if (turn[v] > 2.0 * std::numbers::pi + 1e-6 || (outside[v] == 0 && turn[v] < 2.0 * std::numbers::pi - 1e-6))
+                explain(-1);
         if (!is_simple_polygon(points(lines.front()))) explain(-1);
         boundary_ = std::move(lines.front());
     }
@@ -310,16 +333,25 @@ private:
             int beside = -1;
             for (const Open& edge : open_edges())
                 if (beside < 0 && edge.from == lines[*gap].front()) beside = edge.cell;
-            fail(beside, fmt::format("the cells leave {} of {:.4g} (file's unit squared, {:.3g} mean cells) around {}, beside cell {}", gaps == 1 ? "a gap" : fmt::format("{} gaps, the largest", gaps), largest, largest / mean_area,
-                                     place(centroid(around)), beside < 0 ? "?" : name(beside)),
-                 "cells without gaps: corners of neighbours that agree to the key tolerance, in mean grain diameters; holes are cut out by [[specimen.holes]]");
+            fail(beside,
+                 fmt::format("the cells leave {} of {:.4g} (file's unit squared, {:.3g} mean cells) around {}, beside cell {}",
+                             gaps == 1 ? "a gap" : fmt::format("{} gaps, the largest", gaps), largest, largest / mean_area,
+                             place(centroid(around)), beside < 0 ? "?" : name(beside)),
+                 "cells without gaps: corners of neighbours that agree to the key tolerance, in mean grain diameters; holes are "
+                 "cut out by [[specimen.holes]]");
         }
-        if (pinched_ >= 0) fail(cell, fmt::format("the cells hang together by a point only, at {}", place(vertices_[pinched_])), "cells in one piece");
+        if (pinched_ >= 0)
+            fail(cell, fmt::format("the cells hang together by a point only, at {}", place(vertices_[pinched_])),
+                 "cells in one piece");
         if (parts > 1) {
             const Vec2 a = centroid(points(lines.front())), b = centroid(points(lines.back()));
-            fail(cell, fmt::format("the cells lie in {} parts that touch in a point at most, one around {} and one around {}", parts, place(a), place(b)), "cells in one piece: corners of neighbours that agree to the key tolerance, in mean grain diameters");
+            fail(cell,
+                 fmt::format("the cells lie in {} parts that touch in a point at most, one around {} and one around {}", parts,
+                             place(a), place(b)),
+                 "cells in one piece: corners of neighbours that agree to the key tolerance, in mean grain diameters");
         }
-        fail(cell, "the cells do not fit together: their edges are not those of one partition", "cells without gaps and overlaps");
+        fail(cell, "the cells do not fit together: their edges are not those of one partition",
+             "cells without gaps and overlaps");
     }
 
     void explain_overlap() const {
@@ -331,7 +363,9 @@ private:
             const std::vector<Vec2> polygon = corners(c);
             boxes.push_back(bounding_box(std::span<const Vec2>(polygon)));
         }
-        std::sort(order.begin(), order.end(), [&](int l, int r) { return boxes[l].lower.x != boxes[r].lower.x ? boxes[l].lower.x < boxes[r].lower.x : l < r; });
+        std::sort(order.begin(), order.end(), [&](int l, int r) {
+            return boxes[l].lower.x != boxes[r].lower.x ? boxes[l].lower.x < boxes[r].lower.x : l < r;
+        });
         Common worst;
         int first = -1, second = -1, pairs = 0;
         for (int i = 0; i < n; ++i) {
@@ -349,7 +383,7 @@ private:
                         common.area += part.area;
                         common.moment += part.moment;
                     }
-                if (common.area <= 1e-2 * reach_ * mean_) continue;   // slivers along borders that nearly agree
+                if (common.area <= 1e-2 * reach_ * mean_) continue;  // slivers along borders that nearly agree
                 ++pairs;
                 if (common.area <= worst.area) continue;
                 worst = common;
@@ -358,8 +392,11 @@ private:
             }
         }
         if (pairs == 0) return;
-        fail(second, fmt::format("cells {} and {} overlap by {:.4g} (file's unit squared, {:.3g} mean cells) around {}{}", name(first), name(second), worst.area, worst.area / (0.25 * std::numbers::pi * mean_ * mean_),
-                                 place((1.0 / worst.area) * worst.moment), pairs > 1 ? fmt::format(", and {} more pairs of cells do", pairs - 1) : ""),
+        fail(second,
+             fmt::format("cells {} and {} overlap by {:.4g} (file's unit squared, {:.3g} mean cells) around {}{}", name(first),
+                         name(second), worst.area, worst.area / (0.25 * std::numbers::pi * mean_ * mean_),
+                         place((1.0 / worst.area) * worst.moment),
+                         pairs > 1 ? fmt::format(", and {} more pairs of cells do", pairs - 1) : ""),
              "cells side by side: corners of neighbours that agree to the key tolerance, in mean grain diameters");
     }
 
@@ -367,8 +404,15 @@ private:
     void check_seen() {
         for (int c = 0; c < std::ssize(cells_); ++c) {
             const std::vector<Vec2> polygon = corners(c);
-            if (signed_area(polygon) <= 0.0) fail(c, fmt::format("cell {} has no area left where its corners were welded to those of neighbours", name(c)), "a smaller tolerance, or cells that are wider than it");
-            if (!is_simple_polygon(polygon)) fail(c, fmt::format("the boundary of cell {} crosses itself where its corners were welded to those of neighbours, near {}", name(c), place(centroid(polygon))), "a smaller tolerance, or cells that are wider than it");
+            if (signed_area(polygon) <= 0.0)
+                fail(c, fmt::format("cell {} has no area left where its corners were welded to those of neighbours", name(c)),
+                     "a smaller tolerance, or cells that are wider than it");
+            if (!is_simple_polygon(polygon))
+                fail(c,
+                     fmt::format(
+                         "the boundary of cell {} crosses itself where its corners were welded to those of neighbours, near {}",
+                         name(c), place(centroid(polygon))),
+                     "a smaller tolerance, or cells that are wider than it");
             if (is_convex_polygon(polygon)) continue;
             std::size_t worst = 0;
             double sharpest = 0.0;
@@ -378,9 +422,12 @@ private:
                 const double angle = std::atan2(cross(in, out), dot(in, out));
                 if (angle < sharpest) sharpest = angle, worst = k;
             }
-            if (sharpest < -1e-3) ++concave_;   // else it is straight there, to the digits of a file
+            if (sharpest < -1e-3) ++concave_;  // else it is straight there, to the digits of a file
             if (!centre_of_grain(polygon))
-                fail(c, fmt::format("cell {} bends so much that no point of it sees all its corners; it turns in by {:.0f} degrees at {}", name(c), -sharpest * 180.0 / std::numbers::pi, place(polygon[worst])),
+                fail(c,
+                     fmt::format(
+                         "cell {} bends so much that no point of it sees all its corners; it turns in by {:.0f} degrees at {}",
+                         name(c), -sharpest * 180.0 / std::numbers::pi, place(polygon[worst])),
                      "convex cells, or cells that can be meshed by triangles from one middle point", "divide the cell there");
         }
     }
@@ -407,7 +454,8 @@ private:
         given.inserted = inserted_;
         given.concave = concave_;
         given.remarks = read_.remarks;
-        if (repeated_ > 0) given.remarks.push_back(fmt::format("corners that repeat the one before were left out: {}", repeated_));
+        if (repeated_ > 0)
+            given.remarks.push_back(fmt::format("corners that repeat the one before were left out: {}", repeated_));
         return given;
     }
 

@@ -5,7 +5,8 @@ namespace feldspar {
 
 namespace {
 
-void advance_readably(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count, PlatenWork& work) {
+void advance_readably(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count,
+                      PlatenWork& work) {
     const int contacts = static_cast<int>(assembly.contacts.size()), bodies = static_cast<int>(assembly.bodies.size());
     const double travel = settings.dt * settings.speed;
     team.run([&](int thread) {
@@ -14,8 +15,8 @@ void advance_readably(Assembly& assembly, Team& team, const StepSettings& settin
             team.barrier();
             body_forces(assembly, team.share(bodies, thread), settings);
             team.barrier();
-            // What moves the body pushes with the opposite of its reaction along its motion. Meanwhile the others may go on: node forces stay
-            // as they are until the barrier after the next contact stage.
+            // What moves the body pushes with the opposite of its reaction along its motion. Meanwhile the others may go on: node
+            // forces stay as they are until the barrier after the next contact stage.
             if (thread == 0) work.loading += loading_reaction(assembly) * travel;
         }
     });

@@ -23,7 +23,8 @@ namespace {
 // What the edges of these packs feel that several contacts share.
 void sum_shared_edges(Assembly& assembly, IndexRange share) {
     const auto& shared = assembly.packs.shared_edges;
-    auto edge = std::lower_bound(shared.begin(), shared.end(), share.begin, [](const SharedEdge& e, int pack) { return e.pack < pack; });
+    auto edge =
+        std::lower_bound(shared.begin(), shared.end(), share.begin, [](const SharedEdge& e, int pack) { return e.pack < pack; });
     for (; edge != shared.end() && edge->pack < share.end; ++edge) {
         SlotForces sum;
         for (int i = edge->begin; i < edge->end; ++i) sum.add(assembly.slots[assembly.packs.shared_slots[i]]);
@@ -37,18 +38,21 @@ void for_each_pressed_grain(Assembly& assembly, IndexRange packs, Visit visit) {
     for (int p = packs.begin; p < packs.end; ++p) {
         if (assembly.packs.forces[p] != PackForces::on_top_of_others) continue;
         const GrainPack& pack = assembly.packs.grains[p];
-        for (int lane = 0; lane < pack.lanes; ++lane) visit(assembly.bodies[pack.grain[lane]], assembly.body_work[pack.grain[lane]]);
+        for (int lane = 0; lane < pack.lanes; ++lane)
+            visit(assembly.bodies[pack.grain[lane]], assembly.body_work[pack.grain[lane]]);
     }
 }
 
-void grains_of_packs(Assembly& assembly, const KernelArrays& arrays, const KernelStep& step, const StepSettings& settings, IndexRange packs) {
+void grains_of_packs(Assembly& assembly, const KernelArrays& arrays, const KernelStep& step, const StepSettings& settings,
+                     IndexRange packs) {
     sum_shared_edges(assembly, packs);
     for_each_pressed_grain(assembly, packs, [&](const Body& grain, BodyWork& work) {
         weigh(assembly, grain);
         add_pressure(assembly, grain, work, settings.dt);
     });
     settings.kernels->grains(arrays, step, packs.begin, packs.end);
-    for_each_pressed_grain(assembly, packs, [&](const Body& grain, BodyWork& work) { finish_pressure_work(assembly, grain, work, settings.dt); });
+    for_each_pressed_grain(assembly, packs,
+                           [&](const Body& grain, BodyWork& work) { finish_pressure_work(assembly, grain, work, settings.dt); });
 }
 
 // How the edges of a grain that is in no pack move: the linear velocity fields of the triangles behind them, at the centre.
@@ -64,7 +68,8 @@ void write_lines_of(Assembly& assembly, const Body& grain) {
         const Vec2 d1 = nodes.velocity[node[1]] - nodes.velocity[node[0]], d2 = nodes.velocity[node[2]] - nodes.velocity[node[0]];
         SideField field;
         field.centre = centre;
-        field.gradient = {d1.x * g1.x + d2.x * g2.x, d1.x * g1.y + d2.x * g2.y, d1.y * g1.x + d2.y * g2.x, d1.y * g1.y + d2.y * g2.y};
+        field.gradient = {d1.x * g1.x + d2.x * g2.x, d1.x * g1.y + d2.x * g2.y, d1.y * g1.x + d2.y * g2.x,
+                          d1.y * g1.y + d2.y * g2.y};
         field.velocity = nodes.velocity[node[0]] + field.gradient * (centre - x[0]);
         assembly.packs.lines[assembly.packs.line_of_edge[e]].field = field;
     }
@@ -91,14 +96,16 @@ void take_over(Assembly& assembly, const Body& grain) {
         const int slot = assembly.slots_of_bodies[i];
         const Contact& contact = assembly.contacts[slot / 2];
         const ContactSide& s = slot % 2 == 0 ? contact.a : contact.b;
-        if (assembly.packs.only_contact_on(s.edge)) assembly.slots[slot] = assembly.packs.lines[assembly.packs.line_of_edge[s.edge]].forces;
+        if (assembly.packs.only_contact_on(s.edge))
+            assembly.slots[slot] = assembly.packs.lines[assembly.packs.line_of_edge[s.edge]].forces;
     }
 }
 
 // The stages over ranges of the packs.
 class Stages {
 public:
-    Stages(Assembly& assembly, const StepSettings& settings, const KernelArrays& arrays) : assembly_(assembly), settings_(settings), arrays_(arrays) {}
+    Stages(Assembly& assembly, const StepSettings& settings, const KernelArrays& arrays)
+        : assembly_(assembly), settings_(settings), arrays_(arrays) {}
 
     void lines(const PackRanges& part) const {
         settings_.kernels->grain_lines(arrays_, part.grains.begin, part.grains.end);
@@ -158,11 +165,12 @@ void write_lines(Assembly& assembly, Team& team, const StepSettings& settings, c
     team.run([&](int thread) { stages.lines(share_of(team, whole(assembly.packs), thread)); });
 }
 
-// A sweep of several steps goes from the bottom to the top in rounds. In round r, step s takes the contacts of band r - 2 s, then the bodies of
-// band r - 2 s - 1: their contacts, of that band and the next, have had their turn in rounds r - 1 and r, and the bodies that the contacts
-// need have made step s - 1 in rounds r - 1 and r - 2 (model/bands.hpp). What one round does of a stage does not depend on each other.
-// With a single band this is one step after the other.
-void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays, long long first_step, int count, PlatenWork& work) {
+// A sweep of several steps goes from the bottom to the top in rounds. In round r, step s takes the contacts of band r - 2 s, then
+// the bodies of band r - 2 s - 1: their contacts, of that band and the next, have had their turn in rounds r - 1 and r, and the
+// bodies that the contacts need have made step s - 1 in rounds r - 1 and r - 2 (model/bands.hpp). What one round does of a stage
+// does not depend on each other. With a single band this is one step after the other.
+void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays, long long first_step,
+                   int count, PlatenWork& work) {
     const Bands& cut = assembly.packs.bands;
     const int at_once = settings.sweep_steps > 0 ? settings.sweep_steps : cut.steps(team.size());
     const PackRanges everything = whole(assembly.packs);
@@ -188,8 +196,8 @@ void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings,
             for (int round = 0; round < rounds; ++round) {
                 in_turn(begin, end, round, [&](const PackRanges& part) { stages.contacts(step, part); });
                 in_turn(begin, end, round - 1, [&](const PackRanges& part) { stages.bodies(step, part); });
-                // What moves the body pushes with the opposite of its reaction along its motion. Meanwhile the others may go on: its node forces stay
-                // as they are until the barrier after the next contact stage.
+                // What moves the body pushes with the opposite of its reaction along its motion. Meanwhile the others may go on:
+                // its node forces stay as they are until the barrier after the next contact stage.
                 const int since = round - 1 - platen_band;
                 if (thread == 0 && since >= 0 && since % 2 == 0 && since / 2 < end - begin)
                     work.loading += loading_reaction(assembly) * travel;

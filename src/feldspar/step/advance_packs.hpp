@@ -12,6 +12,7 @@ KernelStep kernel_step(const StepSettings& settings);
 void write_lines(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays);
 
 /// `count` steps from lines that are written.
-void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays, long long first_step, int count, PlatenWork& work);
+void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays, long long first_step,
+                   int count, PlatenWork& work);
 
 }  // namespace feldspar

@@ -4,7 +4,9 @@
 namespace feldspar {
 
 void contact_forces(Assembly& assembly, IndexRange contacts, const StepSettings& settings, long long step) {
-    const auto broke = [&](int p, const BondLawOf<double>& law, BondEvent event, BondState& bond) { note_break(assembly.points[p], law, event, step, bond); };
+    const auto broke = [&](int p, const BondLawOf<double>& law, BondEvent event, BondState& bond) {
+        note_break(assembly.points[p], law, event, step, bond);
+    };
     for (int c = contacts.begin; c < contacts.end; ++c) {
         const Contact& contact = assembly.contacts[c];
         SlotForces& slot_a = assembly.slots[2 * c];
@@ -12,7 +14,8 @@ void contact_forces(Assembly& assembly, IndexRange contacts, const StepSettings&
         slot_a = slot_b = SlotForces{};
         if (contact.dropped) continue;
         with_attachments(contact, [&]<class A, class B>() {
-            forces_of_contact<A, B>(assembly, contact, slot_a, slot_b, settings.dt, settings.strength == Strength::unlimited, broke);
+            forces_of_contact<A, B>(assembly, contact, slot_a, slot_b, settings.dt, settings.strength == Strength::unlimited,
+                                    broke);
         });
     }
 }

@@ -1,7 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
@@ -58,7 +58,8 @@ ContactFinder::ContactFinder(const Assembly& assembly, double skin_m) : skin_m_(
 
 void ContactFinder::search(const Assembly& assembly) {
     centres_at_search_ = all_centres(assembly);
-    for (std::size_t b = 0; b < centres_at_search_.size(); ++b) expect_finite(centres_at_search_[b].x + centres_at_search_[b].y, b);
+    for (std::size_t b = 0; b < centres_at_search_.size(); ++b)
+        expect_finite(centres_at_search_[b].x + centres_at_search_[b].y, b);
     candidates_.clear();
     double largest = 0.0;
     for (const Body& body : assembly.bodies) largest = std::max(largest, body.radius_m);
@@ -70,21 +71,25 @@ void ContactFinder::search(const Assembly& assembly) {
         if (dot(line, line) > reach * reach || std::binary_search(known.begin(), known.end(), Pair{a, b})) return;
         const auto at = std::lower_bound(overlapping_at_start_.begin(), overlapping_at_start_.end(), Pair{a, b});
         const bool overlapped = at != overlapping_at_start_.end() && *at == Pair{a, b};
-        candidates_.push_back({a, b, overlapped ? rest_overlaps_m_[static_cast<std::size_t>(at - overlapping_at_start_.begin())] : 0.0});
+        candidates_.push_back(
+            {a, b, overlapped ? rest_overlaps_m_[static_cast<std::size_t>(at - overlapping_at_start_.begin())] : 0.0});
     };
-    for (int b = 0; b < static_cast<int>(centres_at_search_.size()); ++b) {   // each pair once, when its second body comes in
+    for (int b = 0; b < static_cast<int>(centres_at_search_.size()); ++b) {  // each pair once, when its second body comes in
         if (assembly.bodies[b].kind == BodyKind::plate) continue;
         const double reach = assembly.bodies[b].radius_m + largest + skin_m_;
         grid.for_each_near(centres_at_search_[b], reach, [&](int a) { consider(a, b); });
         grid.insert(b, centres_at_search_[b]);
     }
-    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& l, const Candidate& r) { return Pair{l.a, l.b} < Pair{r.a, r.b}; });
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& l, const Candidate& r) {
+        return Pair{l.a, l.b} < Pair{r.a, r.b};
+    });
 }
 
 ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_factor) {
     Changes changes;
     double moved = 0.0;
-    for (std::size_t b = 0; b < assembly.bodies.size() && assembly.bodies[b].kind != BodyKind::plate; ++b) {   // plates stand at the end
+    for (std::size_t b = 0; b < assembly.bodies.size() && assembly.bodies[b].kind != BodyKind::plate;
+         ++b) {  // plates stand at the end
         const double distance = norm(assembly.centre(static_cast<int>(b)) - centres_at_search_[b]);
         expect_finite(distance, b);
         moved = std::max(moved, distance);
@@ -94,7 +99,8 @@ ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_fac
         for (Contact& contact : assembly.contacts) {
             if (contact.dropped || contact.plate || !wide_open(assembly, contact, skin_m_)) continue;
             contact.dropped = true;
-            for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {   // carries nothing, and holds nothing
+            for (int p = contact.first_point; p < contact.first_point + contact.points;
+                 ++p) {  // carries nothing, and holds nothing
                 BondState bond = assembly.bond(p);
                 bond.Fn_N = bond.Fs_N = 0.0;
                 assembly.set_bond(p, bond);
@@ -109,7 +115,8 @@ ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_fac
         if (d >= radii - pair.rest_overlap_m) return false;
         add_new_contact(assembly, pair.a, pair.b, pair.rest_overlap_m, radii);
         const int p = assembly.contacts.back().first_point;
-        changes.elastic_J += elastic_energy(assembly.law_of(assembly.contacts.back()), assembly.points[p].area_m2, assembly.bond(p));
+        changes.elastic_J +=
+            elastic_energy(assembly.law_of(assembly.contacts.back()), assembly.points[p].area_m2, assembly.bond(p));
         if (mass_factor > 0.0) changes.kinetic_J += add_contact_mass(assembly, assembly.contacts.back(), mass_factor);
         ++changes.made;
         return true;
@@ -126,7 +133,8 @@ bool departs(const std::array<double, 3>& now, const std::array<double, 3>& init
 }
 
 // Gives the nodes of one side the mass that the point's present shape functions ask for beyond what is covered.
-double cover(Assembly& assembly, const SideNodes& nodes, const std::array<double, 3>& needed, std::array<double, 3>& covered, double per_share) {
+double cover(Assembly& assembly, const SideNodes& nodes, const std::array<double, 3>& needed, std::array<double, 3>& covered,
+             double per_share) {
     double kinetic = 0.0;
     for (int i = 0; i < 3; ++i) {
         if (needed[i] <= covered[i]) continue;
@@ -138,14 +146,15 @@ double cover(Assembly& assembly, const SideNodes& nodes, const std::array<double
 
 // An extrapolated point is stiffer than the masses were made for: sum |N| grows from 1 to 2 a side before the fall-back. The
 // bound has a margin of a tenth (largest omega^2 3.5 of 4), so masses follow in steps of that size.
-double follow_stiffness(Assembly& assembly, const Contact& contact, int p, const std::array<double, 3>& Na, const std::array<double, 3>& Nb,
-                        double mass_factor) {
+double follow_stiffness(Assembly& assembly, const Contact& contact, int p, const std::array<double, 3>& Na,
+                        const std::array<double, 3>& Nb, double mass_factor) {
     InitialShape& shape = assembly.initial_shapes[p];
     const bool b_is_grain = !contact.plate;
     std::array<double, 3> a{}, b{};
     stiffness_shares(Na, Nb, b_is_grain, a, b);
     bool beyond = false;
-    for (int i = 0; i < 3; ++i) beyond = beyond || a[i] > 1.1 * shape.covered_a[i] + 0.05 || b[i] > 1.1 * shape.covered_b[i] + 0.05;
+    for (int i = 0; i < 3; ++i)
+        beyond = beyond || a[i] > 1.1 * shape.covered_a[i] + 0.05 || b[i] > 1.1 * shape.covered_b[i] + 0.05;
     if (!beyond) return 0.0;
     const BondLaw law = assembly.law_of(contact);
     const double per_share = 0.25 * mass_factor * assembly.points[p].area_m2 * std::max(law.Kn_Pa_m, law.Ks_Pa_m);
@@ -170,7 +179,8 @@ ShapeChoice choose(Assembly& assembly, Contact& contact, double mass_factor) {
     const int end = contact.first_point + contact.points;
     for (int p = contact.first_point; p < end && !contact.initial_shape; ++p) {
         const auto [Na, Nb] = shapes_at(p);
-        contact.initial_shape = departs(Na, assembly.initial_shapes[p].a) || (b_is_grain && departs(Nb, assembly.initial_shapes[p].b));
+        contact.initial_shape =
+            departs(Na, assembly.initial_shapes[p].a) || (b_is_grain && departs(Nb, assembly.initial_shapes[p].b));
     }
     if (contact.initial_shape) {
         choice.fallback_sides += b_is_grain ? 2 : 1;
@@ -234,7 +244,7 @@ bool ShapeWatch::has_moved(const Assembly& assembly, const Contact& contact, std
 }
 
 ShapeChoice ShapeWatch::look(Assembly& assembly, double mass_factor) {
-    constexpr int kAll = 20;   // looks
+    constexpr int kAll = 20;  // looks
     measure(assembly, allowed_m_.size());
     const bool all = looks_++ % kAll == 0;
     ShapeChoice choice;

@@ -21,7 +21,9 @@ FELDSPAR_HD void gather_at_centre(Model& assembly, const Body& body) {
     if (body.kind == BodyKind::rigid) assembly.nodes.force[body.centre_node + 1] = {moment / body.radius_m, 0.0};
 }
 
-FELDSPAR_HD inline double pressed_length(const PressureEdge& edge, Vec2 from, Vec2 to) { return edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(to - from); }
+FELDSPAR_HD inline double pressed_length(const PressureEdge& edge, Vec2 from, Vec2 to) {
+    return edge.plate_length_m > 0.0 ? edge.plate_length_m : norm(to - from);
+}
 
 /// The forces of the pressures on a body that is pressed, with the first half of their work.
 /// A pressure keeps the direction of the undeformed face and acts over its current length. Its work is counted with the
@@ -31,7 +33,8 @@ FELDSPAR_HD void add_pressure_of(Model& assembly, const Body& body, BodyWork& wo
     for (int e = body.pressure_begin; e < body.pressure_end; ++e) {
         const PressureEdge& edge = assembly.pressure_edges[e];
         const double length = pressed_length(edge, assembly.nodes.position(edge.node_a), assembly.nodes.position(edge.node_b));
-        const Vec2 half = (-0.5 * assembly.pressure_Pa(assembly.dead_loads[edge.load]) * length * assembly.thickness_m) * edge.outward;
+        const Vec2 half =
+            (-0.5 * assembly.pressure_Pa(assembly.dead_loads[edge.load]) * length * assembly.thickness_m) * edge.outward;
         assembly.nodes.force[edge.node_a] += half;
         assembly.nodes.force[edge.node_b] += half;
         work.pressure += 0.5 * dt * dot(half, assembly.nodes.velocity[edge.node_a] + assembly.nodes.velocity[edge.node_b]);
@@ -44,7 +47,8 @@ FELDSPAR_HD void finish_pressure_work_of(Model& assembly, const Body& body, Body
     for (int e = body.pressure_begin; e < body.pressure_end; ++e) {
         const PressureEdge& edge = assembly.pressure_edges[e];
         const Vec2 va = assembly.nodes.velocity[edge.node_a], vb = assembly.nodes.velocity[edge.node_b];
-        const Vec2 before_a = assembly.nodes.position(edge.node_a) - dt * va, before_b = assembly.nodes.position(edge.node_b) - dt * vb;
+        const Vec2 before_a = assembly.nodes.position(edge.node_a) - dt * va,
+                   before_b = assembly.nodes.position(edge.node_b) - dt * vb;
         const double pressure_Pa = assembly.pressure_Pa(assembly.dead_loads[edge.load], dt * va);
         const Vec2 half = (-0.5 * pressure_Pa * pressed_length(edge, before_a, before_b) * assembly.thickness_m) * edge.outward;
         work.pressure += 0.5 * dt * dot(half, va + vb);
@@ -57,7 +61,8 @@ struct DampedMotion {
 };
 
 /// m dV/dt = F - alpha |F| sign(V - v B) where that takes energy, one component; the work is taken with the mean velocity.
-FELDSPAR_HD inline DampedMotion damp_locally_one(double V, double F, double inverse_mass, double loading, double alpha, double dt) {
+FELDSPAR_HD inline DampedMotion damp_locally_one(double V, double F, double inverse_mass, double loading, double alpha,
+                                                 double dt) {
     const double drag = inverse_mass == 0.0 ? 0.0 : local_drag(V, loading, F, alpha);
     const double next = V + dt * inverse_mass * (F - drag);
     return {next, 0.5 * dt * drag * (V + next)};
@@ -72,7 +77,8 @@ FELDSPAR_HD inline DampedMotion damp_viscously_one(double V, double F, double in
 
 /// New velocities and displacements of a body's nodes from their forces. @tparam local  the damping, else viscous
 template <bool local, class Model>
-FELDSPAR_HD void move_body(Model& assembly, const Body& body, double dt, double alpha, double viscous, double speed, BodyWork& work) {
+FELDSPAR_HD void move_body(Model& assembly, const Body& body, double dt, double alpha, double viscous, double speed,
+                           BodyWork& work) {
     auto& nodes = assembly.nodes;
     double dissipated = 0.0;
     for (const int n : body.nodes()) {

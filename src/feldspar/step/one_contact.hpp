@@ -8,14 +8,16 @@
 namespace feldspar {
 
 /// Real strength, or, if `unlimited`, intact points that stay elastic.
-FELDSPAR_HD inline BondEvent apply_law(const BondLawOf<double>& law, double area_m2, double dun, double dus, bool unlimited, BondState& bond) {
+FELDSPAR_HD inline BondEvent apply_law(const BondLawOf<double>& law, double area_m2, double dun, double dus, bool unlimited,
+                                       BondState& bond) {
     if (unlimited && update_elastic(law, area_m2, dun, dus, bond)) return BondEvent::none;
     return update_bond(law, area_m2, dun, dus, bond);
 }
 
 /// The weights of a side: those of the current state, or the remembered ones of a flexible side that has fallen back.
 template <class Attachment>
-FELDSPAR_HD typename Attachment::Weights weights_of(const Attachment& side, Vec2 x, bool initial, [[maybe_unused]] const std::array<double, 3>* remembered) {
+FELDSPAR_HD typename Attachment::Weights weights_of(const Attachment& side, Vec2 x, bool initial,
+                                                    [[maybe_unused]] const std::array<double, 3>* remembered) {
     if constexpr (std::is_same_v<Attachment, TriangleAttachment>) {
         if (initial) return *remembered;
     }
@@ -25,7 +27,8 @@ FELDSPAR_HD typename Attachment::Weights weights_of(const Attachment& side, Vec2
 /// The one loop over contact points, whatever hangs on either side. Adds to both slots.
 /// @param broke  called as broke(point, law, event, bond) when a point breaks; may change its bond
 template <class AttachmentA, class AttachmentB, class Model, class Broke>
-FELDSPAR_HD void forces_of_contact(Model& assembly, const Contact& contact, SlotForces& slot_a, SlotForces& slot_b, double dt, bool unlimited, const Broke& broke) {
+FELDSPAR_HD void forces_of_contact(Model& assembly, const Contact& contact, SlotForces& slot_a, SlotForces& slot_b, double dt,
+                                   bool unlimited, const Broke& broke) {
     const ContactFrame frame = contact_frame(assembly, contact);
     const Vec2 s = rot90(frame.n);
     const AttachmentA a(assembly, contact.a);
@@ -50,7 +53,7 @@ FELDSPAR_HD void forces_of_contact(Model& assembly, const Contact& contact, Slot
         }
         if (event != BondEvent::none) broke(p, law, event, bond);
         assembly.set_bond(p, bond);
-        const Vec2 on_b = bond.Fn_N * frame.n + bond.Fs_N * s;   // compression pushes B along n
+        const Vec2 on_b = bond.Fn_N * frame.n + bond.Fs_N * s;  // compression pushes B along n
         slot_a.add(-on_b, a.arm(Na, x));
         slot_b.add(on_b, b.arm(Nb, x));
     }

@@ -4,7 +4,8 @@
 
 namespace feldspar {
 
-// Nodes of a fixture feel their forces and do not obey them where their motion is imposed: their sum is what the specimen does to the fixture.
+// Nodes of a fixture feel their forces and do not obey them where their motion is imposed: their sum is what the specimen does to
+// the fixture.
 Vec2 reaction(const Assembly& assembly, const Fixture& fixture) {
     Vec2 sum;
     for (const int node : fixture.nodes) sum += assembly.nodes.force[node];
@@ -18,7 +19,8 @@ Vec2 felt_by(const Assembly& assembly, const Fixture& fixture) {
     const Body& plate = assembly.bodies[fixture.plate];
     for (int e = plate.pressure_begin; e < plate.pressure_end; ++e) {
         const PressureEdge& edge = assembly.pressure_edges[e];
-        const double pressing_N = assembly.pressure_Pa(assembly.dead_loads[edge.load]) * edge.plate_length_m * assembly.thickness_m;
+        const double pressing_N =
+            assembly.pressure_Pa(assembly.dead_loads[edge.load]) * edge.plate_length_m * assembly.thickness_m;
         force += (pressing_N + dot(assembly.nodes.force[plate.centre_node], edge.outward)) * edge.outward;
     }
     return force;
@@ -41,8 +43,10 @@ double loading_reaction(const Assembly& assembly) {
 Reactions reactions(const Assembly& assembly) {
     Vec2 motion, rest;
     for (const Fixture& fixture : assembly.fixtures) {
-        if (fixture.moves()) motion += fixture.motion;
-        else rest += reaction(assembly, fixture);
+        if (fixture.moves())
+            motion += fixture.motion;
+        else
+            rest += reaction(assembly, fixture);
     }
     rest -= dead_resultant(assembly);
     const double length = norm(motion);

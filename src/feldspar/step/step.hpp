@@ -5,9 +5,9 @@
 //   reactions          reads node forces of the fixtures; writes nothing
 //   find_contacts      (between steps) makes and drops frictional contacts, chooses the fall-back shape functions
 //
-// advance() runs both for a number of steps on a team, with a barrier after each stage. What stands in packs goes through the kernels of
-// fast/, the rest, or all of it if so wanted, through the readable stages declared here. A specimen larger than the caches takes several
-// steps in one sweep, band by band.
+// advance() runs both for a number of steps on a team, with a barrier after each stage. What stands in packs goes through the
+// kernels of fast/, the rest, or all of it if so wanted, through the readable stages declared here. A specimen larger than the
+// caches takes several steps in one sweep, band by band.
 #pragma once
 
 #include <array>
@@ -22,25 +22,25 @@ namespace feldspar {
 
 /// How free nodes are damped.
 enum class Damping {
-    local,    ///< a force alpha |F| against w = V - v B, component by component, where it takes energy: what moves like the loading is
-              ///< not dragged. With B = 0 the paper's own, equations (2)-(3)
-    viscous   ///< in proportion to the velocity: dynamic relaxation
+    local,  ///< a force alpha |F| against w = V - v B, component by component, where it takes energy: what moves like the loading
+            ///< is not dragged. With B = 0 the paper's own, equations (2)-(3)
+    viscous  ///< in proportion to the velocity: dynamic relaxation
 };
 
-enum class Strength { real, unlimited };   ///< unlimited: intact points stay elastic (the computed elastic start)
+enum class Strength { real, unlimited };  ///< unlimited: intact points stay elastic (the computed elastic start)
 
 class StepDevice;
 
 struct StepSettings {
-    double dt = 1.0;                       ///< 1 with scaled masses, else s
+    double dt = 1.0;  ///< 1 with scaled masses, else s
     Damping damping = Damping::viscous;
-    double alpha = 0.7;                    ///< local: 0 <= alpha < 1
-    double viscous = 0.0;                  ///< viscous: c, 1 per unit of time; 0: no damping
+    double alpha = 0.7;    ///< local: 0 <= alpha < 1
+    double viscous = 0.0;  ///< viscous: c, 1 per unit of time; 0: no damping
     Strength strength = Strength::real;
-    double speed = 0.0;                    ///< v: loading motion per unit of time
-    const Kernels* kernels = &best_kernels();   ///< of the packs; none: the readable stages only
-    int sweep_steps = 0;                   ///< steps that a sweep over the bands takes (model/bands.hpp); 0: as many as pay
-    StepDevice* device = nullptr;          ///< makes all steps, instead of the kernels and the readable stages; none: the processor
+    double speed = 0.0;                        ///< v: loading motion per unit of time
+    const Kernels* kernels = &best_kernels();  ///< of the packs; none: the readable stages only
+    int sweep_steps = 0;                       ///< steps that a sweep over the bands takes (model/bands.hpp); 0: as many as pay
+    StepDevice* device = nullptr;  ///< makes all steps, instead of the kernels and the readable stages; none: the processor
 };
 
 /// Work of the fixtures on the body, J, accumulated every step.
@@ -48,7 +48,8 @@ struct PlatenWork {
     double loading = 0.0;
 };
 
-/// Makes whole blocks of steps somewhere else than on the processor (gpu/): with its own copy of the assembly, that it brings up to date before and reads back behind a block.
+/// Makes whole blocks of steps somewhere else than on the processor (gpu/): with its own copy of the assembly, that it brings up
+/// to date before and reads back behind a block.
 class StepDevice {
 public:
     StepDevice() = default;
@@ -62,8 +63,9 @@ public:
 
 /// What the body opposes to the loading, N: positive where it resists.
 struct Reactions {
-    double loading = 0.0;   ///< of the fixtures that move, along their motions: the power that they give is this times the speed
-    double rest = 0.0;      ///< of those at rest, along the sum of these motions, without their part of dead loads: the same in equilibrium
+    double loading = 0.0;  ///< of the fixtures that move, along their motions: the power that they give is this times the speed
+    double rest =
+        0.0;  ///< of those at rest, along the sum of these motions, without their part of dead loads: the same in equilibrium
 };
 
 /// Stage 1: relative velocity, law, forces of the contacts [begin, end). `step` is written into points that break.
@@ -92,8 +94,8 @@ Vec2 felt_by(const Assembly& assembly, const Fixture& fixture);
 /// Sum of the pressures and the weight, N.
 Vec2 dead_resultant(const Assembly& assembly);
 
-/// Steps in several calls, between which nobody else changes nodes, bonds, contacts, platens or pressure: what a block of steps has to look
-/// up before its first one is looked up once.
+/// Steps in several calls, between which nobody else changes nodes, bonds, contacts, platens or pressure: what a block of steps
+/// has to look up before its first one is looked up once.
 class StepSequence {
 public:
     StepSequence(Assembly& assembly, Team& team) : assembly_(assembly), team_(team) {}
@@ -104,7 +106,7 @@ public:
 private:
     Assembly& assembly_;
     Team& team_;
-    std::optional<KernelArrays> arrays_;   // once the packs are sorted out and their lines tell how everything moves
+    std::optional<KernelArrays> arrays_;  // once the packs are sorted out and their lines tell how everything moves
 };
 
 /// A sequence of one call.
@@ -122,8 +124,8 @@ public:
     struct Changes {
         int made = 0;
         int dropped = 0;
-        double kinetic_J = 0.0;   ///< gained because nodes became heavier (scaled masses only)
-        double elastic_J = 0.0;   ///< that new contacts start with: they are found when bodies overlap already
+        double kinetic_J = 0.0;  ///< gained because nodes became heavier (scaled masses only)
+        double elastic_J = 0.0;  ///< that new contacts start with: they are found when bodies overlap already
     };
     /// To be called every few steps: looks for candidates again only when some body has moved by half the skin.
     /// @param mass_factor  factor of the scaled masses; 0 with real masses
@@ -146,23 +148,23 @@ private:
     double skin_m_;
     std::vector<Vec2> centres_at_search_;
     std::vector<Candidate> candidates_;
-    std::vector<std::array<int, 2>> overlapping_at_start_;   // sorted pairs that overlap without a contact from the start
+    std::vector<std::array<int, 2>> overlapping_at_start_;  // sorted pairs that overlap without a contact from the start
     std::vector<double> rest_overlaps_m_;
 };
 
 struct ShapeChoice {
-    int fallback_sides = 0;     ///< contact sides on the initial shape functions
-    double kinetic_J = 0.0;     ///< gained because nodes became heavier (scaled masses only)
+    int fallback_sides = 0;  ///< contact sides on the initial shape functions
+    double kinetic_J = 0.0;  ///< gained because nodes became heavier (scaled masses only)
 };
 
-/// Chooses for each contact of flexible bodies between current and initial shape functions: the initial ones where any current value departs
-/// from its initial one by more than 0.5. Where extrapolation makes a point stiffer than the scaled masses allow for, the
-/// masses follow, so that the step stays stable. Looks at all contacts.
+/// Chooses for each contact of flexible bodies between current and initial shape functions: the initial ones where any current
+/// value departs from its initial one by more than 0.5. Where extrapolation makes a point stiffer than the scaled masses allow
+/// for, the masses follow, so that the step stays stable. Looks at all contacts.
 /// @param mass_factor  factor of the scaled masses; 0 with real masses, which stay
 ShapeChoice choose_shape_functions(Assembly& assembly, double mass_factor);
 
-/// The same for every few steps: looks again only at contacts that have moved by a fiftieth of their triangles' height since they were
-/// looked at, and now and then at all of them, because grains may also roll on each other.
+/// The same for every few steps: looks again only at contacts that have moved by a fiftieth of their triangles' height since they
+/// were looked at, and now and then at all of them, because grains may also roll on each other.
 class ShapeWatch {
 public:
     explicit ShapeWatch(const Assembly& assembly) { measure(assembly, 0); }
@@ -180,8 +182,8 @@ private:
     void remember(const Assembly& assembly, const Contact& contact);
 
     int looks_ = 0;
-    std::vector<double> allowed_m_;          // of each contact
-    std::vector<Vec2> seen_m_;               // of each point: un and us when it was looked at
+    std::vector<double> allowed_m_;  // of each contact
+    std::vector<Vec2> seen_m_;       // of each point: un and us when it was looked at
 };
 
 }  // namespace feldspar

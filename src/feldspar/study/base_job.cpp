@@ -40,8 +40,10 @@ std::string axis_label(const toml::node& node) {
     if (node.is_string()) return node.as_string()->get();
     std::stringstream text;
     node.visit([&](const auto& value) {
-        if constexpr (toml::is_integer<decltype(value)> || toml::is_boolean<decltype(value)>) text << value;
-        else if constexpr (toml::is_floating_point<decltype(value)>) text << fmt::format("{:g}", value.get());
+        if constexpr (toml::is_integer<decltype(value)> || toml::is_boolean<decltype(value)>)
+            text << value;
+        else if constexpr (toml::is_floating_point<decltype(value)>)
+            text << fmt::format("{:g}", value.get());
     });
     return text.str();
 }
@@ -61,16 +63,21 @@ void insert(toml::table& piece, const std::string& key, const toml::node& value)
 }
 
 void insert(toml::table& piece, const std::string& key, const Measure& measure) {
-    if (measure.unit.empty()) insert(piece, key, toml::value<double>(measure.number));
-    else insert(piece, key, toml::value<std::string>(format_exact(measure.number) + (measure.unit.front() == ' ' ? "" : " ") + measure.unit));
+    if (measure.unit.empty())
+        insert(piece, key, toml::value<double>(measure.number));
+    else
+        insert(piece, key,
+               toml::value<std::string>(format_exact(measure.number) + (measure.unit.front() == ' ' ? "" : " ") + measure.unit));
 }
 
 void lay_over(toml::table& under, const toml::table& over) {
     for (const auto& [key, value] : over) {
         toml::node* there = under.get(key.str());
         const bool both = value.is_table() && there != nullptr && there->is_table();
-        if (both && !value.as_table()->contains("distribution")) lay_over(*there->as_table(), *value.as_table());
-        else under.insert_or_assign(key.str(), value);
+        if (both && !value.as_table()->contains("distribution"))
+            lay_over(*there->as_table(), *value.as_table());
+        else
+            under.insert_or_assign(key.str(), value);
     }
 }
 
@@ -89,7 +96,8 @@ void lay_over_tests(toml::array& tests, const toml::table& piece) {
     for (const auto& [key, value] : piece) {
         if (!is_test_kind(key.str())) continue;
         const std::string dotted = "test." + std::string(key.str());
-        if (!value.is_table()) throw InputError({{}, 0, 0, dotted}, "is not a table of keys for the tests of that kind", dotted + ".<key>");
+        if (!value.is_table())
+            throw InputError({{}, 0, 0, dotted}, "is not a table of keys for the tests of that kind", dotted + ".<key>");
         if (std::find(kinds.begin(), kinds.end(), key.str()) == kinds.end())
             throw InputError({{}, 0, 0, dotted}, "the job has no test of this kind", listed(kinds));
         for (std::size_t i = 0; i < kinds.size(); ++i)
@@ -104,7 +112,8 @@ std::string read_job_key(const TableReader& table, std::string_view key, const s
     if (path.size() < 2 || std::find(job_pieces.begin(), job_pieces.end(), path.front()) == job_pieces.end() ||
         std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
         table.check({key}, [&] {
-            table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(job_pieces), "a dotted key such as \"material.contact.tau\"");
+            table.fail(key, "'" + dotted + "' is not a key of a job's " + listed(job_pieces),
+                       "a dotted key such as \"material.contact.tau\"");
         });
     return dotted;
 }
@@ -117,7 +126,8 @@ std::vector<std::pair<std::string, double>> read_coupled(const TableReader& tabl
         table.check({}, [&] { table.fail("coupled", shown(node) + " is not a table", allowed); });
         return factors;
     }
-    const std::function<void(const toml::table&, const std::string&)> walk = [&](const toml::table& inside, const std::string& path) {
+    const std::function<void(const toml::table&, const std::string&)> walk = [&](const toml::table& inside,
+                                                                                 const std::string& path) {
         for (const auto& [key, value] : inside) {
             const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
             if (value.is_table()) {
@@ -137,10 +147,11 @@ std::vector<std::pair<std::string, double>> read_coupled(const TableReader& tabl
 toml::table read_piece(const TableReader& table, std::string_view key) {
     const toml::node& node = *table.find(key);
     if (!node.is_table()) {
-        table.check({}, [&] { table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }"); });
+        table.check(
+            {}, [&] { table.fail(key, shown(node) + " is not a piece of a job", "a table such as { model.kind = \"rigid\" }"); });
         return {};
     }
-    (void)table.table(key, job_pieces);   // refuses other names
+    (void)table.table(key, job_pieces);  // refuses other names
     return *node.as_table();
 }
 
@@ -148,7 +159,10 @@ std::string read_directory_name(const TableReader& table, std::string_view key, 
     const std::string name = table.text(key, fallback);
     const bool fits = !name.empty() && name.size() <= 100 && name.front() != '.' && made_of_letters_and(name, "-_.");
     if (!fits) {
-        table.check({key}, [&] { table.fail(key, "'" + name + "' cannot name a directory", "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'"); });
+        table.check({key}, [&] {
+            table.fail(key, "'" + name + "' cannot name a directory",
+                       "up to 100 letters, digits, '-', '_' and '.', not beginning with '.'");
+        });
         return fallback;
     }
     return name;
@@ -160,7 +174,8 @@ BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : f
         try {
             text_ = read_toml_file(file_, "job");
         } catch (const InputError& error) {
-            root.fail("job", "'" + file_.string() + "' " + error.problem(), "a job file; a relative path counts from this file's folder");
+            root.fail("job", "'" + file_.string() + "' " + error.problem(),
+                      "a job file; a relative path counts from this file's folder");
         }
         tree_ = parse_toml(text_, file_.string());
         job_ = read_tree(tree_, text_, file_.string());

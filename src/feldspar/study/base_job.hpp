@@ -47,12 +47,14 @@ std::vector<std::pair<std::string, double>> read_coupled(const TableReader& tabl
 /// @param fallback  if the key is missing. It must be up to 100 letters, digits, '-', '_' and '.', not beginning with '.'
 std::string read_directory_name(const TableReader& table, std::string_view key, const std::string& fallback);
 
-/// The job that a file names by `job`, with the file's `[set]`, if there is one, laid over it. In a piece `test.plate_mu` is for every test,
-/// `test.brazilian.plate_Kn` for those of that kind. [specimen] and [[test]] are changed in place; [model], [material] and [numerics] are given as a variant, so that what goes before what
-/// is decided in one place (job/read_physics.cpp).
+/// The job that a file names by `job`, with the file's `[set]`, if there is one, laid over it. In a piece `test.plate_mu` is for
+/// every test, `test.brazilian.plate_Kn` for those of that kind. [specimen] and [[test]] are changed in place; [model],
+/// [material] and [numerics] are given as a variant, so that what goes before what is decided in one place
+/// (job/read_physics.cpp).
 class BaseJob {
 public:
-    /// Reads the keys `job` and `set` of a file; a relative path counts from that file's folder. Mistakes in the job are noted as such of `job`.
+    /// Reads the keys `job` and `set` of a file; a relative path counts from that file's folder. Mistakes in the job are noted as
+    /// such of `job`.
     BaseJob(const TableReader& root, const std::filesystem::path& file);
 
     /// As the job's own file has it.
@@ -62,7 +64,8 @@ public:
     /// The job with `[set]` and a piece laid over it; with a single variant without a name. @throws InputError
     Job with(const toml::table& piece) const;
 
-    /// What a key has in the resolved job with this piece, presets and defaults included. @throws InputError unless it is a number
+    /// What a key has in the resolved job with this piece, presets and defaults included. @throws InputError unless it is a
+    /// number
     Measure value_in(const toml::table& piece, const std::string& key) const;
 
 private:
@@ -70,7 +73,7 @@ private:
     std::string text_;
     std::filesystem::path file_;
     Job job_;
-    toml::table common_;   // [set]
+    toml::table common_;  // [set]
 };
 
 }  // namespace feldspar

@@ -10,7 +10,7 @@ namespace feldspar {
 
 /// What a program left when it ended.
 struct CallResult {
-    int code = 0;      ///< exit code; 128 + signal when a signal ended it
+    int code = 0;  ///< exit code; 128 + signal when a signal ended it
     std::string out;
     std::string err;
 };

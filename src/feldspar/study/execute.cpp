@@ -37,9 +37,10 @@ public:
     LedgerSink(std::span<const Run> runs, Ledger& ledger, const ExecuteControl& control)
         : ledger_(ledger), control_(control), packings_(static_cast<std::size_t>(2 * control.threads + 2), control.stop) {
         std::set<std::string> seen;
-        for (const Run& run : runs)   // points may share runs
+        for (const Run& run : runs)  // points may share runs
             if (seen.insert(run.id).second) runs_.push_back(&run);
-        const SettledRuns settled = settled_runs(ledger_.find(std::vector<std::string>(seen.begin(), seen.end())), whose_failures_count());
+        const SettledRuns settled =
+            settled_runs(ledger_.find(std::vector<std::string>(seen.begin(), seen.end())), whose_failures_count());
         execution_.found_done = static_cast<int>(settled.done.size());
         execution_.found_failed = static_cast<int>(settled.failed.size());
         std::erase_if(runs_, [&](const Run* run) { return settled.done.contains(run->id) || settled.failed.contains(run->id); });
@@ -59,14 +60,23 @@ public:
 
     RunningTests::Work begin(std::size_t i) override {
         const Run& run = *runs_[i];
-        switch (ledger_.claim(run, whose_failures_count())) {   // another process may have ended it by now
-            case Ledger::Claim::done: ++execution_.found_done; return {};
-            case Ledger::Claim::failed: ++execution_.found_failed; return {};
-            case Ledger::Claim::others: others_.push_back(i); return {};
-            case Ledger::Claim::ours: break;
+        switch (ledger_.claim(run, whose_failures_count())) {  // another process may have ended it by now
+            case Ledger::Claim::done:
+                ++execution_.found_done;
+                return {};
+            case Ledger::Claim::failed:
+                ++execution_.found_failed;
+                return {};
+            case Ledger::Claim::others:
+                others_.push_back(i);
+                return {};
+            case Ledger::Claim::ours:
+                break;
         }
-        if (const std::string damage = set_damaged_record_aside(ledger_.run_directory(run.id), run); !damage.empty()) notes_.add(damage);
-        if (const auto record = finished_record(ledger_.run_directory(run.id), run)) {   // it ended, but the program did before its row was written
+        if (const std::string damage = set_damaged_record_aside(ledger_.run_directory(run.id), run); !damage.empty())
+            notes_.add(damage);
+        if (const auto record = finished_record(ledger_.run_directory(run.id),
+                                                run)) {  // it ended, but the program did before its row was written
             ledger_.record(*record);
             forget_state(ledger_.run_directory(run.id));
             ++execution_.found_done;
@@ -91,7 +101,7 @@ public:
         const Run& run = *runs_[i];
         settle(run, [&] {
             if (result.interrupted) throw Interrupted();
-            if (!ledger_.holds(run.id)) {   // this process slept for so long that another took the run
+            if (!ledger_.holds(run.id)) {  // this process slept for so long that another took the run
                 others_.push_back(i);
                 return;
             }
@@ -134,8 +144,9 @@ private:
     // On the run's own thread.
     TestResult run_one(const Run& run, const RunControl& run_control) {
         const Clock::time_point start = Clock::now();
-        TestResult result = run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.device, control_.checkpoints,
-                                         [this](const std::string& line) { notes_.add(line); });
+        TestResult result =
+            run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control,
+                         control_.device, control_.checkpoints, [this](const std::string& line) { notes_.add(line); });
         result.wall_s = seconds_since(start);
         return result;
     }
@@ -152,12 +163,12 @@ private:
             ledger_.release(run.id);
             ++interrupted_;
             if (!lost_) lost_ = std::current_exception();
-            *control_.stop = true;   // what still runs could not be written either
+            *control_.stop = true;  // what still runs could not be written either
         } catch (const InputError& problem) {
             fail(run, problem, Failure::input);
         } catch (const NumericalError& problem) {
             fail(run, problem, Failure::numerical);
-        } catch (const std::exception& problem) {   // there may be more memory another time
+        } catch (const std::exception& problem) {  // there may be more memory another time
             fail(run, problem, Failure::other);
         }
     }
@@ -176,8 +187,8 @@ private:
     const ExecuteControl& control_;
     Packings packings_;
     Notes notes_;
-    std::vector<const Run*> runs_;        // not settled at the beginning
-    std::vector<std::size_t> others_;     // another process is at them
+    std::vector<const Run*> runs_;     // not settled at the beginning
+    std::vector<std::size_t> others_;  // another process is at them
     int interrupted_ = 0;
     bool told_ = false;
     std::exception_ptr lost_;

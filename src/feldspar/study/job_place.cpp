@@ -51,7 +51,8 @@ std::optional<FileLock> FileLock::take(const fs::path& file) {
     const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0) throw OutputError(fmt::format("cannot write '{}': {}", file.string(), std::strerror(errno)));
     FileLock lock(descriptor);
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return lock;   // a file system without locks keeps nobody out
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+        return lock;  // a file system without locks keeps nobody out
     return std::nullopt;
 }
 
@@ -70,15 +71,20 @@ std::string identity_of_job(const Job& job) {
 }
 
 FoundPlace find_place(const std::optional<fs::path>& wanted, const Job& job, bool fresh) {
-    const auto same_job = [&](const fs::path& directory) { return text_of(directory / kCheckpoints / kJobFile) == identity_of_job(job); };
+    const auto same_job = [&](const fs::path& directory) {
+        return text_of(directory / kCheckpoints / kJobFile) == identity_of_job(job);
+    };
     if (wanted) {
         const bool untouched = !is_unfinished(*wanted);
-        if (untouched && !is_untouched(*wanted)) return {};   // RunDirectory says whether it may be made
+        if (untouched && !is_untouched(*wanted)) return {};  // RunDirectory says whether it may be made
         const auto refuse = [&](const std::string& problem, const std::string& allowed) {
-            throw InputError({.file = "", .line = 0, .column = 0, .key = "--out"}, fmt::format("'{}' {}", wanted->string(), problem), allowed);
+            throw InputError({.file = "", .line = 0, .column = 0, .key = "--out"},
+                             fmt::format("'{}' {}", wanted->string(), problem), allowed);
         };
         if (fresh) refuse("holds an unfinished run, and results are never overwritten", "another directory with --fresh");
-        if (!untouched && !same_job(*wanted)) refuse("holds an unfinished run of another job", "the job that it was begun with (job.toml there), or another directory");
+        if (!untouched && !same_job(*wanted))
+            refuse("holds an unfinished run of another job",
+                   "the job that it was begun with (job.toml there), or another directory");
         std::optional<FileLock> lock = FileLock::take(*wanted / kCheckpoints / kLockFile);
         if (!lock) refuse("is where another program runs this job now", "to wait for it, or another directory");
         return {*wanted, std::move(lock)};
@@ -97,20 +103,24 @@ FileLock begin_unfinished(const RunDirectory& directory, const Job& job) try {
     fs::create_directory(folder, error);
     if (error) throw OutputError(fmt::format("cannot make the directory '{}': {}", folder.string(), error.message()));
     std::optional<FileLock> lock = FileLock::take(folder / kLockFile);
-    if (!lock) throw OutputError(fmt::format("another program has taken '{}'", directory.path().string()));   // it was made a moment ago
+    if (!lock)
+        throw OutputError(fmt::format("another program has taken '{}'", directory.path().string()));  // it was made a moment ago
     mark_unfinished(directory, job);
     return std::move(*lock);
 } catch (const OutputError&) {
     std::error_code ignored;
-    fs::remove(directory.path(), ignored);   // if it is empty: nothing could be begun in it, and the same command would find it in its way
+    fs::remove(directory.path(),
+               ignored);  // if it is empty: nothing could be begun in it, and the same command would find it in its way
     throw;
 }
 
-void mark_unfinished(const RunDirectory& directory, const Job& job) { directory.write_text(fmt::format("{}/{}", kCheckpoints, kJobFile.string()), identity_of_job(job)); }
+void mark_unfinished(const RunDirectory& directory, const Job& job) {
+    directory.write_text(fmt::format("{}/{}", kCheckpoints, kJobFile.string()), identity_of_job(job));
+}
 
 void end_unfinished(const fs::path& directory) {
     std::error_code ignored;
-    fs::remove(directory / kCheckpoints / kJobFile, ignored);   // first: without it the run is complete
+    fs::remove(directory / kCheckpoints / kJobFile, ignored);  // first: without it the run is complete
     fs::remove_all(directory / kCheckpoints, ignored);
 }
 

@@ -28,15 +28,17 @@ private:
 
 /// What a run of a job finds before it starts.
 struct FoundPlace {
-    std::optional<std::filesystem::path> unfinished;   ///< the directory of a run of the same job that was ended; none: a new one is to be made
-    std::optional<FileLock> lock;                      ///< on it
+    std::optional<std::filesystem::path>
+        unfinished;                ///< the directory of a run of the same job that was ended; none: a new one is to be made
+    std::optional<FileLock> lock;  ///< on it
 };
 
 /// The same for all runs of a job with these results, whatever the number of threads; reads the files that the job names.
 std::string identity_of_job(const Job& job);
 
 /// Looks, and makes nothing. @param wanted  the directory that the user names; else the newest of results/<job>-<n>
-/// @param fresh  no unfinished run is gone on with. @throws InputError if results cannot go to `wanted`: there is something else, or another program runs there
+/// @param fresh  no unfinished run is gone on with. @throws InputError if results cannot go to `wanted`: there is something else,
+/// or another program runs there
 FoundPlace find_place(const std::optional<std::filesystem::path>& wanted, const Job& job, bool fresh);
 
 /// The directory in which an unfinished run keeps its states.

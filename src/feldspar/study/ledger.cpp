@@ -25,9 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int schema_version = 1;            // PRAGMA user_version
-constexpr int busy_timeout_ms = 120'000;     // another program's transaction is over long before
-constexpr std::int64_t silent_s = 600;       // a process of another machine that has not been heard of for so long may be gone
+constexpr int schema_version = 1;         // PRAGMA user_version
+constexpr int busy_timeout_ms = 120'000;  // another program's transaction is over long before
+constexpr std::int64_t silent_s = 600;    // a process of another machine that has not been heard of for so long may be gone
 
 std::int64_t now_s() {
     return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -68,7 +68,8 @@ public:
         words >> machine >> pid >> beginning;
         if (machine == host()) return !beginning.empty() && beginning_of(pid) == beginning;
         if (std::abs(now_s() - last_heard_s) < silent_s) return true;
-        // Clocks of two machines may differ, and jump. So it is gone only if it says nothing while this process watches, by a clock that does not jump.
+        // Clocks of two machines may differ, and jump. So it is gone only if it says nothing while this process watches, by a
+        // clock that does not jump.
         const auto now = std::chrono::steady_clock::now();
         const auto [seen, first] = seen_.try_emplace(holder, Seen{last_heard_s, now});
         if (!first && seen->second.heard_s != last_heard_s) seen->second = {last_heard_s, now};
@@ -96,11 +97,15 @@ std::string all_columns() {
 }
 
 void bind(SQLite::Statement& statement, int at, double value) {
-    if (std::isfinite(value)) statement.bind(at, value);
-    else statement.bind(at);   // NULL
+    if (std::isfinite(value))
+        statement.bind(at, value);
+    else
+        statement.bind(at);  // NULL
 }
 
-double number_in(const SQLite::Column& column) { return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble(); }
+double number_in(const SQLite::Column& column) {
+    return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
+}
 
 }  // namespace
 
@@ -110,11 +115,11 @@ constexpr const char* way_out = "move the file away, and the same command makes 
 
 struct Ledger::Database {
     fs::path directory;
-    std::string name;           // of the file
-    struct stat identity {};    // of the file, as it was first seen
+    std::string name;         // of the file
+    struct stat identity {};  // of the file, as it was first seen
     std::string me = this_process();
     Holders holders;
-    std::set<std::string> failed_here;   // for good, recorded by this object
+    std::set<std::string> failed_here;  // for good, recorded by this object
     SQLite::Database file;
 
     Database(const fs::path& directory_, const std::string& name_, int flags, std::chrono::milliseconds watched)
@@ -126,19 +131,25 @@ struct Ledger::Database {
     void must_be_there() {
         if (name == ":memory:") return;
         struct stat now {};
-        if (::stat(name.c_str(), &now) != 0) throw OutputError(fmt::format("the ledger '{}' is not there any more: {}", name, std::strerror(errno)));
+        if (::stat(name.c_str(), &now) != 0)
+            throw OutputError(fmt::format("the ledger '{}' is not there any more: {}", name, std::strerror(errno)));
         if (identity.st_ino == 0) identity = now;
-        if (now.st_ino != identity.st_ino || now.st_dev != identity.st_dev) throw OutputError(fmt::format("the ledger '{}' is not the file any more that it was: something has replaced it", name));
+        if (now.st_ino != identity.st_ino || now.st_dev != identity.st_dev)
+            throw OutputError(
+                fmt::format("the ledger '{}' is not the file any more that it was: something has replaced it", name));
     }
 
     void make() {
         SQLite::Transaction transaction(file, SQLite::TransactionBehavior::IMMEDIATE);
-        file.exec(fmt::format("CREATE TABLE IF NOT EXISTS run (id TEXT PRIMARY KEY, state TEXT NOT NULL, reason TEXT, test TEXT NOT NULL, "
-                              "sigma3_Pa REAL, seed INTEGER{}{}, job TEXT, holder TEXT, heard INTEGER) WITHOUT ROWID",
-                              columns("REAL", number_columns()), columns("TEXT", text_columns())));
+        file.exec(fmt::format(
+            "CREATE TABLE IF NOT EXISTS run (id TEXT PRIMARY KEY, state TEXT NOT NULL, reason TEXT, test TEXT NOT NULL, "
+            "sigma3_Pa REAL, seed INTEGER{}{}, job TEXT, holder TEXT, heard INTEGER) WITHOUT ROWID",
+            columns("REAL", number_columns()), columns("TEXT", text_columns())));
         file.exec("CREATE TABLE IF NOT EXISTS study (name TEXT PRIMARY KEY, title TEXT, file TEXT, text TEXT)");
-        file.exec("CREATE TABLE IF NOT EXISTS member (study TEXT NOT NULL, run TEXT NOT NULL, point INTEGER NOT NULL, axis TEXT NOT NULL, "
-                  "label TEXT, number REAL, PRIMARY KEY (study, run, point, axis)) WITHOUT ROWID");
+        file.exec(
+            "CREATE TABLE IF NOT EXISTS member (study TEXT NOT NULL, run TEXT NOT NULL, point INTEGER NOT NULL, axis TEXT NOT "
+            "NULL, "
+            "label TEXT, number REAL, PRIMARY KEY (study, run, point, axis)) WITHOUT ROWID");
         add_missing_columns();
         file.exec(fmt::format("PRAGMA user_version = {}", schema_version));
         transaction.commit();
@@ -151,15 +162,16 @@ struct Ledger::Database {
         while (info.executeStep()) there.push_back(info.getColumn(1).getString());
         const auto add = [&](const char* type, const std::vector<std::string>& names) {
             for (const std::string& column : names)
-                if (std::find(there.begin(), there.end(), column) == there.end()) file.exec(fmt::format("ALTER TABLE run ADD COLUMN {} {}", column, type));
+                if (std::find(there.begin(), there.end(), column) == there.end())
+                    file.exec(fmt::format("ALTER TABLE run ADD COLUMN {} {}", column, type));
         };
         add("REAL", number_columns());
         add("TEXT", text_columns());
         add("TEXT", {"checksum"});
     }
 
-    // Of all that a row says but for who is at it and when, whichever version of the program has written it. SQLite itself finds pages
-    // that are no pages, but not a digit that has changed.
+    // Of all that a row says but for who is at it and when, whichever version of the program has written it. SQLite itself finds
+    // pages that are no pages, but not a digit that has changed.
     std::string checksum_of(const std::string& id) {
         SQLite::Statement row(file, "SELECT * FROM run WHERE id = ?");
         row.bind(1, id);
@@ -181,7 +193,8 @@ struct Ledger::Database {
         SQLite::Statement look(file, "SELECT checksum FROM run WHERE id = ? AND checksum IS NOT NULL");
         look.bind(1, id);
         if (look.executeStep() && look.getColumn(0).getString() != checksum_of(id))
-            throw OutputError(fmt::format("the ledger '{}' is damaged: the row of run {} is not what was written; {}", (directory / "ledger.sqlite").string(), id, way_out));
+            throw OutputError(fmt::format("the ledger '{}' is damaged: the row of run {} is not what was written; {}",
+                                          (directory / "ledger.sqlite").string(), id, way_out));
     }
 
     void write(const RunRecord& record) {
@@ -201,8 +214,10 @@ struct Ledger::Database {
         }
         for (const std::string& column : text_columns()) {
             const auto found = record.texts.find(column);
-            if (found == record.texts.end()) insert.bind(++at);
-            else insert.bind(++at, found->second);
+            if (found == record.texts.end())
+                insert.bind(++at);
+            else
+                insert.bind(++at, found->second);
         }
         insert.bind(++at, record.job);
         insert.bind(++at, me);
@@ -238,8 +253,10 @@ namespace {
 
 // SQLite's own words about a ledger, with its place, and what helps if it is damaged.
 std::string reason_of(const fs::path& file, const SQLite::Exception& problem) {
-    const bool damaged = problem.getErrorCode() == 1 || problem.getErrorCode() == 11;   // SQLITE_ERROR (tables are not ours), SQLITE_CORRUPT
-    return fmt::format("the ledger '{}': {}{}{}", file.string(), problem.what(), damaged ? "; if it is damaged, " : "", damaged ? way_out : "");
+    const bool damaged =
+        problem.getErrorCode() == 1 || problem.getErrorCode() == 11;  // SQLITE_ERROR (tables are not ours), SQLITE_CORRUPT
+    return fmt::format("the ledger '{}': {}{}{}", file.string(), problem.what(), damaged ? "; if it is damaged, " : "",
+                       damaged ? way_out : "");
 }
 
 template <class Action>
@@ -256,7 +273,8 @@ auto guarded(const fs::path& directory, Action action) {
 Ledger::Ledger(const fs::path& directory, Access access, std::chrono::milliseconds watched) {
     const fs::path file = directory / "ledger.sqlite";
     std::error_code error;
-    if (access != Access::read) fs::create_directories(directory / "runs", error);
+    if (access != Access::read)
+        fs::create_directories(directory / "runs", error);
     else if (!fs::exists(file, error))
         throw InputError({}, fmt::format("there is no ledger in '{}': nothing of the study has been run", directory.string()));
     if (error) throw OutputError(fmt::format("cannot make the directory '{}': {}", directory.string(), error.message()));
@@ -265,15 +283,19 @@ Ledger::Ledger(const fs::path& directory, Access access, std::chrono::millisecon
         database_ = std::make_unique<Database>(directory, access == Access::memory ? ":memory:" : file.string(), flags, watched);
         const int version = database_->file.execAndGet("PRAGMA user_version").getInt();
         if (version > schema_version)
-            throw InputError({file.string(), 0, 0, {}}, "was made by a later version of this program", fmt::format("the version that made it, or another `results`; if the file is damaged, {}", way_out));
+            throw InputError({file.string(), 0, 0, {}}, "was made by a later version of this program",
+                             fmt::format("the version that made it, or another `results`; if the file is damaged, {}", way_out));
         if (access == Access::write) {
-            database_->file.exec("PRAGMA journal_mode = WAL");     // readers and writers side by side
-            database_->file.exec("PRAGMA synchronous = NORMAL");   // a power cut may lose the last rows; run.json has them
+            database_->file.exec("PRAGMA journal_mode = WAL");    // readers and writers side by side
+            database_->file.exec("PRAGMA synchronous = NORMAL");  // a power cut may lose the last rows; run.json has them
         }
-        if (access != Access::read || version < schema_version) database_->make();
-        else database_->add_missing_columns();
+        if (access != Access::read || version < schema_version)
+            database_->make();
+        else
+            database_->add_missing_columns();
     } catch (const SQLite::Exception& problem) {
-        if (problem.getErrorCode() == 26) throw InputError({file.string(), 0, 0, {}}, "is not a ledger, or is damaged", way_out);   // SQLITE_NOTADB
+        if (problem.getErrorCode() == 26)
+            throw InputError({file.string(), 0, 0, {}}, "is not a ledger, or is damaged", way_out);  // SQLITE_NOTADB
         throw OutputError(reason_of(file, problem));
     }
 }
@@ -298,9 +320,10 @@ void Ledger::enrol(const Study& study) {
         note.bind(3, study.file.string());
         note.bind(4, study.text);
         note.exec();
-        SQLite::Statement insert(file, "INSERT OR REPLACE INTO member (study, run, point, axis, label, number) VALUES (?, ?, ?, ?, ?, ?)");
+        SQLite::Statement insert(
+            file, "INSERT OR REPLACE INTO member (study, run, point, axis, label, number) VALUES (?, ?, ?, ?, ?, ?)");
         for (const Run& run : study.runs) {
-            const std::size_t rows = std::max<std::size_t>(1, study.axes.size());   // without axes one row that says so
+            const std::size_t rows = std::max<std::size_t>(1, study.axes.size());  // without axes one row that says so
             for (std::size_t a = 0; a < rows; ++a) {
                 insert.bind(1, study.name);
                 insert.bind(2, run.id);
@@ -336,10 +359,13 @@ Ledger::Claim Ledger::claim(const Run& run, const Provenance* program) {
                 if (state == "failed") {
                     RunRecord failed;
                     failed.state = RunState::failed;
-                    for (int column = 3; column <= 5; ++column) failed.texts[look.getColumn(column).getName()] = look.getColumn(column).getString();
-                    if (database_->failed_here.contains(run.id) || (program != nullptr && failed_for_good(failed, *program))) return Claim::failed;
+                    for (int column = 3; column <= 5; ++column)
+                        failed.texts[look.getColumn(column).getName()] = look.getColumn(column).getString();
+                    if (database_->failed_here.contains(run.id) || (program != nullptr && failed_for_good(failed, *program)))
+                        return Claim::failed;
                 }
-                if (state == "running" && database_->holders.alive(look.getColumn(1).getString(), look.getColumn(2).getInt64())) return Claim::others;
+                if (state == "running" && database_->holders.alive(look.getColumn(1).getString(), look.getColumn(2).getInt64()))
+                    return Claim::others;
             }
         }
         RunRecord record;
@@ -374,7 +400,8 @@ void Ledger::record(const RunRecord& record) {
         transaction.commit();
         database_->must_be_there();
         const auto failure = record.texts.find("failure");
-        if (record.state == RunState::failed && failure != record.texts.end() && failure->second != name(Failure::other)) database_->failed_here.insert(record.id);
+        if (record.state == RunState::failed && failure != record.texts.end() && failure->second != name(Failure::other))
+            database_->failed_here.insert(record.id);
     });
 }
 
@@ -403,7 +430,7 @@ std::optional<RunRecord> Ledger::find(const std::string& id) const {
 
 std::vector<RunRecord> Ledger::find(std::span<const std::string> ids) const {
     return guarded(directory(), [&] {
-        SQLite::Transaction whole(database_->file);   // one moment for all of them
+        SQLite::Transaction whole(database_->file);  // one moment for all of them
         SQLite::Statement look(database_->file, fmt::format("SELECT {} FROM run WHERE id = ?", all_columns()));
         std::vector<RunRecord> records;
         for (const std::string& id : ids) {

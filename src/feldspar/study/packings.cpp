@@ -9,8 +9,8 @@
 namespace feldspar {
 namespace {
 
-// Numbers and words, one a line, with every digit. Lists begin with how many there are and words with their length, so that no two
-// definitions have the same text.
+// Numbers and words, one a line, with every digit. Lists begin with how many there are and words with their length, so that no
+// two definitions have the same text.
 class Text {
 public:
     void add(double number) { text_ += format_exact(number) + '\n'; }
@@ -30,8 +30,10 @@ private:
 
 // Takes each struct apart by name: one that gets another member is not compiled until the member stands here.
 std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
-    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file, particles_per_grain, crystal_sizes, given_cells, phase_sizes] = spec;
-    const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, arcs, flat_angle_rad, holes, notches, labels] = outline;
+    const auto& [outline, thickness_m, grain_sizes, porosity, merge_length_m, triangles_per_grain, packing_file,
+                 particles_per_grain, crystal_sizes, given_cells, phase_sizes] = spec;
+    const auto& [shape, width_m, height_m, diameter_m, hole_diameter_m, vertices_m, edge_labels, arcs, flat_angle_rad, holes,
+                 notches, labels] = outline;
     Text text;
     text.add(std::to_string(seed));
     text.add(static_cast<int>(shape));
@@ -41,7 +43,7 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
         text.add(vertex.y);
     });
     text.add(edge_labels, [&](const std::string& label) { text.add(label); });
-    if (!arcs.empty())   // identities of outlines without arcs stay as they were
+    if (!arcs.empty())  // identities of outlines without arcs stay as they were
         text.add(arcs, [&](const ArcSpec& arc) {
             const auto& [edge, through] = arc;
             text.add(edge);
@@ -85,7 +87,8 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
             text.add(passing);
         });
     };
-    if (phase_sizes.empty()) add_sizes(grain_sizes, porosity);   // else they are the mixture of these
+    if (phase_sizes.empty())
+        add_sizes(grain_sizes, porosity);  // else they are the mixture of these
     else {
         text.add(porosity);
         text.add(phase_sizes, [&](const PhaseSizes& phase) {
@@ -95,9 +98,11 @@ std::string identity_of(const SpecimenSpec& spec, std::uint64_t seed) {
             add_sizes(sizes, 0.0);
         });
     }
-    if (crystal_sizes) add_sizes(*crystal_sizes, 0.0);   // identities of specimens without crystals stay as they were
-    if (merge_length_m) text.add(*merge_length_m);
-    else text.add(std::string("usual"));
+    if (crystal_sizes) add_sizes(*crystal_sizes, 0.0);  // identities of specimens without crystals stay as they were
+    if (merge_length_m)
+        text.add(*merge_length_m);
+    else
+        text.add(std::string("usual"));
     text.add(triangles_per_grain);
     text.add(packing_file.string());
     text.add(particles_per_grain);

@@ -37,8 +37,8 @@ private:
     std::size_t kept_;
     const std::atomic<bool>* stop_;
     std::mutex mutex_;
-    std::map<std::string, Made> made_;   // by identity
-    std::deque<std::string> used_;       // identities, the latest at the end
+    std::map<std::string, Made> made_;  // by identity
+    std::deque<std::string> used_;      // identities, the latest at the end
 };
 
 }  // namespace feldspar

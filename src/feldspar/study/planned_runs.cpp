@@ -61,7 +61,9 @@ std::string title(const TestSpec& test) {
     return text;
 }
 
-std::string title(const std::string& variant, const TestSpec& test) { return variant.empty() ? title(test) : variant + ": " + title(test); }
+std::string title(const std::string& variant, const TestSpec& test) {
+    return variant.empty() ? title(test) : variant + ": " + title(test);
+}
 
 std::string label_of(const PlannedRun& run) { return fmt::format("{}, seed {}", title(run.variant->name, *run.test), run.seed); }
 

@@ -1,4 +1,5 @@
-// The runs that jobs stand for: every test of every variant on every one of its packings, in the order in which they have their turns.
+// The runs that jobs stand for: every test of every variant on every one of its packings, in the order in which they have their
+// turns.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +15,15 @@ namespace feldspar {
 
 /// One test of one variant on one packing. Points into its job.
 struct PlannedRun {
-    std::size_t job_number = 0;   ///< among the jobs that were planned together
+    std::size_t job_number = 0;  ///< among the jobs that were planned together
     const Job* job = nullptr;
     const Variant* variant = nullptr;
     const TestSpec* test = nullptr;
     std::uint64_t seed = 0;
 };
 
-/// All runs of these jobs, packing by packing, then job by job, variant by variant, test by test: what is interrupted leaves whole packings behind.
+/// All runs of these jobs, packing by packing, then job by job, variant by variant, test by test: what is interrupted leaves
+/// whole packings behind.
 std::vector<PlannedRun> planned_runs(std::span<const Job* const> jobs);
 std::vector<PlannedRun> planned_runs(const Job& job);
 

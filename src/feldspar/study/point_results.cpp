@@ -18,9 +18,12 @@ std::vector<PointResults> point_results(const Study& study, const Ledger& ledger
     for (const Run& run : study.runs) {
         PointResults& point = points[run.point];
         const auto found = records.find(run.id);
-        if (found == records.end() || found->second.state == RunState::running) ++point.missing;
-        else if (found->second.state == RunState::failed) point.failed.push_back(found->second);
-        else point.results.push_back(result_of(found->second));
+        if (found == records.end() || found->second.state == RunState::running)
+            ++point.missing;
+        else if (found->second.state == RunState::failed)
+            point.failed.push_back(found->second);
+        else
+            point.results.push_back(result_of(found->second));
     }
     for (PointResults& point : points) point.properties = summarise(point.results);
     return points;

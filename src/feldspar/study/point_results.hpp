@@ -11,11 +11,11 @@ namespace feldspar {
 
 /// The runs of one point, drawn together.
 struct PointResults {
-    std::vector<AxisValue> values;       ///< as Point::values
-    std::vector<TestResult> results;     ///< of the runs that are done: what summarise() reads, and grade, steps and times
-    PropertySummary properties;          ///< of these; PropertyStatistics::values holds the value of each packing
+    std::vector<AxisValue> values;    ///< as Point::values
+    std::vector<TestResult> results;  ///< of the runs that are done: what summarise() reads, and grade, steps and times
+    PropertySummary properties;       ///< of these; PropertyStatistics::values holds the value of each packing
     std::vector<RunRecord> failed;
-    int missing = 0;                     ///< runs that are neither done nor failed
+    int missing = 0;  ///< runs that are neither done nor failed
 };
 
 /// One for each point, in the study's order.

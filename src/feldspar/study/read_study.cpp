@@ -1,4 +1,5 @@
-// A study file: the job, the axes, and all points that they make (docs/study.md). A point's job is the base job with pieces laid over it.
+// A study file: the job, the axes, and all points that they make (docs/study.md). A point's job is the base job with pieces laid
+// over it.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,14 +21,14 @@ constexpr std::size_t most_points = 100'000;
 struct Choice {
     AxisValue value;
     toml::table piece;
-    std::vector<std::uint64_t> seeds;   // empty = all
-    std::vector<MethodId> tests;        // empty = all
+    std::vector<std::uint64_t> seeds;  // empty = all
+    std::vector<MethodId> tests;       // empty = all
 };
 
 struct Axis {
     std::string name;
-    std::string key;     // what `values` are values of; empty for [[axis.value]]
-    std::string times;   // the key whose value they multiply; empty if they stand as they are
+    std::string key;    // what `values` are values of; empty for [[axis.value]]
+    std::string times;  // the key whose value they multiply; empty if they stand as they are
     std::vector<std::pair<std::string, double>> coupled;
     std::vector<Choice> choices;
 };
@@ -46,8 +47,10 @@ public:
         if (root_.sound({"job"}) && base_.job().has_variants()) axes_.push_back(variant_axis());
         if (root_.has("axis") && root_.sound({"axis"})) read_axes();
         for (const Axis& axis : axes_) study_.axes.push_back(axis.name);
-        if (root_.sound({"job", "set", "seeds", "tests", "axis"})) root_.check({}, [&] { make_points(); });
-        else if (root_.sound({"job", "set"})) check_base();
+        if (root_.sound({"job", "set", "seeds", "tests", "axis"}))
+            root_.check({}, [&] { make_points(); });
+        else if (root_.sound({"job", "set"}))
+            check_base();
         finish();
         index_runs(study_);
         return std::move(study_);
@@ -56,7 +59,8 @@ public:
 private:
     void read_common() {
         study_.title = root_.text("title", study_.name);
-        study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}}, study_.keep);
+        study_.keep = root_.choice<Keep>("keep", {{"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}},
+                                         study_.keep);
         seeds_ = root_.has("seeds") ? read_seed_list(root_, "seeds") : std::vector<std::uint64_t>{};
         tests_ = read_kinds(root_);
         for (MethodId kind : tests_) check_kind(root_, kind);
@@ -66,7 +70,10 @@ private:
         const auto& tests = base_.job().tests;
         if (!root_.sound({"job"})) return;
         if (std::none_of(tests.begin(), tests.end(), [&](const TestSpec& test) { return test.kind == kind; }))
-            table.check({}, [&] { table.fail("tests", fmt::format("the job has no test of kind '{}'", name(kind)), "kinds that stand in a [[test]] of the job"); });
+            table.check({}, [&] {
+                table.fail("tests", fmt::format("the job has no test of kind '{}'", name(kind)),
+                           "kinds that stand in a [[test]] of the job");
+            });
     }
 
     Axis variant_axis() const {
@@ -102,7 +109,8 @@ private:
         std::set<std::string> seen;
         for (const Choice& choice : axis.choices)
             if (!seen.insert(choice.value.label).second)
-                table.fail(axis.key.empty() ? "value" : "values", "'" + choice.value.label + "' stands there twice", "each value once");
+                table.fail(axis.key.empty() ? "value" : "values", "'" + choice.value.label + "' stands there twice",
+                           "each value once");
     }
 
     Axis read_key_values(const TableReader& table) const {
@@ -118,7 +126,8 @@ private:
             choice.value = {axis_label(node), measure_of(node).number};
             table.check({}, [&] {
                 if (table.has("times") && !node.is_number())
-                    table.fail_at(node, "values", shown(node) + " is not a factor", "plain numbers, which multiply the value of `times`");
+                    table.fail_at(node, "values", shown(node) + " is not a factor",
+                                  "plain numbers, which multiply the value of `times`");
             });
             if (table.sound({"key"})) insert(choice.piece, axis.key, node);
             axis.choices.push_back(std::move(choice));
@@ -192,7 +201,8 @@ private:
     static void couple(toml::table& piece, const Axis& axis, const Measure& measure) {
         for (const auto& [key, factor] : axis.coupled) {
             if (std::isnan(measure.number))
-                throw InputError({{}, 0, 0, key}, "cannot follow " + axis.key + ", which is not a number", "no `coupled` beside words");
+                throw InputError({{}, 0, 0, key}, "cannot follow " + axis.key + ", which is not a number",
+                                 "no `coupled` beside words");
             insert(piece, key, Measure{factor * measure.number, measure.unit});
         }
     }
@@ -213,15 +223,19 @@ private:
         }
         const auto keep_tests = [&](const std::vector<MethodId>& kinds) {
             if (!kinds.empty())
-                std::erase_if(job.tests, [&](const TestSpec& test) { return std::find(kinds.begin(), kinds.end(), test.kind) == kinds.end(); });
+                std::erase_if(job.tests, [&](const TestSpec& test) {
+                    return std::find(kinds.begin(), kinds.end(), test.kind) == kinds.end();
+                });
         };
         keep_tests(tests_);
         for (const Choice* choice : chosen) {
             keep_tests(choice->tests);
             if (choice->seeds.empty()) continue;
-            const auto dropped = [&](std::uint64_t seed) { return std::find(choice->seeds.begin(), choice->seeds.end(), seed) == choice->seeds.end(); };
+            const auto dropped = [&](std::uint64_t seed) {
+                return std::find(choice->seeds.begin(), choice->seeds.end(), seed) == choice->seeds.end();
+            };
             std::erase_if(job.seeds, dropped);
-            std::vector<TestSpec> left;   // without tests whose own seeds are all dropped
+            std::vector<TestSpec> left;  // without tests whose own seeds are all dropped
             for (TestSpec& test : job.tests) {
                 const bool own = !test.seeds.empty();
                 std::erase_if(test.seeds, dropped);
@@ -230,7 +244,8 @@ private:
             job.tests = std::move(left);
         }
         if (job.tests.empty() || job.seeds.empty())
-            throw InputError({root_.file(), 0, 0, "axis"}, "nothing is left to run" + at(point), "seeds and tests that the study has");
+            throw InputError({root_.file(), 0, 0, "axis"}, "nothing is left to run" + at(point),
+                             "seeds and tests that the study has");
     }
 
     std::string at(const Point& point) const {
@@ -275,7 +290,9 @@ private:
                 look(axis.as_table()->at_path("coupled." + key).node());
                 if (const toml::node* values = axis.as_table()->get("value"); values != nullptr && values->is_array())
                     for (const toml::node& value : *values->as_array())
-                        if (value.is_table() && value.as_table()->at_path("label").value_or(std::string{}) == label_on(point, axis)) look(value.as_table()->at_path("set." + key).node());
+                        if (value.is_table() &&
+                            value.as_table()->at_path("label").value_or(std::string{}) == label_on(point, axis))
+                            look(value.as_table()->at_path("set." + key).node());
             }
         look(tree_.at_path("set." + key).node());
         return InputError(place, error.problem() + at(point), error.allowed(), error.suggestion());
@@ -290,10 +307,10 @@ private:
     }
 
     Study study_;
-    std::vector<std::uint64_t> seeds_;   // empty = the job's
-    std::vector<MethodId> tests_;        // empty = the job's
+    std::vector<std::uint64_t> seeds_;  // empty = the job's
+    std::vector<MethodId> tests_;       // empty = the job's
     std::vector<Axis> axes_;
-    std::set<std::string> told_;         // of points' mistakes, without the point
+    std::set<std::string> told_;  // of points' mistakes, without the point
 };
 
 }  // namespace

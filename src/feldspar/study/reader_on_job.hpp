@@ -20,7 +20,8 @@ protected:
         : FileReader(parse_toml(text, file.string()), file.string(), known, required), base_(root_, file) {}
     ~ReaderOnJob() = default;
 
-    /// The name of `result` (of the file's stem unless it is given), and the directory of its results, named like it unless that is given, too.
+    /// The name of `result` (of the file's stem unless it is given), and the directory of its results, named like it unless that
+    /// is given, too.
     template <class Result>
     void read_names(Result& result) const {
         result.name = read_directory_name(root_, "name", variant_stem(result.file.stem().string()));

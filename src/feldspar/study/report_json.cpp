@@ -35,13 +35,18 @@ Json failures_json(std::span<const PointResults> points) {
     Json list = Json::array();
     for (const PointResults& point : points)
         for (const RunRecord& run : point.failed)
-            list.push_back({{"point", point_label(point)}, {"test", run.test}, {"sigma3_MPa", rounded(run.sigma3_Pa * MPa)}, {"seed", run.seed}, {"reason", run.reason}});
+            list.push_back({{"point", point_label(point)},
+                            {"test", run.test},
+                            {"sigma3_MPa", rounded(run.sigma3_Pa * MPa)},
+                            {"seed", run.seed},
+                            {"reason", run.reason}});
     return list;
 }
 
 Json laboratory_json(const Job& job) {
     Json json = Json::object();
-    for (const auto& [key, value] : job.laboratory) json[user_quantity(property_of_laboratory(key)).name] = json_number(laboratory_in_user_units(key, value));
+    for (const auto& [key, value] : job.laboratory)
+        json[user_quantity(property_of_laboratory(key)).name] = json_number(laboratory_in_user_units(key, value));
     return json;
 }
 

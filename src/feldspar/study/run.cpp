@@ -17,21 +17,22 @@ namespace {
 // Raised when the same job would give other results by design; then nothing counts as done any more.
 constexpr const char* kind_of_run = "feldspar run 1\n";
 
-// Everything that can change the result, and nothing else: neither names, threads and laboratory values, nor what is kept of the fields.
+// Everything that can change the result, and nothing else: neither names, threads and laboratory values, nor what is kept of the
+// fields.
 std::string identity(Job job) {
     job.name = "run";
     job.threads = job.at_once = 0;
     job.laboratory.clear();
     job.laboratory_confined.clear();
     job.tests.front().snapshots = 0;
-    job.specimen = specimen_of(job, job.tests.front());   // the job's own is not used
+    job.specimen = specimen_of(job, job.tests.front());  // the job's own is not used
     std::string text = kind_of_run;
     if (!job.specimen.packing_file.empty()) text += read_toml_file(job.specimen.packing_file, "packing");
     job.specimen.packing_file.clear();
     text += job.specimen.given_cells.hash;
     job.specimen.given_cells.file.clear();
     for (Variant& variant : job.variants) {
-        text += variant.rock.files;   // files count by what is in them, not by their places
+        text += variant.rock.files;  // files count by what is in them, not by their places
         variant.rock.minerals.map_file.clear();
         variant.rock.minerals.list_file.clear();
         for (JointSpec& joint : variant.rock.joints) joint.file = joint.file.empty() ? "" : "read";
@@ -53,11 +54,12 @@ Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::
     run.job.tests = {test};
     run.job.tests.front().seeds.clear();
     run.job.seeds = {seed};
-    if (test.specimen && !method_of(test).specimen.own_disc) {   // the same run as one of a job whose specimen it is
+    if (test.specimen && !method_of(test).specimen.own_disc) {  // the same run as one of a job whose specimen it is
         run.job.specimen = *test.specimen;
         run.job.tests.front().specimen.reset();
     }
-    if (variant.model.kind != GrainKind::inner_particles) for_each_specimen(run.job, [](SpecimenSpec& specimen) { specimen.particles_per_grain = 0.0; });
+    if (variant.model.kind != GrainKind::inner_particles)
+        for_each_specimen(run.job, [](SpecimenSpec& specimen) { specimen.particles_per_grain = 0.0; });
     run.id = hash_of_text(identity(run.job));
     return run;
 }

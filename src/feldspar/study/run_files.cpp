@@ -20,7 +20,8 @@ RunDirectory cleared(const fs::path& path) {
     if (error) throw OutputError("cannot make the directory '" + path.string() + "': " + error.message());
     std::vector<fs::path> left;
     for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-        if (!entry->path().filename().string().starts_with(state_file) && entry->path().filename() != damaged_record) left.push_back(entry->path());
+        if (!entry->path().filename().string().starts_with(state_file) && entry->path().filename() != damaged_record)
+            left.push_back(entry->path());
     for (const fs::path& one : left)
         if (!error) fs::remove_all(one, error);
     if (error) throw OutputError("cannot remove what an earlier attempt left in '" + path.string() + "': " + error.message());
@@ -30,7 +31,8 @@ RunDirectory cleared(const fs::path& path) {
 }  // namespace
 
 TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path, Keep keep, const Provenance& provenance,
-                        const RunControl& control, const DeviceUse& device, const CheckpointSettings& settings, const std::function<void(const std::string&)>& note) {
+                        const RunControl& control, const DeviceUse& device, const CheckpointSettings& settings,
+                        const std::function<void(const std::string&)>& note) {
     const bool finished = finished_record(path, run).has_value();
     const RunDirectory directory = finished ? RunDirectory::open(path) : cleared(path);
     TestResult result;
@@ -39,7 +41,9 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
         const Variant& variant = run.job.variants.front();
         TestSpec test = run.test();
         if (keep != Keep::all) test.snapshots = 0;
-        TestCheckpoints checkpoints(directory, state_file, CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings, note);
+        TestCheckpoints checkpoints(directory, state_file,
+                                    CheckpointOwner::of(run.id + " " + std::to_string(test.snapshots), provenance), settings,
+                                    note);
         RunControl own_control = control;
         own_control.keeper = &checkpoints;
         const TestSetup setup{specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock};
@@ -74,7 +78,8 @@ std::optional<RunRecord> record_in(const fs::path& directory, const Run& run, Ru
     std::error_code error;
     if (!fs::exists(directory / record_file, error)) return std::nullopt;
     RunRecord record = read_record(directory / record_file);
-    if (record.id != run.id) throw InputError({(directory / record_file).string(), 0, 0, "id"}, "is not the record of run " + run.id);
+    if (record.id != run.id)
+        throw InputError({(directory / record_file).string(), 0, 0, "id"}, "is not the record of run " + run.id);
     if (record.state != state) return std::nullopt;
     return record;
 }
@@ -93,8 +98,12 @@ std::string set_damaged_record_aside(const fs::path& directory, const Run& run) 
     }
 }
 
-std::optional<RunRecord> finished_record(const fs::path& directory, const Run& run) { return record_in(directory, run, RunState::done); }
+std::optional<RunRecord> finished_record(const fs::path& directory, const Run& run) {
+    return record_in(directory, run, RunState::done);
+}
 
-std::optional<RunRecord> failure_left(const fs::path& directory, const Run& run) { return record_in(directory, run, RunState::failed); }
+std::optional<RunRecord> failure_left(const fs::path& directory, const Run& run) {
+    return record_in(directory, run, RunState::failed);
+}
 
 }  // namespace feldspar

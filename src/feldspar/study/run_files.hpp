@@ -14,16 +14,20 @@
 
 namespace feldspar {
 
-/// Makes the specimen, runs the test and writes job.toml and what `keep` asks for, but for what finish_files() writes. May run on any thread.
-/// Goes on from the last state that an earlier attempt has kept in the directory; all else that it left there is replaced. An interrupted test leaves its state alone.
+/// Makes the specimen, runs the test and writes job.toml and what `keep` asks for, but for what finish_files() writes. May run on
+/// any thread. Goes on from the last state that an earlier attempt has kept in the directory; all else that it left there is
+/// replaced. An interrupted test leaves its state alone.
 /// @param note  told what the user should read, on the same thread; may be empty
-TestResult run_to_files(const Run& run, Packings& packings, const std::filesystem::path& directory, Keep keep, const Provenance& provenance,
-                        const RunControl& control, const DeviceUse& device = {}, const CheckpointSettings& checkpoints = {}, const std::function<void(const std::string&)>& note = {});
+TestResult run_to_files(const Run& run, Packings& packings, const std::filesystem::path& directory, Keep keep,
+                        const Provenance& provenance, const RunControl& control, const DeviceUse& device = {},
+                        const CheckpointSettings& checkpoints = {}, const std::function<void(const std::string&)>& note = {});
 
 /// Writes the rest, run.json at the end. On the main thread only: the HDF5 library is not made for several.
-void finish_files(const Run& run, const TestResult& result, const std::filesystem::path& directory, Keep keep, const Provenance& provenance);
+void finish_files(const Run& run, const TestResult& result, const std::filesystem::path& directory, Keep keep,
+                  const Provenance& provenance);
 
-/// A run.json that is damaged, or another run's, becomes run.json.damaged, so that the run is made again. @return what the user should read; empty if there is none such
+/// A run.json that is damaged, or another run's, becomes run.json.damaged, so that the run is made again. @return what the user
+/// should read; empty if there is none such
 std::string set_damaged_record_aside(const std::filesystem::path& directory, const Run& run);
 
 /// Removes the state of a test whose run is done: the program was ended, or the disk failed, between the two.

@@ -28,12 +28,13 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr double kBytesOfAGrain = 400.0;   // at each snapshot of an archive
+constexpr double kBytesOfAGrain = 400.0;  // at each snapshot of an archive
 
 // Bytes that the job will leave, roughly: fields at the snapshots, histories and the report.
 double expected_bytes(const std::vector<PlannedRun>& runs, Keep keep) {
     double bytes = 1e6;
-    for (const PlannedRun& run : runs) bytes += 1e6 + (keep == Keep::all ? kBytesOfAGrain * grain_count(specimen_of(run)) * (run.test->snapshots + 4) : 0.0);
+    for (const PlannedRun& run : runs)
+        bytes += 1e6 + (keep == Keep::all ? kBytesOfAGrain * grain_count(specimen_of(run)) * (run.test->snapshots + 4) : 0.0);
     return bytes;
 }
 
@@ -55,7 +56,11 @@ void check_space(const std::optional<std::string>& out, const std::vector<Planne
 class PreparedRuns {
 public:
     PreparedRuns(const Job& job, const JobControl& control)
-        : job_(job), control_(control), tell_(*control.listener), runs_(planned_runs(job)), packings_(runs_.size(), control.stop) {}
+        : job_(job),
+          control_(control),
+          tell_(*control.listener),
+          runs_(planned_runs(job)),
+          packings_(runs_.size(), control.stop) {}
 
     const std::vector<PlannedRun>& all() const { return runs_; }
     const PlannedRun& operator[](std::size_t i) const { return runs_[i]; }
@@ -67,7 +72,8 @@ public:
     void prepare() {
         if (*control_.stop) throw Interrupted();
         make_packings();
-        side_by_side(static_cast<int>(runs_.size()), control_.threads, [this](int i) { judge_setting(runs_[static_cast<std::size_t>(i)]); });
+        side_by_side(static_cast<int>(runs_.size()), control_.threads,
+                     [this](int i) { judge_setting(runs_[static_cast<std::size_t>(i)]); });
         tell_.clear();
         std::vector<std::string> told;
         const auto warn = [&](const std::vector<std::string>& warnings) {
@@ -84,7 +90,7 @@ public:
 private:
     // Side by side; a single one tells how far it is.
     void make_packings() {
-        std::vector<const PlannedRun*> of_each;   // the first run on it
+        std::vector<const PlannedRun*> of_each;  // the first run on it
         std::set<std::string> seen;
         for (const PlannedRun& run : runs_)
             if (seen.insert(identity_of(specimen_of(run), run.seed)).second) of_each.push_back(&run);
@@ -101,7 +107,8 @@ private:
     // An unstable setting is refused here; what the program chooses itself is stable.
     void judge_setting(const PlannedRun& run) {
         if (*control_.stop) throw Interrupted();
-        if (control_.device.open && !control_.device.where_possible) (void)opener_for(setup_of(run, specimen(run)), control_.device, {});
+        if (control_.device.open && !control_.device.where_possible)
+            (void)opener_for(setup_of(run, specimen(run)), control_.device, {});
         const NumericsSpec& numerics = run.variant->numerics;
         if (numerics.kind == NumericsKind::adaptive && !numerics.mass_factor) return;
         RunControl judging;
@@ -158,7 +165,10 @@ class DirectorySink final : public RunSink {
 public:
     /// @param found  where an unfinished run of the job is gone on with
     DirectorySink(const Job& job, PreparedRuns& runs, const JobControl& control, FoundPlace found)
-        : job_(job), runs_(runs), control_(control), tell_(*control.listener),
+        : job_(job),
+          runs_(runs),
+          control_(control),
+          tell_(*control.listener),
           directory_(found.unfinished ? RunDirectory::open(*found.unfinished) : RunDirectory::create(control.out, job.name)),
           lock_(found.unfinished ? std::move(*found.lock) : begin_unfinished(directory_, job)) {
         if (control_.live != nullptr) control_.live->planned(live_plans(runs_));
@@ -169,10 +179,11 @@ public:
             return;
         }
         mark_unfinished(directory_, job_);
-        for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path()))   // states and fields
-            if (entry.is_directory()) (void)RunDirectory::open(entry.path());   // removes what was half written
+        for (const fs::directory_entry& entry : fs::directory_iterator(directory_.path()))  // states and fields
+            if (entry.is_directory()) (void)RunDirectory::open(entry.path());               // removes what was half written
         for (std::size_t i = 0; i < runs_.count(); ++i) take_found(i);
-        tell_.note(fmt::format("going on with the unfinished run in {}: {} of {} are done (--fresh begins anew)", directory_.path().string(), results_.size(), counted(runs_.count(), "test")));
+        tell_.note(fmt::format("going on with the unfinished run in {}: {} of {} are done (--fresh begins anew)",
+                               directory_.path().string(), results_.size(), counted(runs_.count(), "test")));
     }
 
     const fs::path& path() const { return directory_.path(); }
@@ -185,32 +196,39 @@ public:
         if (found_.contains(i)) return {};
         const PlannedRun& run = runs_[i];
         const std::shared_ptr<const Specimen> specimen = runs_.specimen(run);
-        const bool given = specimen->spec.given_cells.given();   // no packing makes these cells again
-        const std::string packing = given ? "cells" + packing_stem(run).substr(std::string_view("packing").size()) + ".tess" : packing_stem(run) + ".txt";
+        const bool given = specimen->spec.given_cells.given();  // no packing makes these cells again
+        const std::string packing =
+            given ? "cells" + packing_stem(run).substr(std::string_view("packing").size()) + ".tess" : packing_stem(run) + ".txt";
         if (control_.keep == Keep::all && packings_.insert(packing).second) {
-            if (given) directory_.write_text(packing, cells_as_text(*specimen, CellFormat::tess));
-            else directory_.write(packing, [&](const fs::path& file) { write_packing(*specimen, file); });
+            if (given)
+                directory_.write_text(packing, cells_as_text(*specimen, CellFormat::tess));
+            else
+                directory_.write(packing, [&](const fs::path& file) { write_packing(*specimen, file); });
         }
         TestWatch* const watch = control_.live != nullptr ? &control_.live->begins(i, specimen) : nullptr;
         return [this, i, &run, specimen, watch](const RunControl& run_control) {
             const CheckpointOwner owner = owner_of(run);
-            TestCheckpoints checkpoints(directory_, kept_as(run, ".state"), owner, control_.checkpoints,
-                                        [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
+            TestCheckpoints checkpoints(
+                directory_, kept_as(run, ".state"), owner, control_.checkpoints,
+                [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
             RunControl own_control = run_control;
             own_control.keeper = &checkpoints;
             own_control.watch = watch;
             own_control.failed = [&](const TestResult& record) { write_failed(run, record); };
             const TestSetup setup = setup_of(run, specimen);
-            own_control.device = opener_for(setup, control_.device, [this, i](const std::string& line) { notes_.add(fmt::format("{}: {}", numbered_label(i), line)); });
+            own_control.device = opener_for(setup, control_.device, [this, i](const std::string& line) {
+                notes_.add(fmt::format("{}: {}", numbered_label(i), line));
+            });
             TestResult result = run_test(setup, own_control);
             result.variant = run.variant->name;
-            if (result.history.empty()) return result;   // interrupted before the first row
+            if (result.history.empty()) return result;  // interrupted before the first row
             write_record(result);
             if (result.interrupted) return result;
             try {
-                write_checkpoint(directory_, kept_as(run, ".result"), owner, [&](const StatePut& put) { keep_result(result, put); });
+                write_checkpoint(directory_, kept_as(run, ".result"), owner,
+                                 [&](const StatePut& put) { keep_result(result, put); });
                 remove_checkpoint(directory_.path(), kept_as(run, ".state"));
-            } catch (const OutputError& error) {   // its results are there
+            } catch (const OutputError& error) {  // its results are there
                 notes_.add(fmt::format("{}: if this run is ended, this test is made again: {}", numbered_label(i), error.what()));
             }
             return result;
@@ -244,12 +262,12 @@ public:
 
     // The other tests go on. @throws OutputError: what is still running could not be written either
     void failed(std::size_t i, const std::exception_ptr& error) override {
-        beat();   // what the test has said on the way
+        beat();  // what the test has said on the way
         try {
             std::rethrow_exception(error);
         } catch (const Interrupted&) {
             if (control_.live != nullptr) control_.live->ended(i, {LiveState::ended, "ended before its first record"});
-            return;   // before there was anything to keep of this test
+            return;  // before there was anything to keep of this test
         } catch (const OutputError&) {
             throw;
         } catch (...) {
@@ -267,13 +285,15 @@ public:
         JobOutcome outcome;
         outcome.directory = directory_.path();
         outcome.tests = runs_.count();
-        outcome.interrupted = results_.size() + reasons_.size() < runs_.count() ||
-                              std::any_of(results_.begin(), results_.end(), [](const TestResult& result) { return result.interrupted; });
+        outcome.interrupted =
+            results_.size() + reasons_.size() < runs_.count() ||
+            std::any_of(results_.begin(), results_.end(), [](const TestResult& result) { return result.interrupted; });
         write_overview(!outcome.interrupted && reasons_.empty(), true);
         outcome.failed = failures();
         outcome.results = std::move(results_);
         outcome.properties = std::move(properties_);
-        if (!outcome.interrupted && outcome.failed.empty()) end_unfinished(directory_.path());   // what failed is tried again by whoever runs the job here again
+        if (!outcome.interrupted && outcome.failed.empty())
+            end_unfinished(directory_.path());  // what failed is tried again by whoever runs the job here again
         return outcome;
     }
 
@@ -298,7 +318,8 @@ private:
         return fmt::format("{}/{}{}", kCheckpoints, test_stem(run.variant->name, *run.test, run.seed), extension);
     }
     CheckpointOwner owner_of(const PlannedRun& run) const {
-        return CheckpointOwner::of(fmt::format("{} {}", make_run(job_, *run.variant, *run.test, run.seed).id, run.test->snapshots), control_.provenance);
+        return CheckpointOwner::of(
+            fmt::format("{} {}", make_run(job_, *run.variant, *run.test, run.seed).id, run.test->snapshots), control_.provenance);
     }
 
     // A test that had ended when the program was.
@@ -313,10 +334,13 @@ private:
             found_.insert(i);
             const TestResult& here = add(i, std::move(result));
             if (control_.live != nullptr) control_.live->ended(i, live_result(here));
-            if (!fs::exists(directory_.path() / ("history-" + test_stem(here) + ".csv"))) write_record(here);   // it was begun with another `keep`
-            if (control_.keep == Keep::all && !fs::exists(directory_.path() / (test_stem(here) + ".h5"))) write_hdf5(directory_, here, job_, control_.provenance);
+            if (!fs::exists(directory_.path() / ("history-" + test_stem(here) + ".csv")))
+                write_record(here);  // it was begun with another `keep`
+            if (control_.keep == Keep::all && !fs::exists(directory_.path() / (test_stem(here) + ".h5")))
+                write_hdf5(directory_, here, job_, control_.provenance);
         } catch (const StateError& error) {
-            tell_.warn(fmt::format("{}: what it had left is not used, and it is made again: {}", numbered_label(i), error.what()));
+            tell_.warn(
+                fmt::format("{}: what it had left is not used, and it is made again: {}", numbered_label(i), error.what()));
         }
     }
 
@@ -328,7 +352,9 @@ private:
     }
 
     static int number_of(std::size_t i) { return static_cast<int>(i) + 1; }
-    std::string numbered_label(std::size_t i) const { return fmt::format("{}/{} {}", number_of(i), runs_.count(), label_of(runs_[i])); }
+    std::string numbered_label(std::size_t i) const {
+        return fmt::format("{}/{} {}", number_of(i), runs_.count(), label_of(runs_[i]));
+    }
 
     std::vector<FailedTest> failures() const {
         std::vector<FailedTest> list;
@@ -354,12 +380,12 @@ private:
     JobListener& tell_;
     RunDirectory directory_;
     FileLock lock_;
-    std::set<std::size_t> found_;                   // ended when an earlier program did
+    std::set<std::size_t> found_;  // ended when an earlier program did
     Notes notes_;
-    std::set<std::string> packings_;                // written already
-    std::vector<TestResult> results_;               // in the job's order
-    std::vector<std::size_t> order_;                // the number of each
-    std::map<std::size_t, std::string> reasons_;    // of failures, by number
+    std::set<std::string> packings_;              // written already
+    std::vector<TestResult> results_;             // in the job's order
+    std::vector<std::size_t> order_;              // the number of each
+    std::map<std::size_t, std::string> reasons_;  // of failures, by number
     PropertySummary properties_;
     Clock::time_point next_report_;
 };
@@ -371,7 +397,8 @@ JobOutcome run_job(const Job& job, const JobControl& control) {
     FoundPlace found = find_place(control.out, job, control.fresh);
     if (control.go_on && !found.unfinished) {
         const std::string place = control.out ? "'" + *control.out + "'" : "'results/" + job.name + "-<n>'";
-        throw InputError({{}, 0, 0, "--continue"}, fmt::format("there is no unfinished run of this job in {}", place), "the directory of a run of the same job that was ended, or the command without --continue");
+        throw InputError({{}, 0, 0, "--continue"}, fmt::format("there is no unfinished run of this job in {}", place),
+                         "the directory of a run of the same job that was ended, or the command without --continue");
     }
     if (!found.unfinished) RunDirectory::check(control.out, job.name);
     check_space(control.out, runs.all(), control.keep);

@@ -44,33 +44,37 @@ public:
 
 /// What the caller decides about the running itself; none of it changes a result.
 struct JobControl {
-    int threads = 1;                         ///< of the whole program
-    std::optional<std::string> out;          ///< the directory, which must not exist, or have an unfinished run of the same job; else results/<job name>-<n>
-    bool fresh = false;                      ///< a new directory, even if there is an unfinished run of the same job
-    bool go_on = false;                      ///< only an unfinished run of the same job is gone on with; InputError if there is none
-    Keep keep = Keep::all;                   ///< numbers: summary, report and jobs; histories: also histories and events; all: also packings and archives
+    int threads = 1;  ///< of the whole program
+    std::optional<std::string>
+        out;  ///< the directory, which must not exist, or have an unfinished run of the same job; else results/<job name>-<n>
+    bool fresh = false;  ///< a new directory, even if there is an unfinished run of the same job
+    bool go_on = false;  ///< only an unfinished run of the same job is gone on with; InputError if there is none
+    Keep keep =
+        Keep::all;  ///< numbers: summary, report and jobs; histories: also histories and events; all: also packings and archives
     CheckpointSettings checkpoints;
-    DeviceUse device;                        ///< where the steps are made
+    DeviceUse device;  ///< where the steps are made
     Provenance provenance;
-    std::atomic<bool>* stop = nullptr;       ///< becomes true when the user interrupts, or when nothing more can be written
+    std::atomic<bool>* stop = nullptr;  ///< becomes true when the user interrupts, or when nothing more can be written
     JobListener* listener = nullptr;
-    LiveBoard* live = nullptr;               ///< shows the run while it goes on; may be null
+    LiveBoard* live = nullptr;  ///< shows the run while it goes on; may be null
 };
 
 /// What came out of a job.
 struct JobOutcome {
     std::filesystem::path directory;
-    std::size_t tests = 0;              ///< of the job
-    std::vector<TestResult> results;    ///< in the job's order, whatever the order in which they ended; also of tests that were interrupted
-    PropertySummary properties;         ///< of these; empty if the job has variants, since each has its own
-    std::vector<FailedTest> failed;     ///< in the job's order
+    std::size_t tests = 0;  ///< of the job
+    std::vector<TestResult>
+        results;  ///< in the job's order, whatever the order in which they ended; also of tests that were interrupted
+    PropertySummary properties;      ///< of these; empty if the job has variants, since each has its own
+    std::vector<FailedTest> failed;  ///< in the job's order
     bool interrupted = false;
 };
 
-/// Goes on with a run of the same job that was ended before it was complete, if there is one where its results are to go: finished tests are taken from there, and those that
-/// were under way go on from their last kept state, with the same bits. Makes every packing and judges every setting, so that a mistake shows before there is a directory; then runs all tests and writes each one's
-/// files as soon as it has ended. A test that fails is noted, and the others go on. @throws InputError; OutputError when results cannot be
-/// written; Interrupted before there was a directory
+/// Goes on with a run of the same job that was ended before it was complete, if there is one where its results are to go:
+/// finished tests are taken from there, and those that were under way go on from their last kept state, with the same bits. Makes
+/// every packing and judges every setting, so that a mistake shows before there is a directory; then runs all tests and writes
+/// each one's files as soon as it has ended. A test that fails is noted, and the others go on. @throws InputError; OutputError
+/// when results cannot be written; Interrupted before there was a directory
 JobOutcome run_job(const Job& job, const JobControl& control);
 
 }  // namespace feldspar

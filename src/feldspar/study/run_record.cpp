@@ -24,10 +24,10 @@ RunRecord record_for(const Run& run, const Provenance& provenance) {
     record.seed = run.seed();
     record.job = resolved_toml(run.job);
     const Variant& variant = run.job.variants.front();
-    record.texts = {{"grains", name(variant.model.kind)},       {"law", name(variant.contact.law)},
-                    {"version", provenance.version},            {"commit_id", provenance.commit},
-                    {"machine", provenance.machine},            {"compiler", provenance.compiler},
-                    {"started", provenance.started},            {"command_line", provenance.command_line}};
+    record.texts = {{"grains", name(variant.model.kind)}, {"law", name(variant.contact.law)},
+                    {"version", provenance.version},      {"commit_id", provenance.commit},
+                    {"machine", provenance.machine},      {"compiler", provenance.compiler},
+                    {"started", provenance.started},      {"command_line", provenance.command_line}};
     if (!provenance.device.empty()) record.texts["machine"] += "; steps on " + provenance.device;
     return record;
 }
@@ -45,18 +45,24 @@ double number_in(const Json& json) { return json.is_null() ? std::numeric_limits
 
 const char* name(RunState state) {
     switch (state) {
-        case RunState::running: return "running";
-        case RunState::done: return "done";
-        case RunState::failed: return "failed";
+        case RunState::running:
+            return "running";
+        case RunState::done:
+            return "done";
+        case RunState::failed:
+            return "failed";
     }
     return "?";
 }
 
 const char* name(Failure failure) {
     switch (failure) {
-        case Failure::input: return "input";
-        case Failure::numerical: return "numerical";
-        case Failure::other: return "other";
+        case Failure::input:
+            return "input";
+        case Failure::numerical:
+            return "numerical";
+        case Failure::other:
+            return "other";
     }
     return "?";
 }
@@ -72,8 +78,8 @@ const std::vector<std::string>& number_columns() {
 }
 
 const std::vector<std::string>& text_columns() {
-    static const std::vector<std::string> names{"grains",  "law",       "grade",   "verdict",  "stop_reason", "failure", "version",
-                                                "commit_id", "machine", "compiler", "started", "command_line"};
+    static const std::vector<std::string> names{"grains",  "law",       "grade",   "verdict",  "stop_reason", "failure",
+                                                "version", "commit_id", "machine", "compiler", "started",     "command_line"};
     return names;
 }
 
@@ -108,8 +114,10 @@ bool failed_for_good(const RunRecord& record, const Provenance& program) {
 SettledRuns settled_runs(std::span<const RunRecord> records, const Provenance* program) {
     SettledRuns settled;
     for (const RunRecord& record : records) {
-        if (record.state == RunState::done) settled.done.insert(record.id);
-        else if (program != nullptr && failed_for_good(record, *program)) settled.failed.insert(record.id);
+        if (record.state == RunState::done)
+            settled.done.insert(record.id);
+        else if (program != nullptr && failed_for_good(record, *program))
+            settled.failed.insert(record.id);
     }
     return settled;
 }
@@ -136,11 +144,16 @@ TestResult result_of(const RunRecord& record) {
 }
 
 std::string to_json(const RunRecord& record) {
-    Json json{{"id", record.id},          {"state", name(record.state)}, {"reason", record.reason},
-              {"test", record.test},      {"sigma3_Pa", number_json(record.sigma3_Pa)}, {"seed", record.seed}};
+    Json json{{"id", record.id},
+              {"state", name(record.state)},
+              {"reason", record.reason},
+              {"test", record.test},
+              {"sigma3_Pa", number_json(record.sigma3_Pa)},
+              {"seed", record.seed}};
     json["numbers"] = Json::object();
     for (const std::string& column : number_columns())
-        if (const auto found = record.numbers.find(column); found != record.numbers.end()) json["numbers"][column] = number_json(found->second);
+        if (const auto found = record.numbers.find(column); found != record.numbers.end())
+            json["numbers"][column] = number_json(found->second);
     json["texts"] = record.texts;
     json["job"] = record.job;
     json["format"] = record_format;
@@ -153,13 +166,16 @@ RunRecord read_record(const std::filesystem::path& file) {
     if (!stream) throw InputError({file.string(), 0, 0, {}}, "cannot be read");
     try {
         Json json = Json::parse(stream);
-        if (const auto checksum = json.find("checksum"); checksum != json.end()) {   // records of earlier versions have none
+        if (const auto checksum = json.find("checksum"); checksum != json.end()) {  // records of earlier versions have none
             const Json expected = *checksum;
             json.erase("checksum");
-            if (expected != checksum_of(json)) throw InputError({file.string(), 0, 0, {}}, "is damaged: it is not what was written");
+            if (expected != checksum_of(json))
+                throw InputError({file.string(), 0, 0, {}}, "is damaged: it is not what was written");
         }
         if (json.value("format", record_format) != record_format)
-            throw InputError({file.string(), 0, 0, "format"}, "'" + json.at("format").get<std::string>() + "' was written by a later version of this program", record_format);
+            throw InputError({file.string(), 0, 0, "format"},
+                             "'" + json.at("format").get<std::string>() + "' was written by a later version of this program",
+                             record_format);
         RunRecord record;
         record.id = json.at("id");
         const std::string state = json.at("state");

@@ -27,13 +27,13 @@ const char* name(Failure failure);
 struct RunRecord {
     std::string id;
     RunState state = RunState::running;
-    std::string reason;                      ///< of a failure, in words
-    std::string test;                        ///< "uniaxial-compression", ...
+    std::string reason;  ///< of a failure, in words
+    std::string test;    ///< "uniaxial-compression", ...
     double sigma3_Pa = 0.0;
     std::uint64_t seed = 0;
-    std::map<std::string, double> numbers;   ///< by the names of number_columns()
-    std::map<std::string, std::string> texts;   ///< by the names of text_columns()
-    std::string job;                         ///< resolved: it can be run again
+    std::map<std::string, double> numbers;     ///< by the names of number_columns()
+    std::map<std::string, std::string> texts;  ///< by the names of text_columns()
+    std::string job;                           ///< resolved: it can be run again
 };
 
 /// Names of the numbers of a record, in the ledger's order: properties, evidence, steps and times.
@@ -51,7 +51,7 @@ bool failed_for_good(const RunRecord& record, const Provenance& program);
 /// The runs that are not run again, by their ids.
 struct SettledRuns {
     std::set<std::string> done;
-    std::set<std::string> failed;   ///< for good
+    std::set<std::string> failed;  ///< for good
 };
 
 /// Picks them from what a ledger knows of the runs. @param program  whose failures count; none if failed runs are repeated

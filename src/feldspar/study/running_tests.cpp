@@ -12,18 +12,18 @@ struct RunningTests::Test {
     std::size_t number = 0;
     int useful = 1;
     std::atomic<int> threads{1};
-    std::optional<TestProgress> news;   // not told yet
+    std::optional<TestProgress> news;  // not told yet
     std::optional<TestResult> result;
     std::exception_ptr error;
     bool ended = false;
-    std::jthread thread;                // last: it is joined before the rest goes away
+    std::jthread thread;  // last: it is joined before the rest goes away
 };
 
 RunningTests::RunningTests(const Sharing& sharing, std::atomic<bool>& stop) : sharing_(sharing), stop_(stop) {}
 
 RunningTests::~RunningTests() {
     if (!tests_.empty()) stop_ = true;
-    tests_.clear();   // waits for them while what they share is still there
+    tests_.clear();  // waits for them while what they share is still there
 }
 
 int RunningTests::count() const { return static_cast<int>(tests_.size()); }
@@ -94,7 +94,7 @@ void RunningTests::share_out_free_threads() {
 
 RunningTests::Events RunningTests::events(bool patient) {
     Events events;
-    std::vector<std::unique_ptr<Test>> over;   // their threads are joined when the lock is open again
+    std::vector<std::unique_ptr<Test>> over;  // their threads are joined when the lock is open again
     std::unique_lock lock(mutex_);
     if (patient && !tests_.empty()) something_.wait(lock, [this] { return happened_; });
     happened_ = false;

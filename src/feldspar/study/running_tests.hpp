@@ -37,8 +37,8 @@ public:
     };
 
     struct Events {
-        std::vector<News> news;     ///< by number
-        std::vector<Ended> ended;   ///< by number
+        std::vector<News> news;    ///< by number
+        std::vector<Ended> ended;  ///< by number
     };
 
     /// @param sharing  how many tests go together, and on how many threads each
@@ -74,9 +74,9 @@ private:
 
     Sharing sharing_;
     std::atomic<bool>& stop_;
-    int company_ = 1;   // most tests at once that go with those that run
+    int company_ = 1;  // most tests at once that go with those that run
     std::vector<std::unique_ptr<Test>> tests_;
-    std::mutex mutex_;                  // guards what the tests leave for events()
+    std::mutex mutex_;  // guards what the tests leave for events()
     std::condition_variable something_;
     bool happened_ = false;
 };

@@ -48,22 +48,27 @@ private:
     void start_next() {
         const std::size_t run = waiting_.front();
         waiting_.pop_front();
-        if (RunningTests::Work work = sink_.begin(run)) running_.start(run, sink_.bodies(run), waiting_.size() + 1, std::move(work));
+        if (RunningTests::Work work = sink_.begin(run))
+            running_.start(run, sink_.bodies(run), waiting_.size() + 1, std::move(work));
     }
 
     void take_next() {
         RunningTests::Ended run = std::move(ended_.front());
         ended_.pop_front();
-        if (run.error) sink_.failed(run.number, run.error);
-        else sink_.finished(run.number, std::move(*run.result));
+        if (run.error)
+            sink_.failed(run.number, run.error);
+        else
+            sink_.finished(run.number, std::move(*run.result));
     }
 
     void listen(RunningTests::Events events) {
         for (const auto& [run, state] : events.news) sink_.progress(run, state);
         for (RunningTests::Ended& run : events.ended) {
             sink_.ended(run.number);
-            if (run.error && cannot_write(run.error)) sink_.failed(run.number, run.error);   // at once, before more runs begin in vain
-            else ended_.push_back(std::move(run));
+            if (run.error && cannot_write(run.error))
+                sink_.failed(run.number, run.error);  // at once, before more runs begin in vain
+            else
+                ended_.push_back(std::move(run));
         }
     }
 
@@ -77,7 +82,7 @@ private:
     RunSink& sink_;
     RunningTests running_;
     std::deque<std::size_t> waiting_;
-    std::deque<RunningTests::Ended> ended_;   // not taken yet
+    std::deque<RunningTests::Ended> ended_;  // not taken yet
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The order in which runs start, end and are taken up: one for the tests of a job and the runs of a study. What a run is, and what becomes
-// of its result, a sink says.
+// The order in which runs start, end and are taken up: one for the tests of a job and the runs of a study. What a run is, and
+// what becomes of its result, a sink says.
 #pragma once
 
 #include <atomic>
@@ -13,8 +13,8 @@
 
 namespace feldspar {
 
-/// Knows the runs by their numbers and takes what they leave. All calls are made on the thread of run_in_order(). What a call throws ends the
-/// schedule at once.
+/// Knows the runs by their numbers and takes what they leave. All calls are made on the thread of run_in_order(). What a call
+/// throws ends the schedule at once.
 class RunSink {
 public:
     virtual ~RunSink() = default;
@@ -31,8 +31,8 @@ public:
     /// The run no longer runs; what it left comes in finished() or failed().
     virtual void ended(std::size_t run) = 0;
 
-    /// Its result, which may be that of an interrupted test. Runs are taken up in the order in which they ended, and only when every thread has
-    /// something to do: so this may take its time.
+    /// Its result, which may be that of an interrupted test. Runs are taken up in the order in which they ended, and only when
+    /// every thread has something to do: so this may take its time.
     virtual void finished(std::size_t run, TestResult result) = 0;
 
     /// What it threw, Interrupted too, in the same order; an OutputError at once.
@@ -45,8 +45,9 @@ public:
     virtual void beat() {}
 };
 
-/// Gives the runs 0 ... count - 1 their turns in this order, side by side as `sharing` allows, until all have ended or `stop` is true:
-/// then none begins any more, and those that run end at their next record. If the sink throws, `stop` is set, and what runs is waited for.
+/// Gives the runs 0 ... count - 1 their turns in this order, side by side as `sharing` allows, until all have ended or `stop` is
+/// true: then none begins any more, and those that run end at their next record. If the sink throws, `stop` is set, and what runs
+/// is waited for.
 /// @return how many had no turn
 std::size_t run_in_order(std::size_t count, const Sharing& sharing, std::atomic<bool>& stop, RunSink& sink);
 

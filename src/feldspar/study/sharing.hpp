@@ -21,11 +21,13 @@ public:
     }
 
     /// More threads than this make such a test no faster.
-    int useful_threads(int bodies) const { return at_once_ > 0 ? threads_ : std::clamp(bodies / least_bodies_per_thread, 1, threads_); }
+    int useful_threads(int bodies) const {
+        return at_once_ > 0 ? threads_ : std::clamp(bodies / least_bodies_per_thread, 1, threads_);
+    }
 
 private:
-    // From here on a test gets all threads: they work together as well as apart, and many tests of this size at once would fill the
-    // memory (some 140 MB each).
+    // From here on a test gets all threads: they work together as well as apart, and many tests of this size at once would fill
+    // the memory (some 140 MB each).
     static constexpr int large_body_count = 20000;
 
     // With fewer bodies than this a thread waits at the barriers of a step for longer than it works.

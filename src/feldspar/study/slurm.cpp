@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 enum class Place { waiting, running };
 
-constexpr std::size_t most_elements = 10'000'000;   // above Slurm's own limit: whatever answers with more is not Slurm
+constexpr std::size_t most_elements = 10'000'000;  // above Slurm's own limit: whatever answers with more is not Slurm
 
 // Elements in Slurm's queue, by the array's number and theirs; a job that is no array has the element 0.
 using Queue = std::map<std::pair<std::string, std::size_t>, Place>;
@@ -38,7 +38,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 [[noreturn]] void no_slurm(const std::string& program) {
-    throw InputError({{}, 0, 0, "--on slurm"}, fmt::format("there is no program '{}' on the PATH: Slurm is not installed here", program),
+    throw InputError({{}, 0, 0, "--on slurm"},
+                     fmt::format("there is no program '{}' on the PATH: Slurm is not installed here", program),
                      "a machine from which jobs are submitted to the cluster");
 }
 
@@ -51,10 +52,12 @@ std::optional<std::size_t> whole_number(const std::string& text) {
 
 // The queue of this user.
 Queue ask_queue() {
-    const auto result = call_program({"squeue", "--noheader", "--array", "--user=" + std::to_string(::getuid()), "--format=%F %K %T"});
+    const auto result =
+        call_program({"squeue", "--noheader", "--array", "--user=" + std::to_string(::getuid()), "--format=%F %K %T"});
     if (!result) no_slurm("squeue");
     if (result->code != 0)
-        throw InputError({{}, 0, 0, "--on slurm"}, fmt::format("squeue does not say which runs are in the queue: {}", trimmed(result->err)));
+        throw InputError({{}, 0, 0, "--on slurm"},
+                         fmt::format("squeue does not say which runs are in the queue: {}", trimmed(result->err)));
     Queue queue;
     for (const std::string& line : split(result->out, '\n')) {
         std::stringstream words(line);
@@ -85,7 +88,7 @@ std::string sbatch(const SlurmPlan& plan, const std::string& script, const std::
     command.push_back(script);
     const auto result = call_program(command, plan.directory);
     if (!result) no_slurm("sbatch");
-    const std::string number = split(trimmed(result->out) + ";", ';').front();   // "12" or "12;cluster"
+    const std::string number = split(trimmed(result->out) + ";", ';').front();  // "12" or "12;cluster"
     if (result->code != 0 || elements_in(number).empty())
         throw InputError({(plan.directory / script).string(), 0, 0, {}},
                          fmt::format("sbatch did not take this script: {}", trimmed(result->err + result->out)));
@@ -98,21 +101,22 @@ std::string submit_gathering(const SlurmPlan& plan) {
         return sbatch(plan, "gather.sh", {"--dependency=afterany:" + plan.array_job});
     } catch (const InputError& refusal) {
         throw InputError(refusal.place(), refusal.problem(), {},
-                         fmt::format("the runs are in the queue as job {}; when it is over: feldspar study gather {}", plan.array_job,
-                                     plan.results().string()));
+                         fmt::format("the runs are in the queue as job {}; when it is over: feldspar study gather {}",
+                                     plan.array_job, plan.results().string()));
     }
 }
 
 // How Slurm says that elements of an array ended.
 struct Ending {
-    std::string state;       // "TIMEOUT", "CANCELLED by 0", ...
-    std::string exit_code;   // "1:0": code and signal
+    std::string state;      // "TIMEOUT", "CANCELLED by 0", ...
+    std::string exit_code;  // "1:0": code and signal
 };
 using Endings = std::map<std::size_t, Ending>;
 
 // From Slurm's accounting; empty if there is none.
 Endings accounted(const std::string& job) {
-    const auto result = call_program({"sacct", "--noheader", "--allocations", "--parsable2", "--jobs=" + job, "--format=JobID,State,ExitCode"});
+    const auto result =
+        call_program({"sacct", "--noheader", "--allocations", "--parsable2", "--jobs=" + job, "--format=JobID,State,ExitCode"});
     Endings endings;
     if (!result || result->code != 0) return endings;
     for (const std::string& line : split(result->out, '\n')) {
@@ -134,8 +138,10 @@ Endings remembered(const std::string& job) {
     for (const std::string& line : split(result->out, '\n')) {
         std::map<std::string, std::string> fields;
         for (const std::string& word : split(line, ' '))
-            if (const auto equals = word.find('='); equals != std::string::npos) fields.emplace(word.substr(0, equals), word.substr(equals + 1));
-        for (const std::size_t element : elements_in(fields["ArrayTaskId"])) endings[element] = {fields["JobState"], fields["ExitCode"]};
+            if (const auto equals = word.find('='); equals != std::string::npos)
+                fields.emplace(word.substr(0, equals), word.substr(equals + 1));
+        for (const std::size_t element : elements_in(fields["ArrayTaskId"]))
+            endings[element] = {fields["JobState"], fields["ExitCode"]};
     }
     return endings;
 }
@@ -156,8 +162,9 @@ std::string reason_of(const Endings& endings, std::size_t element, const fs::pat
     const std::string& state = found->second.state;
     if (state.starts_with("CANCELLED")) return "it was cancelled";
     if (state == "TIMEOUT") return "it reached its time limit: ask for more with --time, or for less with --group-minutes";
-    if (found->second.exit_code.starts_with("130:"))   // ExitCode::interrupted
-        return "it was asked to stop, near its time limit or for another job: ask for more with --time, or for less with --group-minutes";
+    if (found->second.exit_code.starts_with("130:"))  // ExitCode::interrupted
+        return "it was asked to stop, near its time limit or for another job: ask for more with --time, or for less with "
+               "--group-minutes";
     if (state == "OUT_OF_MEMORY") return "it needed more memory than it was given: ask for more with --sbatch \"--mem=...\"";
     if (state == "NODE_FAIL") return "its machine failed";
     return fmt::format("Slurm says {}, exit code {}{}", state, found->second.exit_code, words);
@@ -197,7 +204,7 @@ Gathering gather(Ledger& ledger, const std::vector<SlurmPlan>& plans, const Queu
     const std::map<std::string, RunState> before = states_in(ledger, ids);
 
     Gathering found;
-    std::set<std::string> seen;   // a run belongs to the last plan that has it
+    std::set<std::string> seen;  // a run belongs to the last plan that has it
     std::vector<std::pair<std::string, std::size_t>> lost_elements;
     for (auto plan = plans.rbegin(); plan != plans.rend(); ++plan) {
         if (!submitted(*plan)) continue;
@@ -244,7 +251,8 @@ bool taken_elsewhere(Ledger& ledger, const Run& run) {
 }
 
 // The runs that nobody has done, waits for or is at.
-std::vector<const Run*> open_runs(const Study& study, Ledger& ledger, const std::set<std::string>& queued, bool retry_failed, Submission& submission) {
+std::vector<const Run*> open_runs(const Study& study, Ledger& ledger, const std::set<std::string>& queued, bool retry_failed,
+                                  Submission& submission) {
     std::vector<std::string> ids;
     for (const Run& run : study.runs) ids.push_back(run.id);
     const Provenance here = collect_provenance({}, 1);
@@ -257,11 +265,16 @@ std::vector<const Run*> open_runs(const Study& study, Ledger& ledger, const std:
     std::set<std::string> seen;
     for (const Run& run : study.runs) {
         if (!seen.insert(run.id).second) continue;
-        if (settled.done.contains(run.id)) ++submission.done;
-        else if (queued.contains(run.id)) ++submission.queued;
-        else if (settled.failed.contains(run.id)) ++submission.failed;
-        else if (running.contains(run.id) && taken_elsewhere(ledger, run)) ++submission.elsewhere;
-        else open.push_back(&run);
+        if (settled.done.contains(run.id))
+            ++submission.done;
+        else if (queued.contains(run.id))
+            ++submission.queued;
+        else if (settled.failed.contains(run.id))
+            ++submission.failed;
+        else if (running.contains(run.id) && taken_elsewhere(ledger, run))
+            ++submission.elsewhere;
+        else
+            open.push_back(&run);
     }
     return open;
 }
@@ -277,7 +290,8 @@ Run run_from(const SlurmPlan& plan, const std::string& id) {
     const Job job = read_job(file);
     Run run = make_run(job, job.variants.front(), job.tests.front(), job.seeds.front());
     if (run.id != id)
-        throw InputError({file.string(), 0, 0, {}}, "this is no longer the run that was planned: the program or a packing's file has changed",
+        throw InputError({file.string(), 0, 0, {}},
+                         "this is no longer the run that was planned: the program or a packing's file has changed",
                          "the program that made the plan, or the study submitted anew");
     return run;
 }

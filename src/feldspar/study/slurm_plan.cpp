@@ -28,16 +28,20 @@ constexpr std::size_t most_elements = 1000;
 
 double default_factor(GrainKind kind) {
     switch (kind) {
-        case GrainKind::flexible: return 1.0;
-        case GrainKind::rigid: return 0.5;
-        case GrainKind::inner_particles: return 20.0;   // some tens of particles a grain
+        case GrainKind::flexible:
+            return 1.0;
+        case GrainKind::rigid:
+            return 0.5;
+        case GrainKind::inner_particles:
+            return 20.0;  // some tens of particles a grain
     }
     return 1.0;
 }
 
-double default_factor(NumericsKind kind) { return kind == NumericsKind::adaptive ? 1.0 : 10.0; }   // slow enough for the paper
+double default_factor(NumericsKind kind) { return kind == NumericsKind::adaptive ? 1.0 : 10.0; }  // slow enough for the paper
 
-// Time of a run of so many grains as a multiple of that of 1000; the share that does not shrink is that of the least number of steps.
+// Time of a run of so many grains as a multiple of that of 1000; the share that does not shrink is that of the least number of
+// steps.
 double size_factor(const Run& run) {
     const SpecimenSpec& specimen = specimen_of(run.job, run.test());
     return 0.1 + grain_count(specimen) / 1000.0;
@@ -50,9 +54,12 @@ double number_in(const RunRecord& record, const std::string& column) {
 
 const char* name(Keep keep) {
     switch (keep) {
-        case Keep::numbers: return "numbers";
-        case Keep::histories: return "histories";
-        case Keep::all: return "all";
+        case Keep::numbers:
+            return "numbers";
+        case Keep::histories:
+            return "histories";
+        case Keep::all:
+            return "all";
     }
     return "histories";
 }
@@ -60,7 +67,9 @@ const char* name(Keep keep) {
 Keep keep_of(const std::string& word, const fs::path& file) {
     for (const Keep keep : {Keep::numbers, Keep::histories, Keep::all})
         if (word == name(keep)) return keep;
-    throw InputError({.file = file.string()}, fmt::format("'{}' is nothing that a run can keep", printable(word, LineEnds::escaped)), "numbers, histories or all");
+    throw InputError({.file = file.string()},
+                     fmt::format("'{}' is nothing that a run can keep", printable(word, LineEnds::escaped)),
+                     "numbers, histories or all");
 }
 
 void write_text(const fs::path& file, const std::string& text) {
@@ -89,11 +98,13 @@ std::string quoted(const std::string& word) {
 std::string job_name(const std::string& study) {
     std::string text = "feldspar-" + study;
     for (char& letter : text)
-        if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-' && letter != '_' && letter != '.') letter = '-';
+        if (std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '-' && letter != '_' && letter != '.')
+            letter = '-';
     return text;
 }
 
-// Lines that both scripts have. A job starts in the directory in which it was submitted, which is the plan's, so that no path needs quoting.
+// Lines that both scripts have. A job starts in the directory in which it was submitted, which is the plan's, so that no path
+// needs quoting.
 std::string common_head(const std::string& name, const SlurmOptions& options) {
     std::string text = "#!/bin/sh\n";
     text += fmt::format("#SBATCH --job-name={}\n#SBATCH --nodes=1\n#SBATCH --ntasks=1\n", name);
@@ -119,14 +130,16 @@ std::string array_script(const SlurmPlan& plan, const SlurmOptions& options, con
 
 std::string gather_script(const SlurmPlan& plan, const SlurmOptions& options, const fs::path& program) {
     return common_head(job_name(plan.study) + "-gather", options) +
-           fmt::format("#SBATCH --cpus-per-task=1\n#SBATCH --output=gather.out\n#SBATCH --open-mode=append\n\nexec {} study gather ../..\n",
-                       quoted(program.string()));
+           fmt::format(
+               "#SBATCH --cpus-per-task=1\n#SBATCH --output=gather.out\n#SBATCH --open-mode=append\n\nexec {} study gather "
+               "../..\n",
+               quoted(program.string()));
 }
 
 json json_of(const SlurmPlan& plan) {
-    return {{"feldspar_slurm_plan", format_version}, {"study", plan.study},           {"keep", name(plan.keep)},
-            {"cpus", plan.cpus},                     {"array_job", plan.array_job},   {"gather_job", plan.gather_job},
-            {"groups", plan.groups}};
+    return {
+        {"feldspar_slurm_plan", format_version}, {"study", plan.study},           {"keep", name(plan.keep)}, {"cpus", plan.cpus},
+        {"array_job", plan.array_job},           {"gather_job", plan.gather_job}, {"groups", plan.groups}};
 }
 
 // The number that the name of a plan's directory is, or 0.
@@ -160,9 +173,10 @@ TimeEstimate::Like TimeEstimate::like(const Run& run) {
 double TimeEstimate::seconds(const Run& run) const {
     const auto known = per_thousand_.find(like(run));
     const Variant& variant = run.job.variants.front();
-    const double thousand = known != per_thousand_.end() ? known->second
-                                                         : method_of(run.test()).rate.seconds * default_factor(variant.model.kind) *
-                                                               default_factor(variant.numerics.kind);
+    const double thousand =
+        known != per_thousand_.end()
+            ? known->second
+            : method_of(run.test()).rate.seconds * default_factor(variant.model.kind) * default_factor(variant.numerics.kind);
     return thousand * size_factor(run);
 }
 
@@ -189,9 +203,14 @@ namespace {
 
 // An option stands in its line of the script: what follows a line end would be a command.
 void require_one_line(const SlurmOptions& options) {
-    for (const auto& [option, text] : {std::pair{"--partition", &options.partition}, {"--account", &options.account}, {"--time", &options.time}, {"--sbatch", &options.sbatch}})
+    for (const auto& [option, text] : {std::pair{"--partition", &options.partition},
+                                       {"--account", &options.account},
+                                       {"--time", &options.time},
+                                       {"--sbatch", &options.sbatch}})
         if (std::any_of(text->begin(), text->end(), [](unsigned char c) { return std::iscntrl(c) != 0; }))
-            throw InputError({.file = {}, .line = 0, .column = 0, .key = option}, fmt::format("'{}' has a control character in it", printable(*text, LineEnds::escaped)), "text in one line");
+            throw InputError({.file = {}, .line = 0, .column = 0, .key = option},
+                             fmt::format("'{}' has a control character in it", printable(*text, LineEnds::escaped)),
+                             "text in one line");
 }
 
 }  // namespace
@@ -224,7 +243,9 @@ void write_plan_file(const SlurmPlan& plan) { write_text(plan.directory / "plan.
 SlurmPlan read_plan(const fs::path& directory) {
     const fs::path file = directory / "plan.json";
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError({.file = file.string()}, "this plan of a study on Slurm cannot be read", "a directory <results>/slurm/<n>");
+    if (!in)
+        throw InputError({.file = file.string()}, "this plan of a study on Slurm cannot be read",
+                         "a directory <results>/slurm/<n>");
     try {
         const json text = json::parse(in);
         if (text.at("feldspar_slurm_plan").get<int>() > format_version)
@@ -238,13 +259,18 @@ SlurmPlan read_plan(const fs::path& directory) {
         plan.array_job = text.at("array_job").get<std::string>();
         plan.gather_job = text.at("gather_job").get<std::string>();
         for (const std::string& number : {plan.array_job, plan.gather_job})
-            if (!std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))   // it goes to Slurm's programs
-                throw InputError({.file = file.string()}, fmt::format("'{}' is not the number of a job", printable(number, LineEnds::escaped)), "digits");
+            if (!std::all_of(number.begin(), number.end(),
+                             [](unsigned char c) { return std::isdigit(c) != 0; }))  // it goes to Slurm's programs
+                throw InputError({.file = file.string()},
+                                 fmt::format("'{}' is not the number of a job", printable(number, LineEnds::escaped)), "digits");
         plan.groups = text.at("groups").get<std::vector<std::vector<std::string>>>();
         for (const auto& group : plan.groups)
             for (const std::string& id : group)
-                if (id.empty() || !std::all_of(id.begin(), id.end(), [](unsigned char c) { return std::isxdigit(c) != 0; }))   // it names files
-                    throw InputError({.file = file.string()}, fmt::format("'{}' is not the name of a run", printable(id, LineEnds::escaped)), "hexadecimal digits");
+                if (id.empty() ||
+                    !std::all_of(id.begin(), id.end(), [](unsigned char c) { return std::isxdigit(c) != 0; }))  // it names files
+                    throw InputError({.file = file.string()},
+                                     fmt::format("'{}' is not the name of a run", printable(id, LineEnds::escaped)),
+                                     "hexadecimal digits");
         return plan;
     } catch (const json::exception& problem) {
         throw InputError({.file = file.string()}, fmt::format("this is not a plan of a study on Slurm ({})", problem.what()));
@@ -256,7 +282,8 @@ std::vector<SlurmPlan> read_plans(const fs::path& results) {
     std::error_code error;
     for (fs::directory_iterator entry(results / "slurm", error), end; !error && entry != end; entry.increment(error))
         if (number_of(entry->path()) > 0 && fs::exists(entry->path() / "plan.json")) directories.push_back(entry->path());
-    std::sort(directories.begin(), directories.end(), [](const fs::path& a, const fs::path& b) { return number_of(a) < number_of(b); });
+    std::sort(directories.begin(), directories.end(),
+              [](const fs::path& a, const fs::path& b) { return number_of(a) < number_of(b); });
     std::vector<SlurmPlan> plans;
     for (const fs::path& directory : directories) plans.push_back(read_plan(directory));
     return plans;

@@ -23,11 +23,11 @@ namespace feldspar {
 struct SlurmOptions {
     std::string partition;
     std::string account;
-    std::string time;              ///< limit of an element ("30", "2:00:00"), as sbatch reads it
-    int cpus = 1;                  ///< threads of an element
-    int array_limit = 0;           ///< at most so many elements at once; 0 = no limit
-    double group_minutes = 10.0;   ///< about so long is an element
-    std::string sbatch;            ///< further options, as they would stand behind `sbatch`
+    std::string time;             ///< limit of an element ("30", "2:00:00"), as sbatch reads it
+    int cpus = 1;                 ///< threads of an element
+    int array_limit = 0;          ///< at most so many elements at once; 0 = no limit
+    double group_minutes = 10.0;  ///< about so long is an element
+    std::string sbatch;           ///< further options, as they would stand behind `sbatch`
 };
 
 /// How long runs take, from those that are done.
@@ -38,15 +38,16 @@ public:
     /// Learns from the study's runs that have a record.
     TimeEstimate(std::span<const Run> runs, std::span<const RunRecord> records);
 
-    /// Seconds on one thread: the median of like runs (kind of test, of grains and of numerics, accuracy), or a default by kind, scaled
-    /// with the number of grains (and a constant share for the small ones). Right within a factor of a few, which is what groups need.
+    /// Seconds on one thread: the median of like runs (kind of test, of grains and of numerics, accuracy), or a default by kind,
+    /// scaled with the number of grains (and a constant share for the small ones). Right within a factor of a few, which is what
+    /// groups need.
     double seconds(const Run& run) const;
 
 private:
     using Like = std::tuple<MethodId, GrainKind, NumericsKind, double>;
     static Like like(const Run& run);
 
-    std::map<Like, double> per_thousand_;   // s for 1000 grains
+    std::map<Like, double> per_thousand_;  // s for 1000 grains
 };
 
 /// Neighbours together until a group would take longer than `target_s`; the order stays, because neighbours share their packing.
@@ -55,12 +56,12 @@ std::vector<std::vector<std::size_t>> grouped(std::span<const double> seconds, d
 
 /// A plan as it is on disk.
 struct SlurmPlan {
-    std::filesystem::path directory;                ///< <results>/slurm/<n>
-    std::string study;                              ///< its name
+    std::filesystem::path directory;  ///< <results>/slurm/<n>
+    std::string study;                ///< its name
     Keep keep = Keep::histories;
     int cpus = 1;
-    std::vector<std::vector<std::string>> groups;   ///< ids of the runs
-    std::string array_job, gather_job;              ///< Slurm's numbers; empty until submitted
+    std::vector<std::vector<std::string>> groups;  ///< ids of the runs
+    std::string array_job, gather_job;             ///< Slurm's numbers; empty until submitted
 
     std::filesystem::path results() const { return directory.parent_path().parent_path(); }
     std::filesystem::path job_file(const std::string& id) const { return directory / "jobs" / (id + ".toml"); }

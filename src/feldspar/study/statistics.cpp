@@ -6,7 +6,9 @@
 
 namespace feldspar {
 
-double student_quantile(double degrees_of_freedom) { return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975); }
+double student_quantile(double degrees_of_freedom) {
+    return boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
+}
 
 MeanInterval mean_interval(std::span<const double> values) {
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -16,8 +16,8 @@ double student_quantile(double degrees_of_freedom);
 struct MeanInterval {
     int count = 0;
     double mean = 0.0;
-    double standard_deviation = 0.0;   ///< of one value, n - 1
-    double low = 0.0, high = 0.0;      ///< 95 % interval of the mean
+    double standard_deviation = 0.0;  ///< of one value, n - 1
+    double low = 0.0, high = 0.0;     ///< 95 % interval of the mean
 
     double half_width() const { return 0.5 * (high - low); }
 };

@@ -12,9 +12,9 @@ namespace feldspar {
 
 /// One test on one packing: the unit of work of a study, and one row of its ledger.
 struct Run {
-    std::string id;   ///< 32 hexadecimal digits that follow from everything that can change its result, and from nothing else
-    Job job;          ///< of this run alone: one variant without a name, one test, one seed
-    std::size_t point = 0;   ///< of the study
+    std::string id;  ///< 32 hexadecimal digits that follow from everything that can change its result, and from nothing else
+    Job job;         ///< of this run alone: one variant without a name, one test, one seed
+    std::size_t point = 0;  ///< of the study
 
     const TestSpec& test() const { return job.tests.front(); }
     std::uint64_t seed() const { return job.seeds.front(); }
@@ -26,32 +26,33 @@ Run make_run(const Job& job, const Variant& variant, const TestSpec& test, std::
 /// What an axis says of a point, in the user's words ("rigid", "33.1 N/m", 2).
 struct AxisValue {
     std::string label;
-    double number = 0.0;   ///< as written, without its unit; not-a-number for a word
+    double number = 0.0;  ///< as written, without its unit; not-a-number for a word
 };
 
 /// One combination of the axes' values: a rock and how it is modelled.
 struct Point {
-    std::vector<AxisValue> values;   ///< one for each axis
-    Job job;                         ///< with a single variant, all its tests, and the seeds of this point
+    std::vector<AxisValue> values;  ///< one for each axis
+    Job job;                        ///< with a single variant, all its tests, and the seeds of this point
 };
 
 /// What a run leaves in its directory besides run.json and job.toml.
 enum class Keep { numbers, histories, all };
 
 struct Study {
-    std::filesystem::path file;      ///< as given
-    std::string text;                ///< the file as it was read
-    std::string name;                ///< from the key `name`, else the file's stem
+    std::filesystem::path file;  ///< as given
+    std::string text;            ///< the file as it was read
+    std::string name;            ///< from the key `name`, else the file's stem
     std::string title;
-    std::filesystem::path results;   ///< directory of ledger and runs: from the key `results`, else results/<name>
+    std::filesystem::path results;  ///< directory of ledger and runs: from the key `results`, else results/<name>
     Keep keep = Keep::histories;
-    std::vector<std::string> axes;   ///< their names
-    std::vector<Point> points;       ///< all combinations in the file's order, the last axis first; without axes a single one
-    std::vector<Run> runs;           ///< packing by packing, then point by point: an interrupted study leaves whole packings
+    std::vector<std::string> axes;  ///< their names
+    std::vector<Point> points;      ///< all combinations in the file's order, the last axis first; without axes a single one
+    std::vector<Run> runs;          ///< packing by packing, then point by point: an interrupted study leaves whole packings
 };
 
 /// Reads and checks a study file and everything that it stands for (docs/study.md).
-/// @throws InputError naming file, line, key, value and what is allowed; for a value that only the combination makes impossible also the point
+/// @throws InputError naming file, line, key, value and what is allowed; for a value that only the combination makes impossible
+/// also the point
 Study read_study(const std::filesystem::path& file);
 
 /// The same from text; `name` stands in for the file in messages and for finding the job.

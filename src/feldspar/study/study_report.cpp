@@ -22,8 +22,9 @@ Json cell_json(const PointResults& point, const std::string& property) {
 }
 
 Json point_json(const PointResults& point, const std::vector<std::string>& properties) {
-    Json json = {{"labels", Json::array()}, {"numbers", Json::array()}, {"done", point.results.size()}, {"failed", point.failed.size()}, {"missing", point.missing},
-                 {"grades", grades_json(point.results)}, {"cells", Json::array()}};
+    Json json = {{"labels", Json::array()},       {"numbers", Json::array()}, {"done", point.results.size()},
+                 {"failed", point.failed.size()}, {"missing", point.missing}, {"grades", grades_json(point.results)},
+                 {"cells", Json::array()}};
     double steps = 0.0, wall_s = 0.0;
     for (const TestResult& result : point.results) {
         steps += static_cast<double>(result.steps);

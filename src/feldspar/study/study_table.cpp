@@ -22,8 +22,8 @@ namespace feldspar {
 namespace {
 
 // Of the many, those that answer first what the rock is like.
-const std::vector<std::string> main_properties{"E_Pa",  "nu",     "UCS_Pa",      "DTS_Pa",      "BTS_Pa", "BTS_first_dip_Pa",
-                                               "cohesion_Pa", "friction_angle_deg", "hoek_brown_mi"};
+const std::vector<std::string> main_properties{
+    "E_Pa", "nu", "UCS_Pa", "DTS_Pa", "BTS_Pa", "BTS_first_dip_Pa", "cohesion_Pa", "friction_angle_deg", "hoek_brown_mi"};
 
 MeanInterval interval_of(const PointResults& point, const std::string& property) {
     const auto found = point.properties.values.find(property);
@@ -44,7 +44,9 @@ bool is_a_number(std::string_view text) {
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (problem != std::errc{}) return false;
     if (end != text.data() + text.size() && (*end == '/' || *end == '.')) return false;
-    return std::all_of(end, text.data() + text.size(), [](unsigned char c) { return c == ' ' || c == '%' || c == '/' || c == '.' || std::isalnum(c) != 0 || c >= 0x80; });
+    return std::all_of(end, text.data() + text.size(), [](unsigned char c) {
+        return c == ' ' || c == '%' || c == '/' || c == '.' || std::isalnum(c) != 0 || c >= 0x80;
+    });
 }
 
 std::string number_cell(double value) { return std::isfinite(value) ? format_exact(value) : ""; }
@@ -53,7 +55,8 @@ std::string number_cell(double value) { return std::isfinite(value) ? format_exa
 
 std::string csv_cell(const std::string& given) {
     std::string text = printable(given);
-    if (!text.empty() && std::string_view("=+-@\t").find(text.front()) != std::string_view::npos && !is_a_number(text)) text.insert(text.begin(), '\'');
+    if (!text.empty() && std::string_view("=+-@\t").find(text.front()) != std::string_view::npos && !is_a_number(text))
+        text.insert(text.begin(), '\'');
     if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
@@ -71,7 +74,9 @@ std::vector<std::string> properties_of(std::span<const PointResults> points) {
 
 std::string study_text(const Study& study, std::span<const PointResults> points, std::size_t columns) {
     std::vector<std::string> properties = properties_of(points);
-    std::erase_if(properties, [](const std::string& name) { return std::find(main_properties.begin(), main_properties.end(), name) == main_properties.end(); });
+    std::erase_if(properties, [](const std::string& name) {
+        return std::find(main_properties.begin(), main_properties.end(), name) == main_properties.end();
+    });
     std::vector<Row> rows(1, study.axes);
     for (const std::string& property : properties) {
         const UserQuantity quantity = user_quantity(property);
@@ -81,7 +86,8 @@ std::string study_text(const Study& study, std::span<const PointResults> points,
     for (const PointResults& point : points) {
         Row& row = rows.emplace_back();
         for (const AxisValue& value : point.values) row.push_back(value.label);
-        for (const std::string& property : properties) row.push_back(mean_text(interval_of(point, property), user_quantity(property).factor));
+        for (const std::string& property : properties)
+            row.push_back(mean_text(interval_of(point, property), user_quantity(property).factor));
         std::string runs = std::to_string(point.results.size());
         if (!point.failed.empty()) runs += fmt::format(", {} failed", point.failed.size());
         if (point.missing > 0) runs += fmt::format(", {} missing", point.missing);
@@ -92,7 +98,8 @@ std::string study_text(const Study& study, std::span<const PointResults> points,
 
 std::string points_csv(const Study& study, std::span<const PointResults> points) {
     const std::vector<std::string> properties = properties_of(points);
-    std::string text = fmt::format("# {}: means over packings with their 95 % intervals; {}\n", printable(study.title, LineEnds::escaped), sign_convention);
+    std::string text = fmt::format("# {}: means over packings with their 95 % intervals; {}\n",
+                                   printable(study.title, LineEnds::escaped), sign_convention);
     for (const std::string& axis : study.axes) text += csv_cell(axis) + ",";
     for (const std::string& property : properties) {
         const std::string name = user_quantity(property).name;
@@ -129,7 +136,8 @@ std::string runs_csv(const Study& study, const Ledger& ledger) {
         const RunRecord* record = found == records.end() ? nullptr : &found->second;
         const auto grade = record == nullptr ? decltype(record->texts.end()){} : record->texts.find("grade");
         text += fmt::format("{},{},{},{},{}", run.seed(), name(run.test().kind), number_cell(run.test().sigma3_Pa),
-                            record == nullptr ? "missing" : name(record->state), record != nullptr && grade != record->texts.end() ? csv_cell(grade->second) : "");
+                            record == nullptr ? "missing" : name(record->state),
+                            record != nullptr && grade != record->texts.end() ? csv_cell(grade->second) : "");
         for (const std::string& column : number_columns()) {
             const auto number = record == nullptr ? decltype(record->numbers.end()){} : record->numbers.find(column);
             text += "," + (record != nullptr && number != record->numbers.end() ? number_cell(number->second) : std::string{});

@@ -1,8 +1,7 @@
 // Reads a job, packs its grains and says how many there are.
+#include <cstdio>
 #include <feldspar/job/job.hpp>
 #include <feldspar/specimen/specimen.hpp>
-
-#include <cstdio>
 
 int main(int, char** arguments) {
     const feldspar::Job job = feldspar::read_job(arguments[1]);

@@ -31,7 +31,7 @@ TEST(Counted, OneThingAndSeveral) {
 
 TEST(Mean, IsTheSumInOrderOverTheCount) {
     EXPECT_EQ(mean_of(std::vector{1.0, 2.0, 6.0}), 3.0);
-    EXPECT_EQ(mean_of(std::vector{1e16, 1.0, -1e16, 1.0}), 0.25);   // the first 1 is lost in that order
+    EXPECT_EQ(mean_of(std::vector{1e16, 1.0, -1e16, 1.0}), 0.25);  // the first 1 is lost in that order
     EXPECT_TRUE(std::isnan(mean_of({})));
 }
 
@@ -42,7 +42,8 @@ TEST(Median, IsTheMiddleOrTheMeanOfTheMiddleTwo) {
 }
 
 TEST(Median, TheUpperOneIsOneOfTheValues) {
-    for (const auto& [values, middle] : std::vector<std::pair<std::vector<double>, double>>{{{3.0, 1.0, 2.0}, 2.0}, {{4.0, 1.0, 3.0, 2.0}, 3.0}, {{7.0}, 7.0}}) {
+    for (const auto& [values, middle] :
+         std::vector<std::pair<std::vector<double>, double>>{{{3.0, 1.0, 2.0}, 2.0}, {{4.0, 1.0, 3.0, 2.0}, 3.0}, {{7.0}, 7.0}}) {
         std::vector<double> own = values;
         EXPECT_EQ(upper_median(own), middle);
     }

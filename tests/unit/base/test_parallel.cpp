@@ -33,7 +33,7 @@ TEST(Team, GrowsBetweenTwoRuns) {
         EXPECT_GE(team.size(), threads);
         for (int round = 0; round < 20; ++round) expect_all_done(team);
     }
-    EXPECT_EQ(team.size(), 5);   // it never shrinks
+    EXPECT_EQ(team.size(), 5);  // it never shrinks
 }
 
 TEST(Team, MayGrowWithoutEverRunning) {
@@ -60,7 +60,7 @@ TEST(SideBySide, ThrowsWhatTheFirstInOrderThrew) {
             side_by_side(1000, threads, [&](int i) {
                 ++begun;
                 if (i == 3) {
-                    while (threads > 1 && !later_failed) std::this_thread::yield();   // it fails last in time
+                    while (threads > 1 && !later_failed) std::this_thread::yield();  // it fails last in time
                     throw std::runtime_error("3");
                 }
                 if (i > 3) {
@@ -72,7 +72,7 @@ TEST(SideBySide, ThrowsWhatTheFirstInOrderThrew) {
             message = error.what();
         }
         EXPECT_EQ(message, "3") << threads;
-        EXPECT_LT(begun, 20);   // the rest was not begun
+        EXPECT_LT(begun, 20);  // the rest was not begun
     }
 }
 

@@ -1,11 +1,11 @@
 // States are written and read back to the bit, in few bytes; what is damaged is never taken.
-#include "feldspar/base/state_archive.hpp"
+#include <gtest/gtest.h>
 
 #include <random>
 #include <string>
 #include <unordered_map>
 
-#include <gtest/gtest.h>
+#include "feldspar/base/state_archive.hpp"
 
 namespace feldspar {
 namespace {
@@ -49,8 +49,9 @@ struct Everything {
     std::shared_ptr<const Flat> first, second, nobody;
 
     bool same_as(const Everything& o) const {
-        return number == o.number && colour == o.colour && text == o.text && dense == o.dense && flats == o.flats && texts == o.texts && pair == o.pair && maybe == o.maybe &&
-               none == o.none && hidden == o.hidden && *first == *o.first && first == second && o.first == o.second && nobody == o.nobody;
+        return number == o.number && colour == o.colour && text == o.text && dense == o.dense && flats == o.flats &&
+               texts == o.texts && pair == o.pair && maybe == o.maybe && none == o.none && hidden == o.hidden &&
+               *first == *o.first && first == second && o.first == o.second && nobody == o.nobody;
     }
 };
 
@@ -83,7 +84,7 @@ TEST(StateArchive, GivesBackWhatWasWritten) {
     const Everything value = some(1);
     const StateBase nothing;
     const std::string bytes = written(value, nothing);
-    Everything read = some(2);   // whatever was there goes
+    Everything read = some(2);  // whatever was there goes
     StateReader reader(bytes);
     reader.read(read);
     EXPECT_TRUE(reader.at_end());
@@ -96,7 +97,7 @@ TEST(StateArchive, WhatIsAsInTheBaseStateTakesNoSpace) {
     Everything value = base_value;
     value.flats[500].count += 1;
     const std::string bytes = written(value, base);
-    EXPECT_LT(bytes.size(), 1003 * sizeof(int) + 1000);   // one column of the flats, and checksums
+    EXPECT_LT(bytes.size(), 1003 * sizeof(int) + 1000);  // one column of the flats, and checksums
     Everything read = base_value;
     StateReader reader(bytes);
     reader.read(read);
@@ -120,9 +121,11 @@ TEST(StateArchive, DamageIsAnErrorOrAnotherState) {
     int refused = 0;
     for (int trial = 0; trial < 3000; ++trial) {
         std::string bytes = good;
-        if (trial % 3 == 0) bytes.resize(random() % bytes.size());
+        if (trial % 3 == 0)
+            bytes.resize(random() % bytes.size());
         else
-            for (int k = 0; k < 1 + trial % 4; ++k) bytes[random() % (trial % 2 == 0 ? 200 : bytes.size())] = static_cast<char>(random());
+            for (int k = 0; k < 1 + trial % 4; ++k)
+                bytes[random() % (trial % 2 == 0 ? 200 : bytes.size())] = static_cast<char>(random());
         Everything read;
         try {
             StateReader reader(bytes);

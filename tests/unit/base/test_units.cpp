@@ -202,7 +202,10 @@ TEST(Units, RubbishNeverCrashes) {
 
 TEST(Printable, ShowsControlCharactersEscaped) {
     EXPECT_EQ(printable("a \x1b[31mred\x7f\r"), "a \\x1b[31mred\\x7f\\x0d");
-    EXPECT_EQ(printable("\xc2\x9b" "31m"), "\\x9b" "31m");
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "31m"),
+              "\\x9b"
+              "31m");
     EXPECT_EQ(printable("Größe, σ\n\tµm"), "Größe, σ\n\tµm");
     EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
     EXPECT_EQ(printable("one\r\ntwo\rthree"), "one\r\ntwo\\x0dthree");

@@ -1,7 +1,7 @@
 // That the calibration runs, on this machine and on several threads; how fast is its own affair.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "benchmarks/calibration.hpp"
 

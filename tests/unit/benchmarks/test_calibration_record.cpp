@@ -1,8 +1,8 @@
 // The record keeps the best of all runs, processor by processor, and never stands in the way.
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
-
-#include <gtest/gtest.h>
 
 #include "benchmarks/calibration_record.hpp"
 

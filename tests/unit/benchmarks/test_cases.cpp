@@ -1,8 +1,8 @@
 // The list of cases: names that are unique, filters, goals that belong to a case.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <set>
-
-#include <gtest/gtest.h>
 
 #include "benchmarks/cases.hpp"
 #include "benchmarks/goals.hpp"
@@ -41,8 +41,9 @@ TEST(Cases, OfOneSpecimenStandTogether) {
 TEST(Cases, CoverEveryKindOfGrainAndLoadOnThePaperSize) {
     const auto quick = names(make_cases(false, {1, 2}));
     for (const char* grains : {"flexible", "rigid", "inner-particles"}) {
-        for (const char* rest : {"/uniaxial/paper/elastic/step/1t", "/uniaxial/paper/elastic/step/2t", "/uniaxial/paper/elastic/contacts/1t",
-                                 "/uniaxial/paper/elastic/bodies/2t", "/uniaxial/paper/breaking/step/1t", "/brazilian/paper/elastic/step/2t"})
+        for (const char* rest :
+             {"/uniaxial/paper/elastic/step/1t", "/uniaxial/paper/elastic/step/2t", "/uniaxial/paper/elastic/contacts/1t",
+              "/uniaxial/paper/elastic/bodies/2t", "/uniaxial/paper/breaking/step/1t", "/brazilian/paper/elastic/step/2t"})
             EXPECT_EQ(quick.count(grains + std::string(rest)), 1u) << grains << rest;
     }
 }
@@ -58,7 +59,8 @@ TEST(Filter, IsARegularExpressionThatMayFindAnyPart) {
 }
 
 TEST(Sizes, GrowWithTheRootOfTheGrains) {
-    const SpecimenChoice paper{GrainKind::rigid, Load::uniaxial, Size::paper}, large{GrainKind::rigid, Load::uniaxial, Size::grains_100k};
+    const SpecimenChoice paper{GrainKind::rigid, Load::uniaxial, Size::paper},
+        large{GrainKind::rigid, Load::uniaxial, Size::grains_100k};
     EXPECT_DOUBLE_EQ(length_scale(paper), 1.0);
     EXPECT_NEAR(length_scale(large) * length_scale(large) * grain_count(paper), 100000.0, 1e-6);
     EXPECT_LT(needed_memory(paper), needed_memory(large));

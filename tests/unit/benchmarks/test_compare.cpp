@@ -56,7 +56,7 @@ TEST(Compare, DoesNotTrustAnotherSpecimen) {
     Reading smaller = sample_reading("a", 2.0);
     smaller.counts.points -= 1;
     EXPECT_FALSE(compare(report_of({sample_reading("a", 1.0)}), report_of({smaller})).changes[0].slower());
-    Reading layout = sample_reading("a", 2.0);   // other numbers of nodes and bytes are another layout of the same work
+    Reading layout = sample_reading("a", 2.0);  // other numbers of nodes and bytes are another layout of the same work
     layout.counts.nodes += 8;
     layout.counts.memory_bytes *= 2.0;
     EXPECT_TRUE(compare(report_of({sample_reading("a", 1.0)}), report_of({layout})).changes[0].slower());
@@ -76,13 +76,14 @@ TEST(Compare, SaysWhatElseDiffers) {
     after.machine.processor = "another";
     after.machine.build_type = "Debug";
     after.best[1] = 70.0;
-    after.machine.commit = "def";   // that is what is compared
+    after.machine.commit = "def";  // that is what is compared
     EXPECT_EQ(compare(before, after).differences.size(), 3u);
 }
 
 TEST(ComparisonTable, MarksWhatBecameSlower) {
-    const std::string table = comparison_table(compare(report_of({sample_reading("a", 1.0), sample_reading("b", 1.0), sample_reading("c", 1.0)}),
-                                                       report_of({sample_reading("a", 1.2), sample_reading("b", 1.2, 60.0), sample_reading("c", 1.0)})));
+    const std::string table = comparison_table(
+        compare(report_of({sample_reading("a", 1.0), sample_reading("b", 1.0), sample_reading("c", 1.0)}),
+                report_of({sample_reading("a", 1.2), sample_reading("b", 1.2, 60.0), sample_reading("c", 1.0)})));
     EXPECT_NE(table.find("1.200  SLOWER\n"), std::string::npos) << table;
     EXPECT_NE(table.find("1.200  disturbed\n"), std::string::npos) << table;
     EXPECT_NE(table.find("1.000\n"), std::string::npos) << table;

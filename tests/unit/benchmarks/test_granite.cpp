@@ -1,14 +1,14 @@
 // The specimens of the benchmark, small: every stage runs in every state, does its work and leaves the state as it was.
-#include <filesystem>
-
 #include <gtest/gtest.h>
+
+#include <filesystem>
 
 #include "benchmarks/granite.hpp"
 
 namespace feldspar::benchmarks {
 namespace {
 
-constexpr double kSmall = 0.25;   // a sixteenth of the paper's grains
+constexpr double kSmall = 0.25;  // a sixteenth of the paper's grains
 
 class EveryGranite : public testing::TestWithParam<std::tuple<GrainKind, Load>> {};
 
@@ -31,7 +31,8 @@ TEST_P(EveryGranite, RunsEveryStageInEveryState) {
             EXPECT_EQ(after.softened, before.softened) << name(state);
             EXPECT_EQ(after.broken, before.broken) << name(state);
             Counts then = granite.counts();
-            EXPECT_NEAR(then.memory_bytes, counts.memory_bytes, 1e-3 * counts.memory_bytes);   // a state that was copied has no spare room
+            EXPECT_NEAR(then.memory_bytes, counts.memory_bytes,
+                        1e-3 * counts.memory_bytes);  // a state that was copied has no spare room
             then.memory_bytes = counts.memory_bytes;
             EXPECT_EQ(then, counts);
         }
@@ -48,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryGranite,
 TEST(BreakingGranite, HasTheSharesOfDamageThatItSays) {
     Granite granite(GrainKind::flexible, Load::uniaxial, 0.5, {});
     granite.set(State::breaking);
-    const double points = static_cast<double>(granite.counts().points);   // flexible grains between rows of nodes: all are bonds
+    const double points = static_cast<double>(granite.counts().points);  // flexible grains between rows of nodes: all are bonds
     EXPECT_NEAR(static_cast<double>(granite.damage().softened) / points, 0.30, 0.03);
     EXPECT_NEAR(static_cast<double>(granite.damage().broken) / points, 0.10, 0.02);
     granite.set(State::elastic);

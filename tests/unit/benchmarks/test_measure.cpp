@@ -16,7 +16,7 @@ struct Work {
     }
 };
 
-double never() { return 0.0; }   // a thread has to wait for a core
+double never() { return 0.0; }  // a thread has to wait for a core
 
 MeasureSettings short_blocks() {
     MeasureSettings settings;
@@ -52,7 +52,11 @@ TEST(Measure, RepeatsDisturbedBlocks) {
     int calls = 0;
     Work work;
     // The third and fourth calibration are low: they spoil the blocks 2, 3 and 4.
-    const auto blocks = measure([&](int n) { work(n); }, [&] { return Rates{++calls == 3 || calls == 4 ? 40.0 : 100.0, 20.0}; }, never, 2, short_blocks(), best);
+    const auto blocks = measure([&](int n) { work(n); },
+                                [&] {
+                                    return Rates{++calls == 3 || calls == 4 ? 40.0 : 100.0, 20.0};
+                                },
+                                never, 2, short_blocks(), best);
     EXPECT_EQ(blocks.size(), 7u);
     EXPECT_DOUBLE_EQ(blocks[1].after.multiply_add, 40.0);
     EXPECT_DOUBLE_EQ(blocks[2].before.multiply_add, 40.0);
@@ -63,8 +67,11 @@ TEST(Measure, RepeatsBlocksThatHadToWaitForACore) {
     int calls = 0;
     Work work;
     // Two calls a block, and some before in the warm-up; every second block waits for ever.
-    const auto blocks = measure([&](int n) { work(n); }, [] { return Rates{100.0, 20.0}; }, [&] { return ++calls % 4 == 0 ? waited += 1000.0 : waited; }, 2,
-                                short_blocks(), best);
+    const auto blocks = measure([&](int n) { work(n); },
+                                [] {
+                                    return Rates{100.0, 20.0};
+                                },
+                                [&] { return ++calls % 4 == 0 ? waited += 1000.0 : waited; }, 2, short_blocks(), best);
     EXPECT_GE(blocks.size(), 7u);
     EXPECT_LE(blocks.size(), 8u);
 }
@@ -73,7 +80,11 @@ TEST(Measure, LearnsABetterCalibrationAndCountsAnew) {
     double best = 80.0;
     int calls = 0;
     Work work;
-    const auto blocks = measure([&](int n) { work(n); }, [&] { return Rates{++calls <= 3 ? 80.0 : 100.0, 20.0}; }, never, 2, short_blocks(), best);
+    const auto blocks = measure([&](int n) { work(n); },
+                                [&] {
+                                    return Rates{++calls <= 3 ? 80.0 : 100.0, 20.0};
+                                },
+                                never, 2, short_blocks(), best);
     EXPECT_DOUBLE_EQ(best, 100.0);
     EXPECT_EQ(blocks.size(), 7u) << "two blocks at 80, one that ends at 100, four at 100";
 }

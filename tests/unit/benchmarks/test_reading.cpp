@@ -1,7 +1,7 @@
 // What counts as undisturbed, and the numbers that are made of blocks.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "sample_report.hpp"
 
@@ -31,7 +31,7 @@ TEST(QuietBlock, NeedsBothCalibrationsNearTheBest) {
 
 TEST(QuietBlock, OfOneThreadMustHaveComputedAllTheTime) {
     Block block = sample_block(1.0);
-    block.cpu_s = 0.8 * block.wall_s;   // somebody else had the core for a while, and calibrations on both sides did not see it
+    block.cpu_s = 0.8 * block.wall_s;  // somebody else had the core for a while, and calibrations on both sides did not see it
     EXPECT_FALSE(is_quiet(block, 1, 100.0, kRule));
     EXPECT_TRUE(is_quiet(block, 2, 100.0, kRule)) << "a thread that waits for another may sleep";
 }
@@ -48,7 +48,8 @@ TEST(QuietBlock, HadItsCoresAllTheTime) {
 
 TEST(Summary, TakesBestAndMedianOfTheUndisturbedBlocks) {
     Reading reading = sample_reading("a", 0.5);
-    reading.blocks.push_back(sample_block(0.1, 50.0));   // faster than the others, which its calibration does not explain: not counted
+    reading.blocks.push_back(
+        sample_block(0.1, 50.0));  // faster than the others, which its calibration does not explain: not counted
     const Summary summary = summarise(reading, {{1, 100.0}}, kRule);
     EXPECT_DOUBLE_EQ(summary.best_s, 0.5e-3);
     EXPECT_DOUBLE_EQ(summary.median_s, 0.55e-3);
@@ -67,7 +68,7 @@ TEST(Summary, HasTheMedianOfTheSlowerMemoryRates) {
 
 TEST(Summary, IsMarkedWithTooFewUndisturbedBlocks) {
     Reading reading = sample_reading("a", 0.5);
-    reading.blocks[1].after.multiply_add = 60.0;   // the fastest
+    reading.blocks[1].after.multiply_add = 60.0;  // the fastest
     const Summary summary = summarise(reading, {{1, 100.0}}, kRule);
     EXPECT_TRUE(summary.disturbed);
     EXPECT_EQ(summary.quiet_blocks, 2);

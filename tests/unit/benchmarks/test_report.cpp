@@ -1,8 +1,8 @@
 // Reports are kept as JSON and read back; what is no report is refused.
+#include <gtest/gtest.h>
+
 #include <filesystem>
 #include <fstream>
-
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/table.hpp"
@@ -41,7 +41,7 @@ void expect_same(const Report& a, const Report& b) {
 
 TEST(Report, ComesBackFromItsJson) {
     Report report = sample_report();
-    report.readings[0].blocks[0].wall_s = 0.1 / 3.0;   // every digit
+    report.readings[0].blocks[0].wall_s = 0.1 / 3.0;  // every digit
     report.readings[0].blocks[0].waited_s = 0.001;
     report.readings[0].blocks[1].before = {.multiply_add = 1.0, .memory = 2.0};
     report.readings[0].blocks[1].after = {.multiply_add = 3.0, .memory = 4.0};

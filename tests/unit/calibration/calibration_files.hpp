@@ -52,7 +52,9 @@ class CalibrationFolder : public TemporaryFolder {
 public:
     CalibrationFolder() { write("rock.toml", rock_job); }
 
-    Calibration read(const std::string& text) const { return parse_calibration("job = \"rock.toml\"\n" + text, path() / "targets.toml"); }
+    Calibration read(const std::string& text) const {
+        return parse_calibration("job = \"rock.toml\"\n" + text, path() / "targets.toml");
+    }
 };
 
 }  // namespace feldspar

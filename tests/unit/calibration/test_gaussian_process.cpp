@@ -11,7 +11,9 @@
 namespace feldspar {
 namespace {
 
-double smooth(const std::vector<double>& x) { return 2.0 + 1.5 * x[0] - 0.8 * x[1] + 0.6 * x[0] * x[1] + 0.2 * std::sin(3.0 * x[1]); }
+double smooth(const std::vector<double>& x) {
+    return 2.0 + 1.5 * x[0] - 0.8 * x[1] + 0.6 * x[0] * x[1] + 0.2 * std::sin(3.0 * x[1]);
+}
 
 TEST(GaussianProcess, RecoversASmoothFunction) {
     std::vector<Observation> seen;
@@ -23,7 +25,7 @@ TEST(GaussianProcess, RecoversASmoothFunction) {
         largest = std::max(largest, std::abs(belief.mean - smooth(x)));
         EXPECT_LT(std::abs(belief.mean - smooth(x)), 5.0 * std::sqrt(belief.variance) + 1e-3);
     }
-    EXPECT_LT(largest, 0.02);   // a percent of the function's range
+    EXPECT_LT(largest, 0.02);  // a percent of the function's range
     EXPECT_LT(process.noise_variance(), 1e-3);
     EXPECT_LT(process.packing_variance(), 1e-3);
 }
@@ -82,14 +84,16 @@ TEST(Search, PointsFillTheCubeEvenly) {
             EXPECT_LT(x[axis], 1.0);
             lower += x[axis] < 0.5;
         }
-        EXPECT_NEAR(lower, 32, 2);   // a Sobol sequence is balanced but for its first point
+        EXPECT_NEAR(lower, 32, 2);  // a Sobol sequence is balanced but for its first point
     }
 }
 
 // Known all over, and met: what a run could still show lies where the target is met, not at whatever candidate comes first.
 TEST(Search, RunsAreMadeOnlyWhereTheyPromiseSomething) {
     const Observable strength{"UCS", methods::uniaxial_compression, 0.0, "strength_Pa"};
-    const auto truth = [](const std::vector<double>& x) { return 1e8 * std::exp(2.0 * x[0] - x[1] + 0.3 * std::sin(5.0 * x[1])); };
+    const auto truth = [](const std::vector<double>& x) {
+        return 1e8 * std::exp(2.0 * x[0] - x[1] + 0.3 * std::sin(5.0 * x[1]));
+    };
     Target target;
     target.name = "UCS";
     target.value = truth({0.4, 0.6});
@@ -102,7 +106,8 @@ TEST(Search, RunsAreMadeOnlyWhereTheyPromiseSomething) {
     }
     ASSERT_TRUE(learner.learn());
     for (std::size_t round = 0; round < 4; ++round)
-        for (const auto& x : promising_points(learner, 2, 3, round)) EXPECT_NEAR(truth(x), target.value, 4.0 * target.tolerance) << round;
+        for (const auto& x : promising_points(learner, 2, 3, round))
+            EXPECT_NEAR(truth(x), target.value, 4.0 * target.tolerance) << round;
 }
 
 // What ended at a bound is taken for what the rest says, and for the bound where the rest says less.
@@ -116,8 +121,8 @@ TEST(Learner, BoundsHoldWhatIsLearnedUpAndNotDown) {
         below.observe(0, {x}, static_cast<std::uint64_t>(i % 4), {1e8});
     }
     for (const double x : {0.8, 0.9, 1.0}) {
-        above.observe(0, {x}, 1, {2e8, Says::at_least});   // the truth is 5 to 7 e8
-        below.observe(0, {x}, 1, {2e8, Says::at_least});   // the rest would say 1e8
+        above.observe(0, {x}, 1, {2e8, Says::at_least});  // the truth is 5 to 7 e8
+        below.observe(0, {x}, 1, {2e8, Says::at_least});  // the rest would say 1e8
     }
     ASSERT_TRUE(above.learn());
     ASSERT_TRUE(below.learn());
@@ -138,9 +143,12 @@ TEST(Search, OfEquallyGoodSetsTheBestKnownIsChosen) {
     target.value = 1e8;
     target.tolerance = 0.02e8;
     Learner learner({strength}, {target});
-    const auto truth = [](double x) { return 1e8 * std::exp(8.0 * (x - 0.2) * (x - 0.8)); };   // met at 0.2 and at 0.8
-    for (int i = 0; i < 12; ++i) learner.observe(0, {0.5 * i / 11.0}, static_cast<std::uint64_t>(i % 4), {truth(0.5 * i / 11.0) * (1.0 + 0.01 * (i % 3 - 1))});
-    for (int i = 0; i < 12; ++i) learner.observe(0, {0.2}, static_cast<std::uint64_t>(i % 4), {truth(0.2) * (1.0 + 0.01 * (i % 3 - 1))});
+    const auto truth = [](double x) { return 1e8 * std::exp(8.0 * (x - 0.2) * (x - 0.8)); };  // met at 0.2 and at 0.8
+    for (int i = 0; i < 12; ++i)
+        learner.observe(0, {0.5 * i / 11.0}, static_cast<std::uint64_t>(i % 4),
+                        {truth(0.5 * i / 11.0) * (1.0 + 0.01 * (i % 3 - 1))});
+    for (int i = 0; i < 12; ++i)
+        learner.observe(0, {0.2}, static_cast<std::uint64_t>(i % 4), {truth(0.2) * (1.0 + 0.01 * (i % 3 - 1))});
     learner.observe(0, {0.95}, 1, {truth(0.95)});
     ASSERT_TRUE(learner.learn());
     EXPECT_NEAR(best_point(learner, 1, {0.8})[0], 0.2, 0.03);

@@ -1,5 +1,6 @@
-// Is what a calibration says of itself true? Laboratories made of formulas with a known scatter: how often the mean lies in the interval that was
-// stated, how often a search that ends because it is sure is confirmed, and what tests that are not quasi-static do to an answer.
+// Is what a calibration says of itself true? Laboratories made of formulas with a known scatter: how often the mean lies in the
+// interval that was stated, how often a search that ends because it is sure is confirmed, and what tests that are not
+// quasi-static do to an answer.
 #include <gtest/gtest.h>
 
 #include <boost/random/mersenne_twister.hpp>
@@ -26,15 +27,18 @@ double draw(std::uint64_t a, std::uint64_t b, std::uint64_t c = 0) {
     return normal(engine);
 }
 
-// A packing's own effect on a strength: one part is the same for all parameters, one changes slowly with them, one with the order of cracks.
+// A packing's own effect on a strength: one part is the same for all parameters, one changes slowly with them, one with the order
+// of cracks.
 struct Scatter {
-    double packing, changing, noise;   // of the logarithm
+    double packing, changing, noise;  // of the logarithm
     std::uint64_t world;
 
     double at(double x, std::uint64_t seed, std::uint64_t quantity, std::uint64_t run) const {
         const std::uint64_t which = 100 * world + quantity;
         const double phase = 3.0 * draw(which, seed, 2);
-        return packing * draw(which, seed, 1) + changing * std::sqrt(2.0) * std::cos(3.0 * x + phase) * (draw(which, seed, 3) > 0.0 ? 1.0 : -1.0) + noise * draw(which, seed, 10 + run);
+        return packing * draw(which, seed, 1) +
+               changing * std::sqrt(2.0) * std::cos(3.0 * x + phase) * (draw(which, seed, 3) > 0.0 ? 1.0 : -1.0) +
+               noise * draw(which, seed, 10 + run);
     }
 };
 
@@ -47,7 +51,8 @@ public:
         std::vector<std::vector<RunReading>> readings;
         for (const Request& request : requests) {
             const double x = std::log(request.values[0]);
-            RunReading reading{median(request.values[0]) * std::exp(scatter_.at(x, request.seed, 1, static_cast<std::uint64_t>(++used_)))};
+            RunReading reading{median(request.values[0]) *
+                               std::exp(scatter_.at(x, request.seed, 1, static_cast<std::uint64_t>(++used_)))};
             reading.grade = 'A';
             const bool too_fast = request.whole ? request.seed < first_good : every_too_fast > 0 && used_ % every_too_fast == 0;
             if (too_fast) {
@@ -68,11 +73,11 @@ public:
         return median(sigma_nt_MPa) * std::exp(0.5 * (s.packing * s.packing + s.changing * s.changing + s.noise * s.noise));
     }
 
-    int every_too_fast = 0;            // every so many-th test to learn from is not quasi-static
+    int every_too_fast = 0;  // every so many-th test to learn from is not quasi-static
     double too_high = 1.6;
-    bool graded = true;                // and known not to be
-    std::uint64_t first_good = 0;      // of the confirming packings: those before are not
-    std::set<std::uint64_t> failing;   // packings
+    bool graded = true;               // and known not to be
+    std::uint64_t first_good = 0;     // of the confirming packings: those before are not
+    std::set<std::uint64_t> failing;  // packings
 
 private:
     Scatter scatter_;
@@ -82,7 +87,9 @@ private:
 class TrueDoubt : public ::testing::Test {
 protected:
     Calibration read(const std::string& tolerance = "10 %", int budget = 60) const {
-        return folder_.read("budget = " + std::to_string(budget) + "\nseeds = [1, 2, 3, 4, 5, 6, 7, 8]\n[targets]\nBTS = { value = \"10 MPa\", tolerance = \"" + tolerance +
+        return folder_.read("budget = " + std::to_string(budget) +
+                            "\nseeds = [1, 2, 3, 4, 5, 6, 7, 8]\n[targets]\nBTS = { value = \"10 MPa\", tolerance = \"" +
+                            tolerance +
                             "\" }\n[[unknown]]\nkey = \"material.contact.sigma_nt\"\nrange = [\"4 MPa\", \"25 MPa\"]\n");
     }
     CalibrationFolder folder_;
@@ -100,7 +107,9 @@ TEST_F(TrueDoubt, StatedIntervalsHoldAndSureSearchesAreConfirmed) {
         held += std::abs(outcome.predicted - laboratory.mean(result.unknowns.front().best)) <= 1.96 * outcome.deviation;
         foreseen += outcome.foreseen.low <= outcome.confirmed.mean && outcome.confirmed.mean <= outcome.foreseen.high;
         const bool ended_sure = result.way.back().probability >= 0.95;
-        if (!ended_sure) { EXPECT_GE(result.runs, calibration.budget - 1) << rock; }   // else the budget is used
+        if (!ended_sure) {
+            EXPECT_GE(result.runs, calibration.budget - 1) << rock;
+        }  // else the budget is used
         sure += ended_sure;
         sure_and_met += ended_sure && outcome.met;
         EXPECT_EQ(outcome.met, outcome.missed.empty());
@@ -115,7 +124,8 @@ TEST_F(TrueDoubt, StatedIntervalsHoldAndSureSearchesAreConfirmed) {
     RecordProperty("sure_and_met", sure_and_met);
 }
 
-// Packings that scatter by 30 % cannot promise 5 %: predicted in the middle of the tolerance, but nothing is promised, and the sentence says why.
+// Packings that scatter by 30 % cannot promise 5 %: predicted in the middle of the tolerance, but nothing is promised, and the
+// sentence says why.
 TEST_F(TrueDoubt, ScatterBeyondTheToleranceIsNotPromised) {
     const Calibration calibration = read("5 %");
     int missed_by_scatter = 0, missed = 0;
@@ -147,14 +157,14 @@ TEST_F(TrueDoubt, TestsThatAreNotQuasiStaticDoNotPullTheAnswer) {
             (graded ? with_grade : without) += laboratory.mean(result.unknowns.front().best) / 10e6 / rocks;
             EXPECT_GE(result.grade_C, 2);
         }
-    EXPECT_NEAR(with_grade, 1.0, 0.02);   // eight packings of 4 % leave 1.4 % to one rock, 0.6 % to the mean of six
-    EXPECT_LT(without, 0.92);             // a third of the tests 60 % too high: the answer is too weak
+    EXPECT_NEAR(with_grade, 1.0, 0.02);  // eight packings of 4 % leave 1.4 % to one rock, 0.6 % to the mean of six
+    EXPECT_LT(without, 0.92);            // a third of the tests 60 % too high: the answer is too weak
 }
 
 TEST_F(TrueDoubt, TestsThatFailOrHaveGradeCAreLeftOutSingly) {
     SyntheticLaboratory laboratory({0.02, 0.02, 0.01, 3});
-    laboratory.first_good = 1003;           // 1001, 1002: grade C
-    laboratory.failing = {1005, 2};         // one that confirms, one to learn from
+    laboratory.first_good = 1003;    // 1001, 1002: grade C
+    laboratory.failing = {1005, 2};  // one that confirms, one to learn from
     const CalibrationResult result = calibrate(read(), laboratory, {});
     const TargetOutcome& outcome = result.targets.front();
     EXPECT_EQ(outcome.grades.A, 7);
@@ -187,10 +197,13 @@ TEST_F(TrueDoubt, NothingButGradeCIsNothingToLearnFrom) {
 
 TEST_F(TrueDoubt, AnAnswerAtTheEndOfARangeIsTheReason) {
     SyntheticLaboratory laboratory({0.02, 0.02, 0.01, 3});
-    const Calibration calibration = folder_.read("budget = 60\nseeds = [1, 2, 3, 4]\n[targets]\nBTS = \"10 MPa\"\n[[unknown]]\nkey = \"material.contact.sigma_nt\"\nrange = [\"4 MPa\", \"8 MPa\"]\n");
+    const Calibration calibration = folder_.read(
+        "budget = 60\nseeds = [1, 2, 3, 4]\n[targets]\nBTS = \"10 MPa\"\n[[unknown]]\nkey = \"material.contact.sigma_nt\"\nrange "
+        "= [\"4 MPa\", \"8 MPa\"]\n");
     const CalibrationResult result = calibrate(calibration, laboratory, {});
     EXPECT_EQ(result.targets.front().miss, Miss::range_end) << result.targets.front().missed;
-    EXPECT_NE(result.targets.front().missed.find("sigma_nt stands at the upper end of its range, 8 MPa"), std::string::npos) << result.targets.front().missed;
+    EXPECT_NE(result.targets.front().missed.find("sigma_nt stands at the upper end of its range, 8 MPa"), std::string::npos)
+        << result.targets.front().missed;
     EXPECT_NE(calibration_text(result).find(result.targets.front().missed), std::string::npos);
 }
 
@@ -229,10 +242,14 @@ TEST_F(TrueDoubt, EachReasonOfAMissHasItsSentence) {
         EXPECT_TRUE(sentence.ends_with(".")) << sentence;
     };
     const auto first = [](CalibrationResult& result) -> TargetOutcome& { return result.targets.front(); };
-    check(Miss::scatter, "BTS is missed: 12 MPa for 10 MPa, 2 tolerances too high; the reason is the scatter of packings: the mean of 10 is known to ± 2 MPa", [](CalibrationResult&) {});
-    check(Miss::scatter, "take 121 confirm_seeds", [](CalibrationResult&) {});   // (2 x 1.96 x 2.8)^2
+    check(Miss::scatter,
+          "BTS is missed: 12 MPa for 10 MPa, 2 tolerances too high; the reason is the scatter of packings: the mean of 10 is "
+          "known to ± 2 MPa",
+          [](CalibrationResult&) {});
+    check(Miss::scatter, "take 121 confirm_seeds", [](CalibrationResult&) {});  // (2 x 1.96 x 2.8)^2
     check(Miss::grade, "numerics.accuracy", [&](CalibrationResult& r) { first(r).foreseen.grade = 1.2e6; });
-    check(Miss::prediction, "give more seeds and a larger budget", [&](CalibrationResult& r) { first(r).foreseen.doubt = 1.2e6; });
+    check(Miss::prediction, "give more seeds and a larger budget",
+          [&](CalibrationResult& r) { first(r).foreseen.doubt = 1.2e6; });
     check(Miss::prediction, "it said 10 MPa to 11 MPa", [&](CalibrationResult& r) {
         first(r).foreseen.low = 10e6;
         first(r).foreseen.high = 11e6;
@@ -247,7 +264,7 @@ TEST_F(TrueDoubt, EachReasonOfAMissHasItsSentence) {
         r.unknowns.front().best = 4.0;
         r.unknowns.front().at_an_end = true;
     });
-    check(Miss::conflict, "give way", [&](CalibrationResult& r) {   // at the upper end: a wider range would make it worse
+    check(Miss::conflict, "give way", [&](CalibrationResult& r) {  // at the upper end: a wider range would make it worse
         first(r).foreseen.value = 12e6;
         first(r).lowest = 11.5e6;
         r.unknowns.front().best = 25.0;
@@ -271,7 +288,7 @@ TEST(GaussianProcess, RepeatsOnTheSamePackingsLeaveTheDoubtThatPackingsMake) {
     };
     const double doubt = doubt_after(6);
     RecordProperty("doubt_in_thousandths", static_cast<int>(1000.0 * doubt));
-    EXPECT_GT(doubt, 0.03);    // eight packings of 10 %: 0.035; with repeats taken for news it is 0.027
+    EXPECT_GT(doubt, 0.03);  // eight packings of 10 %: 0.035; with repeats taken for news it is 0.027
     EXPECT_LT(doubt, 0.08);
 }
 
@@ -279,7 +296,8 @@ TEST(GaussianProcess, RepeatsOnTheSamePackingsLeaveTheDoubtThatPackingsMake) {
 TEST(GaussianProcess, AnObservationsOwnVarianceIsItsWeight) {
     const auto level = [](double variance) {
         std::vector<Observation> seen;
-        for (int i = 0; i < 12; ++i) seen.push_back({{(i + 0.5) / 12.0}, static_cast<std::uint64_t>(i % 4), 1.0 + 0.01 * (i % 3 - 1), 0.0});
+        for (int i = 0; i < 12; ++i)
+            seen.push_back({{(i + 0.5) / 12.0}, static_cast<std::uint64_t>(i % 4), 1.0 + 0.01 * (i % 3 - 1), 0.0});
         seen.push_back({{0.5}, 5, 1.3, variance});
         return GaussianProcess(seen).at({0.5}).mean;
     };
@@ -292,7 +310,8 @@ TEST(Learner, UpperBoundsHoldDownAndNotUp) {
     Learner high({strength}, {Target{"UCS", 0.0, 1e8, 1e6}}), low = high;
     for (int i = 0; i < 10; ++i) {
         const double x = 0.06 * i;
-        for (Learner* learner : {&high, &low}) learner->observe(0, {x}, static_cast<std::uint64_t>(i % 4), {1e8 * std::exp(0.5 * x) * (1.0 + 0.01 * (i % 3 - 1))});
+        for (Learner* learner : {&high, &low})
+            learner->observe(0, {x}, static_cast<std::uint64_t>(i % 4), {1e8 * std::exp(0.5 * x) * (1.0 + 0.01 * (i % 3 - 1))});
     }
     high.observe(0, {0.3}, 7, {3e8, Says::at_most});   // the rest says 1.16e8: nothing new
     low.observe(0, {1.0}, 7, {1.2e8, Says::at_most});  // the rest would say 1.65e8
@@ -308,27 +327,30 @@ TEST(Learner, UpperBoundsHoldDownAndNotUp) {
 }
 
 TEST(Readings, FollowFromTheGradeOfTheRun) {
-    const Observable strength{"BTS", methods::brazilian, 0.0, strength_column}, E{"E", methods::uniaxial_compression, 0.0, "E_Pa"};
+    const Observable strength{"BTS", methods::brazilian, 0.0, strength_column},
+        E{"E", methods::uniaxial_compression, 0.0, "E_Pa"};
     RunRecord record;
     record.state = RunState::done;
-    record.numbers = {{strength_column, 10e6}, {"peak_reached", 1.0}, {"error_estimate", 0.01645}, {"E_Pa", 25e9}, {"E_initial_Pa", 26e9}};
+    record.numbers = {
+        {strength_column, 10e6}, {"peak_reached", 1.0}, {"error_estimate", 0.01645}, {"E_Pa", 25e9}, {"E_initial_Pa", 26e9}};
     record.texts["grade"] = "B";
     RunReading reading = reading_of(record, strength, false, false);
     EXPECT_TRUE(reading.is_value());
-    EXPECT_NEAR(reading.error, 0.02, 1e-12);   // twice the estimate covers nine tests in ten: 1.645 standard deviations
+    EXPECT_NEAR(reading.error, 0.02, 1e-12);  // twice the estimate covers nine tests in ten: 1.645 standard deviations
     EXPECT_EQ(reading_of(record, E, false, false).error, 0.0);
 
     record.numbers["peak_reached"] = 0.0;
     EXPECT_EQ(reading_of(record, strength, false, false).says, Says::at_least);
     record.texts["grade"] = "C";
-    EXPECT_TRUE(std::isnan(reading_of(record, strength, false, false).value));   // neither bound
+    EXPECT_TRUE(std::isnan(reading_of(record, strength, false, false).value));  // neither bound
     record.numbers["peak_reached"] = 1.0;
     record.numbers["error_estimate"] = 0.06;
     EXPECT_EQ(reading_of(record, strength, false, false).says, Says::at_most);
-    EXPECT_TRUE(std::isnan(reading_of(record, strength, false, true).value));    // brittle contacts: what goes too fast may show too little
-    EXPECT_TRUE(std::isnan(reading_of(record, E, false, false).value));          // read at a share of a strength that is not known
-    EXPECT_EQ(reading_of(record, E, true, false).value, 26e9);                   // before damage no grade is needed
-    record.numbers["error_estimate"] = 0.01;                                     // C for another reason than its rate: a slender column, platens that disagree
+    EXPECT_TRUE(
+        std::isnan(reading_of(record, strength, false, true).value));  // brittle contacts: what goes too fast may show too little
+    EXPECT_TRUE(std::isnan(reading_of(record, E, false, false).value));  // read at a share of a strength that is not known
+    EXPECT_EQ(reading_of(record, E, true, false).value, 26e9);           // before damage no grade is needed
+    record.numbers["error_estimate"] = 0.01;  // C for another reason than its rate: a slender column, platens that disagree
     EXPECT_TRUE(std::isnan(reading_of(record, strength, false, false).value));
     record.state = RunState::failed;
     EXPECT_EQ(reading_of(record, strength, false, false).grade, 'x');

@@ -1,12 +1,12 @@
-// States in which everything happens, of every kind of grain, test, law and option; and what a step leaves of them, compared. For whatever makes steps: the kernels of fast/, the
-// devices of gpu/.
+// States in which everything happens, of every kind of grain, test, law and option; and what a step leaves of them, compared. For
+// whatever makes steps: the kernels of fast/, the devices of gpu/.
 #pragma once
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/lab/experiment.hpp"
@@ -36,10 +36,16 @@ inline void expect_same(const Assembly& a, const Assembly& b, double tolerance, 
     EXPECT_LE(difference(a.nodes.displacement, b.nodes.displacement), tolerance) << what;
     EXPECT_LE(difference(a.nodes.velocity, b.nodes.velocity), tolerance) << what;
     EXPECT_LE(difference(a.nodes.force, b.nodes.force), tolerance) << what;
-    const std::vector<std::pair<const char*, Array<double> Bonds::*>> quantities = {
-        {"un", &Bonds::un_m}, {"us", &Bonds::us_m}, {"Fn", &Bonds::Fn_N}, {"Fs", &Bonds::Fs_N}, {"largest un", &Bonds::max_un_m}, {"largest us", &Bonds::max_us_m},
-        {"damage", &Bonds::damage}, {"slip", &Bonds::slip_m}};
-    for (const auto& [name, quantity] : quantities) EXPECT_LE(difference(a.bonds.*quantity, b.bonds.*quantity), tolerance) << name << ", " << what;
+    const std::vector<std::pair<const char*, Array<double> Bonds::*>> quantities = {{"un", &Bonds::un_m},
+                                                                                    {"us", &Bonds::us_m},
+                                                                                    {"Fn", &Bonds::Fn_N},
+                                                                                    {"Fs", &Bonds::Fs_N},
+                                                                                    {"largest un", &Bonds::max_un_m},
+                                                                                    {"largest us", &Bonds::max_us_m},
+                                                                                    {"damage", &Bonds::damage},
+                                                                                    {"slip", &Bonds::slip_m}};
+    for (const auto& [name, quantity] : quantities)
+        EXPECT_LE(difference(a.bonds.*quantity, b.bonds.*quantity), tolerance) << name << ", " << what;
     // What a point dissipates is a small difference of its works: relative to what it holds.
     double held = 0.0;
     for (std::size_t i = 0; i < b.bonds.un_m.size(); ++i) held = std::max(held, std::abs(b.bonds.Fn_N[i] * b.bonds.un_m[i]));
@@ -63,14 +69,17 @@ inline void expect_same(const Assembly& a, const Assembly& b, double tolerance, 
     }
 }
 
-// A state in which everything happens: moved, turned and strained bodies; bonds intact, softened, broken, pressed, sliding, and about to break.
+// A state in which everything happens: moved, turned and strained bodies; bonds intact, softened, broken, pressed, sliding, and
+// about to break.
 inline void stir(Assembly& assembly) {
     RandomStream random(5, "stirred");
     for (const Body& body : assembly.bodies) {
         const Vec2 push = {1e-7 * random.normal(), 1e-7 * random.normal()};
         for (const int n : body.nodes()) {
             const bool turn = body.kind == BodyKind::rigid && n != body.centre_node;
-            const Vec2 noise = {2e-8 * random.normal(), turn ? 0.0 : 2e-8 * random.normal()}, free = {assembly.nodes.inverse_mass[n].x != 0.0 ? 1.0 : 0.0, assembly.nodes.inverse_mass[n].y != 0.0 ? 1.0 : 0.0};
+            const Vec2 noise = {2e-8 * random.normal(), turn ? 0.0 : 2e-8 * random.normal()},
+                       free = {assembly.nodes.inverse_mass[n].x != 0.0 ? 1.0 : 0.0,
+                               assembly.nodes.inverse_mass[n].y != 0.0 ? 1.0 : 0.0};
             const Vec2 u = (turn ? Vec2{} : push) + noise;
             assembly.nodes.displacement[n] += {free.x * u.x, free.y * u.y};
             assembly.nodes.velocity[n] += {1e-2 * free.x * noise.x, 1e-2 * free.y * noise.y};
@@ -84,18 +93,18 @@ inline void stir(Assembly& assembly) {
             BondState bond;
             bond.un_m = law.normal.x0 * (2.4 * random.uniform() - 1.4);
             bond.us_m = law.shear.x0 * (2.4 * random.uniform() - 1.2);
-            if (kind < 0.4) {   // intact
+            if (kind < 0.4) {  // intact
                 bond.un_m = std::min(bond.un_m, 0.999 * law.normal.x0);
                 bond.us_m *= 0.8;
                 bond.Fn_N = -(law.Kn_Pa_m * area) * bond.un_m;
                 bond.Fs_N = -(law.Ks_Pa_m * area) * bond.us_m;
-            } else if (kind < 0.8) {   // softened
+            } else if (kind < 0.8) {  // softened
                 bond.max_un_m = law.normal.x0 + random.uniform() * (law.normal.x_f - law.normal.x0);
                 bond.max_us_m = std::abs(bond.us_m);
                 bond.damage = std::min(0.999, std::max(1e-3, law.normal.damage(bond.max_un_m)));
                 bond.Fn_N = std::max(-(law.Kn_Pa_m * area) * bond.un_m, -(1.0 - bond.damage) * law.sigma_nt_Pa * area);
                 bond.Fs_N = 0.3 * (1.0 - bond.damage) * law.tau_Pa * area;
-            } else if (kind < 0.9) {   // on the brink: it breaks whatever it does, by more than rounding
+            } else if (kind < 0.9) {  // on the brink: it breaks whatever it does, by more than rounding
                 bond.un_m = bond.max_un_m = law.normal.x_f * (1.0 + 1e-12);
                 bond.max_us_m = std::abs(bond.us_m);
                 bond.damage = 1.0 - 1e-9;
@@ -118,7 +127,7 @@ inline void mix_contacts(Assembly& assembly) {
         if (c % 7 == 3) contact.dropped = true;
         if (contact.flexible && c % 11 == 5) contact.initial_shape = true;
         if (c % 13 != 1) continue;
-        const int a = contact.a.body, b = contact.b.body;   // `contact` goes with the old array
+        const int a = contact.a.body, b = contact.b.body;  // `contact` goes with the old array
         const double radii = assembly.bodies[a].radius_m + assembly.bodies[b].radius_m;
         add_new_contact(assembly, a, b, std::min(0.0, radii - norm(assembly.centre(b) - assembly.centre(a)) - 1e-8), radii);
     }
@@ -141,17 +150,23 @@ inline std::vector<Case> cases() {
     models.push_back(fixtures::model(GrainKind::flexible));
     models.push_back(fixtures::model(GrainKind::flexible, ContactKind::point));
     for (const ModelSpec& model : models)
-        for (const MethodId test : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension, methods::biaxial, methods::brazilian})
+        for (const MethodId test : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension,
+                                                                   methods::biaxial, methods::brazilian})
             all.push_back({test, model, ContactLaw::bilinear});
     for (const ContactLaw law : {ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle})
         for (const ShearMeasure measure : {ShearMeasure::total, ShearMeasure::beyond_friction})
             for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant})
                 all.push_back({methods::uniaxial_compression, fixtures::model(GrainKind::flexible), law, measure, unloading});
-    for (const ModelSpec& model : models) all.push_back({methods::uniaxial_compression, model, ContactLaw::bilinear, ShearMeasure::total, TensionUnloading::elastic, true});
-    for (const ModelSpec& model : models) all.push_back({methods::uniaxial_compression, model, ContactLaw::bilinear, ShearMeasure::total, TensionUnloading::elastic, true, true});
+    for (const ModelSpec& model : models)
+        all.push_back(
+            {methods::uniaxial_compression, model, ContactLaw::bilinear, ShearMeasure::total, TensionUnloading::elastic, true});
+    for (const ModelSpec& model : models)
+        all.push_back({methods::uniaxial_compression, model, ContactLaw::bilinear, ShearMeasure::total, TensionUnloading::elastic,
+                       true, true});
     for (const ContactLaw law : {ContactLaw::bilinear_literal, ContactLaw::linear, ContactLaw::brittle})
         for (const TensionUnloading unloading : {TensionUnloading::elastic, TensionUnloading::secant})
-            all.push_back({methods::direct_tension, fixtures::model(GrainKind::flexible), law, ShearMeasure::beyond_friction, unloading, true});
+            all.push_back({methods::direct_tension, fixtures::model(GrainKind::flexible), law, ShearMeasure::beyond_friction,
+                           unloading, true});
     return all;
 }
 
@@ -165,7 +180,9 @@ inline std::string label(const testing::TestParamInfo<Case>& info) {
     return text + "_" + std::to_string(info.index);
 }
 
-inline void PrintTo(const Case& c, std::ostream* out) { *out << name(c.test) << ", " << name(c.model.kind) << ", " << name(c.law); }
+inline void PrintTo(const Case& c, std::ostream* out) {
+    *out << name(c.test) << ", " << name(c.model.kind) << ", " << name(c.law);
+}
 
 inline TestSetup setup_of(const Case& c) {
     const SpecimenSpec spec = c.test == methods::brazilian ? fixtures::disc(0.03) : fixtures::rectangle(0.02, 0.04);

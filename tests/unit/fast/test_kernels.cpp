@@ -1,16 +1,16 @@
 // The kernels against the readable stages: one step from the same state, every kind of grain, test, law and option. Longer runs
 // cannot be compared so: round-off grows by orders of magnitude while a specimen breaks.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include "feldspar/base/rng.hpp"
-#include "feldspar/laws/damping.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/laws/damping.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/masses.hpp"
 #include "feldspar/step/advance_packs.hpp"
@@ -41,7 +41,7 @@ TEST_P(OneStep, IsThatOfTheReadableStages) {
     if (GetParam().test == methods::biaxial) e.set_dead_loads(1.0);
     stir(e.assembly);
     mix_contacts(e.assembly);
-    const Array<Vec2> weight = weights(e.assembly, {3e3, -5e3});   // some hundred times gravity: as large as forces of contacts
+    const Array<Vec2> weight = weights(e.assembly, {3e3, -5e3});  // some hundred times gravity: as large as forces of contacts
     for (const Damping damping : {Damping::viscous, Damping::local})
         for (const Strength strength : {Strength::real, Strength::unlimited}) {
             e.assembly.weight = damping == Damping::local ? weight : Array<Vec2>{};
@@ -61,8 +61,10 @@ TEST_P(OneStep, IsThatOfTheReadableStages) {
                 PlatenWork work;
                 settings.kernels = kernels;
                 advance(fast, e.team, settings, 7, 1, work);
-                const std::string what = std::string(kernels->name) + (damping == Damping::local ? ", local damping" : "") + (strength == Strength::unlimited ? ", unlimited" : "");
-                // Rounding: gaps of 1e-8 m from velocities of bodies centimetres apart, forces of stiff contacts that nearly cancel.
+                const std::string what = std::string(kernels->name) + (damping == Damping::local ? ", local damping" : "") +
+                                         (strength == Strength::unlimited ? ", unlimited" : "");
+                // Rounding: gaps of 1e-8 m from velocities of bodies centimetres apart, forces of stiff contacts that nearly
+                // cancel.
                 expect_same(fast, readable, 1e-9, what);
                 EXPECT_NEAR(work.loading, readable_work.loading, 1e-9 * std::abs(readable_work.loading) + 1e-30) << what;
             }
@@ -86,13 +88,15 @@ TEST_P(OneStep, HasTheSameBitsForAnyNumberOfThreadsAndStepsOfASweep) {
         Assembly one = e.assembly;
         PlatenWork one_work;
         advance(one, e.team, settings, 0, 5, one_work);
-        for (const auto& [threads, sweep_steps] : {std::pair{2, 1}, std::pair{3, 1}, std::pair{1, 2}, std::pair{1, 5}, std::pair{2, 5}, std::pair{3, 3}}) {
+        for (const auto& [threads, sweep_steps] :
+             {std::pair{2, 1}, std::pair{3, 1}, std::pair{1, 2}, std::pair{1, 5}, std::pair{2, 5}, std::pair{3, 3}}) {
             settings.sweep_steps = sweep_steps;
             Assembly several = e.assembly;
             Team team(threads);
             PlatenWork work;
             advance(several, team, settings, 0, 5, work);
-            expect_same(several, one, 0.0, fmt::format("{} with {} threads, {} steps a sweep", kernels->name, threads, sweep_steps));
+            expect_same(several, one, 0.0,
+                        fmt::format("{} with {} threads, {} steps a sweep", kernels->name, threads, sweep_steps));
             EXPECT_EQ(work.loading, one_work.loading);
         }
     }
@@ -114,7 +118,7 @@ TEST_P(OneStep, LeavesTheMotionOfTheReadableFormulas) {
         Assembly before = e.assembly, after = e.assembly;
         PlatenWork work;
         advance(before, e.team, settings, 0, 4, work);
-        advance(after, e.team, settings, 0, 5, work);   // the same bits, one step further
+        advance(after, e.team, settings, 0, 5, work);  // the same bits, one step further
         const Nodes& nodes = after.nodes;
         double kinetic = 0.0, deviation = 0.0, damped = 0.0, size = 0.0;
         for (int n = 0; n < nodes.count(); ++n)
@@ -123,8 +127,9 @@ TEST_P(OneStep, LeavesTheMotionOfTheReadableFormulas) {
                 const double V = nodes.velocity[n].*component, F = nodes.force[n].*component, m = nodes.mass[n];
                 const double loading = settings.speed * (nodes.loading_mode[n].*component), w = V - loading;
                 // Local damping is undone from the state after the step: exact unless the motion has just turned.
-                const double V_before = damping == Damping::viscous ? before.nodes.velocity[n].*component
-                                                                    : before_local_drag(V, loading, F, settings.dt / m, settings.alpha);
+                const double V_before = damping == Damping::viscous
+                                            ? before.nodes.velocity[n].*component
+                                            : before_local_drag(V, loading, F, settings.dt / m, settings.alpha);
                 kinetic += 0.5 * m * V * V_before;
                 deviation += 0.5 * m * w * w;
                 damped += 0.5 * V * (settings.dt * F - m * (V - V_before));
@@ -139,7 +144,7 @@ TEST_P(OneStep, LeavesTheMotionOfTheReadableFormulas) {
             const NodeSums sums = kernels->node_sums(KernelArrays::to_read(after), kernel_step(settings));
             EXPECT_NEAR(sums.kinetic / kinetic, 1.0, 1e-9) << kernels->name;
             EXPECT_NEAR(sums.deviation / deviation, 1.0, 1e-12) << kernels->name;
-            EXPECT_NEAR(sums.ahead_damping, damped, 1e-9 * size) << kernels->name;   // a small difference of large works
+            EXPECT_NEAR(sums.ahead_damping, damped, 1e-9 * size) << kernels->name;  // a small difference of large works
             Array<double> of_bodies(after.bodies.size(), 0.0);
             kernels->unbalanced(KernelArrays::to_read(after), of_bodies.data());
             for (std::size_t b = 0; b < of_bodies.size(); ++b) {
@@ -151,7 +156,9 @@ TEST_P(OneStep, LeavesTheMotionOfTheReadableFormulas) {
 }
 
 TEST(Packs, HoldTheEnergyOfTheReadableFormulas) {
-    for (const auto& [unloading, uneven] : {std::pair{TensionUnloading::elastic, false}, std::pair{TensionUnloading::secant, false}, std::pair{TensionUnloading::secant, true}}) {
+    for (const auto& [unloading, uneven] :
+         {std::pair{TensionUnloading::elastic, false}, std::pair{TensionUnloading::secant, false},
+          std::pair{TensionUnloading::secant, true}}) {
         TestSetup setup = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.04)), methods::uniaxial_compression);
         setup.contact.tension_unloading = unloading;
         if (uneven) setup.rock = fixtures::uneven_rock();
@@ -165,13 +172,15 @@ TEST(Packs, HoldTheEnergyOfTheReadableFormulas) {
         for (int n = 0; n < a.nodes.count(); ++n) u[n] -= 0.5 * a.nodes.velocity[n];
         for (int b = 0; b < std::ssize(a.bodies); ++b)
             for (int t = a.bodies[b].triangle_begin; t < a.bodies[b].triangle_end; ++t)
-                expected.grains += a.triangles[t].volume_m3 * strain_energy_density(a.elasticity_of(b), displacement_gradient(u, a.triangles[t]));
+                expected.grains += a.triangles[t].volume_m3 *
+                                   strain_energy_density(a.elasticity_of(b), displacement_gradient(u, a.triangles[t]));
         for (const Contact& contact : a.contacts)
             for (int p = contact.first_point; p < contact.first_point + contact.points; ++p)
                 expected.contacts[contact.material] += elastic_energy(a.law_of(contact), a.points[p].area_m2, a.bond(p));
         for (const Kernels* kernels : kernels_here()) {
             const PackEnergies sums = kernels->energies(KernelArrays::to_read(a), 0.5);
-            EXPECT_NEAR(sums.grains / expected.grains, 1.0, 1e-12) << kernels->name;   // sums of thousands of terms in another order
+            EXPECT_NEAR(sums.grains / expected.grains, 1.0, 1e-12)
+                << kernels->name;  // sums of thousands of terms in another order
             for (std::size_t role = 0; role < sums.contacts.size(); ++role)
                 EXPECT_NEAR(sums.contacts[role], expected.contacts[role], 1e-12 * expected.contacts[role]) << kernels->name;
         }
@@ -198,7 +207,8 @@ TEST(Packs, HoldEveryGrainOfTheCommonTopologyOnce) {
 void expect_narrow_bands(const Assembly& assembly) {
     const std::vector<PackRanges>& bands = assembly.packs.bands.ranges;
     const auto band_of = [&](IndexRange PackRanges::*range, int i) {
-        const auto at = std::find_if(bands.begin(), bands.end(), [&](const PackRanges& band) { return (band.*range).begin <= i && i < (band.*range).end; });
+        const auto at = std::find_if(bands.begin(), bands.end(),
+                                     [&](const PackRanges& band) { return (band.*range).begin <= i && i < (band.*range).end; });
         EXPECT_NE(at, bands.end());
         return static_cast<int>(at - bands.begin());
     };
@@ -215,15 +225,18 @@ void expect_narrow_bands(const Assembly& assembly) {
         for (int c = pack.first_contact; c < pack.first_contact + pack.lanes; ++c, ++seen)
             for (const ContactSide& side : {assembly.contacts[c].a, assembly.contacts[c].b}) {
                 const int of_body = band_of_body(side.body);
-                EXPECT_TRUE(of_body == band || of_body == band - 1) << "contact " << c << " in band " << band << ", body in " << of_body;
+                EXPECT_TRUE(of_body == band || of_body == band - 1)
+                    << "contact " << c << " in band " << band << ", body in " << of_body;
             }
     }
     EXPECT_EQ(seen, std::ssize(assembly.contacts));
 }
 
 TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
-    for (const MethodId test : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::biaxial, methods::brazilian})
-        for (const ModelSpec& model : {fixtures::model(GrainKind::flexible), fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}) {
+    for (const MethodId test :
+         std::initializer_list<MethodId>{methods::uniaxial_compression, methods::biaxial, methods::brazilian})
+        for (const ModelSpec& model : {fixtures::model(GrainKind::flexible), fixtures::model(GrainKind::rigid),
+                                       fixtures::model(GrainKind::inner_particles)}) {
             const SpecimenSpec spec = test == methods::brazilian ? fixtures::disc(0.04) : fixtures::rectangle(0.02, 0.08);
             TestSetup setup = fixtures::setup(spec, test, model);
             setup.test.sigma3_Pa = test == methods::biaxial ? 2e6 : 0.0;
@@ -231,15 +244,17 @@ TEST(Packs, StandInBandsThatWaitOnlyForTheNext) {
             const RunControl control = fixtures::threads(1);
             Experiment e(setup, control);
             expect_narrow_bands(e.assembly);
-            EXPECT_GT(e.assembly.packs.bands.ranges.size(), model.kind == GrainKind::flexible ? 2U : 6U) << name(test) << ", " << name(model.kind);
-            EXPECT_EQ(e.assembly.packs.bands.steps(2), 1);   // it fits into the shared cache
+            EXPECT_GT(e.assembly.packs.bands.ranges.size(), model.kind == GrainKind::flexible ? 2U : 6U)
+                << name(test) << ", " << name(model.kind);
+            EXPECT_EQ(e.assembly.packs.bands.steps(2), 1);  // it fits into the shared cache
             mix_contacts(e.assembly);
             expect_narrow_bands(e.assembly);
         }
 }
 
 TEST(Packs, OfInnerParticlesStandInStripsWhateverGrainTheyAreOf) {
-    TestSetup setup = fixtures::setup(fixtures::rectangle(0.04, 0.08), methods::uniaxial_compression, fixtures::model(GrainKind::inner_particles));
+    TestSetup setup = fixtures::setup(fixtures::rectangle(0.04, 0.08), methods::uniaxial_compression,
+                                      fixtures::model(GrainKind::inner_particles));
     const RunControl control = fixtures::threads(1);
     Experiment e(setup, control);
     const Filling& filling = e.setup.specimen->filling;
@@ -251,10 +266,11 @@ TEST(Packs, OfInnerParticlesStandInStripsWhateverGrainTheyAreOf) {
         EXPECT_EQ(body.radius_m, filling.radii_m[p]);
         ++bodies_of_grain[body.grain];
     }
-    for (std::size_t g = 0; g < bodies_of_grain.size(); ++g) EXPECT_EQ(bodies_of_grain[g], filling.particle_begin[g + 1] - filling.particle_begin[g]);
+    for (std::size_t g = 0; g < bodies_of_grain.size(); ++g)
+        EXPECT_EQ(bodies_of_grain[g], filling.particle_begin[g + 1] - filling.particle_begin[g]);
     expect_narrow_bands(e.assembly);
     const Bands& bands = e.assembly.packs.bands;
-    EXPECT_GT(bands.ranges.size(), 40U);   // of less than 2 mm, the radius of a large grain
+    EXPECT_GT(bands.ranges.size(), 40U);  // of less than 2 mm, the radius of a large grain
     EXPECT_GT(bands.bytes, kOwnCacheBytes);
     EXPECT_GT(bands.steps(1), 1);
 }
@@ -267,8 +283,9 @@ TEST(Packs, HoldContactsWithANormalOfTheirOwnHoweverFarBodiesHaveTurned) {
     choose_step(e);
     stir(e.assembly);
     RandomStream random(7, "turned");
-    for (const Body& body : e.assembly.bodies)   // a quarter of a radian parts the series from the rest
-        if (body.kind == BodyKind::rigid) e.assembly.nodes.displacement[body.centre_node + 1].x = body.radius_m * 3.0 * (random.uniform() - 0.5);
+    for (const Body& body : e.assembly.bodies)  // a quarter of a radian parts the series from the rest
+        if (body.kind == BodyKind::rigid)
+            e.assembly.nodes.displacement[body.centre_node + 1].x = body.radius_m * 3.0 * (random.uniform() - 0.5);
     StepSettings settings = e.settings;
     settings.speed = 1e-9;
     settings.kernels = nullptr;
@@ -323,7 +340,7 @@ TEST(Packs, LeaveFinelyMeshedGrainsLooseAndAgreeWithTheReadableStages) {
         settings.kernels = kernels;
         Assembly fast = e.assembly;
         advance(fast, e.team, settings, 0, 3, work);
-        expect_same(fast, readable, 1e-8, kernels->name);   // three steps: rounding has grown
+        expect_same(fast, readable, 1e-8, kernels->name);  // three steps: rounding has grown
     }
 }
 

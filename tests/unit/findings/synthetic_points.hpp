@@ -11,7 +11,7 @@
 
 namespace feldspar {
 
-inline constexpr double in_MPa = 1e6;   // Pa
+inline constexpr double in_MPa = 1e6;  // Pa
 
 inline TestResult synthetic_test(MethodId kind, std::uint64_t seed, double strength_MPa, double sigma3_MPa = 0.0) {
     TestResult result;
@@ -32,7 +32,8 @@ inline std::vector<TestResult> synthetic_series(const std::vector<std::uint64_t>
     std::vector<TestResult> results;
     for (const std::uint64_t seed : seeds) {
         results.push_back(synthetic_test(methods::uniaxial_compression, seed, law(seed, 0.0)));
-        for (const double sigma3 : sigma3_MPa) results.push_back(synthetic_test(methods::biaxial, seed, law(seed, sigma3), sigma3));
+        for (const double sigma3 : sigma3_MPa)
+            results.push_back(synthetic_test(methods::biaxial, seed, law(seed, sigma3), sigma3));
     }
     return results;
 }

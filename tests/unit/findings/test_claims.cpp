@@ -1,10 +1,10 @@
-// Claims held against made-up values of packings whose verdict is known, malformed claims files, and the claims of the project itself.
+// Claims held against made-up values of packings whose verdict is known, malformed claims files, and the claims of the project
+// itself.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
-
-#include <fmt/format.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/findings/claims.hpp"
@@ -16,7 +16,8 @@ namespace {
 using Formula = std::function<double(const std::vector<std::string>& labels, int seed)>;
 
 /// A study of made-up points with all combinations of the labels; labels that begin with a digit are numbers.
-StudiesByName made_up(const std::vector<std::pair<std::string, std::vector<std::string>>>& axes, const std::map<std::string, Formula>& properties, int packings) {
+StudiesByName made_up(const std::vector<std::pair<std::string, std::vector<std::string>>>& axes,
+                      const std::map<std::string, Formula>& properties, int packings) {
     StudyResults results;
     std::vector<std::vector<std::string>> points{{}};
     for (const auto& [axis, labels] : axes) {
@@ -32,7 +33,8 @@ StudiesByName made_up(const std::vector<std::pair<std::string, std::vector<std::
     for (const auto& labels : points) {
         Point point;
         PointResults found;
-        for (const std::string& label : labels) point.values.push_back({label, label[0] >= '0' && label[0] <= '9' ? std::stod(label) : std::nan("")});
+        for (const std::string& label : labels)
+            point.values.push_back({label, label[0] >= '0' && label[0] <= '9' ? std::stod(label) : std::nan("")});
         found.values = point.values;
         point.job.laboratory = {{"UCS", 100e6}};
         for (const auto& [property, formula] : properties)
@@ -47,7 +49,9 @@ StudiesByName made_up(const std::vector<std::pair<std::string, std::vector<std::
 }
 
 std::string with_statement(const std::string& statement) {
-    return "title = \"t\"\nsource = \"s\"\n[[claim]]\nid = \"C1\"\nfigure = \"1\"\nsays = \"c\"\n[[claim.statement]]\nsays = \"s\"\nstudy = \"study\"\n" + statement;
+    return "title = \"t\"\nsource = \"s\"\n[[claim]]\nid = \"C1\"\nfigure = \"1\"\nsays = \"c\"\n[[claim.statement]]\nsays = "
+           "\"s\"\nstudy = \"study\"\n" +
+           statement;
 }
 
 StatementResult judged(const std::string& statement, const StudiesByName& studies) {
@@ -58,17 +62,20 @@ StatementResult judged(const std::string& statement, const StudiesByName& studie
 /// Scatter that packings share: it leaves paired differences.
 double scatter(int seed) { return 1e6 * (seed % 3); }
 
-/// UCS of rigid grains 100 MPa and of flexible ones `more` above it, on packings that scatter, with 0.1 MPa of noise that they do not share.
+/// UCS of rigid grains 100 MPa and of flexible ones `more` above it, on packings that scatter, with 0.1 MPa of noise that they do
+/// not share.
 StudiesByName two_models(double more_Pa, int packings = 5, double noise_Pa = 0.1e6) {
     return made_up({{"grains", {"rigid", "flexible"}}},
-                   {{"UCS_Pa", [=](const auto& labels, int seed) {
+                   {{"UCS_Pa",
+                     [=](const auto& labels, int seed) {
                          const bool rigid = labels[0] == "rigid";
                          return 100e6 + scatter(seed) + (rigid ? 0.0 : more_Pa + noise_Pa * (seed % 2 == 0 ? 1 : -1));
                      }}},
                    packings);
 }
 
-const std::string flexible_greater = "rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexible\" }\nsecond = { grains = \"rigid\" }\n";
+const std::string flexible_greater =
+    "rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexible\" }\nsecond = { grains = \"rigid\" }\n";
 
 TEST(Claims, GreaterIsDecidedOnPairedDifferences) {
     const StatementResult yes = judged(flexible_greater, two_models(0.5e6));
@@ -84,12 +91,13 @@ TEST(Claims, GreaterIsDecidedOnPairedDifferences) {
 
 TEST(Claims, AnotherDefinitionOfThePropertyIsShownBesideWithoutAVote) {
     StudiesByName studies = two_models(0.5e6);
-    for (PointResults& point : studies.at("study").points) {   // the other definition says the opposite
+    for (PointResults& point : studies.at("study").points) {  // the other definition says the opposite
         PropertyStatistics other = point.properties.values.at("UCS_Pa");
         for (double& value : other.values) value = -value;
         point.properties.values["UCS_fitted_Pa"] = other;
     }
-    const ClaimList list = parse_claims(with_statement(flexible_greater + "also_property = [\"UCS_fitted_Pa\"]\n"), "claims.toml");
+    const ClaimList list =
+        parse_claims(with_statement(flexible_greater + "also_property = [\"UCS_fitted_Pa\"]\n"), "claims.toml");
     const ClaimResult result = evaluate(list.claims.front(), studies);
     ASSERT_EQ(result.statements.size(), 2u);
     EXPECT_TRUE(result.statements[0].votes);
@@ -139,13 +147,18 @@ TEST(Claims, RunsThatAreMissingAreToldFromValuesThatAre) {
     lost.id = "5";
     studies.at("study").points[0].failed.push_back(lost);
     EXPECT_EQ(judged(flexible_greater, studies).failed, 1);
-    EXPECT_NE(claims_text(std::vector<ClaimResult>{{{"C1", "1", "c", {}}, Verdict::not_run, {result}}}).find("2 of 10 runs missing"), std::string::npos);
+    EXPECT_NE(
+        claims_text(std::vector<ClaimResult>{{{"C1", "1", "c", {}}, Verdict::not_run, {result}}}).find("2 of 10 runs missing"),
+        std::string::npos);
 }
 
 /// A property that is `f` of the number on the second axis, for two models.
 StudiesByName along_mu(const std::function<double(bool flexible, double mu)>& f, const std::string& property = "UCS_Pa") {
     return made_up({{"grains", {"rigid", "flexible"}}, {"mu", {"0.2", "0.5", "0.8"}}},
-                   {{property, [=](const auto& labels, int seed) { return f(labels[0] == "flexible", std::stod(labels[1])) * (1.0 + 1e-5 * seed * (seed % 2 == 0 ? 1 : -1)); }}},
+                   {{property,
+                     [=](const auto& labels, int seed) {
+                         return f(labels[0] == "flexible", std::stod(labels[1])) * (1.0 + 1e-5 * seed * (seed % 2 == 0 ? 1 : -1));
+                     }}},
                    5);
 }
 
@@ -160,11 +173,16 @@ TEST(Claims, RisesWithTakesEachStepAndTheEnds) {
     EXPECT_EQ(part.verdict, Verdict::in_part);
     EXPECT_EQ(part.count(Verdict::reproduced), 5);
     EXPECT_EQ(part.count(Verdict::contradicted), 1);
-    EXPECT_EQ(judged("rule = \"falls_with\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\n", along_mu([](bool, double mu) { return 100e6 / mu; })).verdict, Verdict::reproduced);
+    EXPECT_EQ(judged("rule = \"falls_with\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\n",
+                     along_mu([](bool, double mu) { return 100e6 / mu; }))
+                  .verdict,
+              Verdict::reproduced);
 }
 
 TEST(Claims, NegligibleIsInsideAndMattersOutsideTheBound) {
-    const auto rule = [](const char* name, const char* bound) { return fmt::format("rule = \"{}\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nbound = {}\n", name, bound); };
+    const auto rule = [](const char* name, const char* bound) {
+        return fmt::format("rule = \"{}\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nbound = {}\n", name, bound);
+    };
     const StudiesByName little = along_mu([](bool, double mu) { return 100e6 * (1.0 + 0.01 * mu); });
     const StudiesByName much = along_mu([](bool, double mu) { return 100e6 * mu; });
     EXPECT_EQ(judged(rule("negligible", "\"5 %\""), little).verdict, Verdict::reproduced);
@@ -173,31 +191,52 @@ TEST(Claims, NegligibleIsInsideAndMattersOutsideTheBound) {
     EXPECT_EQ(judged(rule("matters", "\"5 %\""), little).verdict, Verdict::contradicted);
     EXPECT_EQ(judged(rule("negligible", "1e6"), little).verdict, Verdict::reproduced);
     EXPECT_EQ(judged(rule("negligible", "1e5"), little).verdict, Verdict::contradicted);
-    EXPECT_EQ(judged("rule = \"negligible\"\nproperty = \"UCS_Pa\"\naxis = \"grains\"\nwhere = { grains = [\"rigid\", \"flexible\"] }\nbound = \"0.5 %\"\n", two_models(0.5e6, 5, 1e6)).verdict,
+    EXPECT_EQ(judged("rule = \"negligible\"\nproperty = \"UCS_Pa\"\naxis = \"grains\"\nwhere = { grains = [\"rigid\", "
+                     "\"flexible\"] }\nbound = \"0.5 %\"\n",
+                     two_models(0.5e6, 5, 1e6))
+                  .verdict,
               Verdict::undecided);
 }
 
 TEST(Claims, InfluencesCompareRelativeChangesWhicheverWayTheyGo) {
-    const std::string flexible_more = "rule = \"influence_greater\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nfirst = { grains = \"flexible\" }\nsecond = { grains = \"rigid\" }\n";
-    const auto falls_more = [](bool flexible, double mu) { return flexible ? 500e6 * (1.0 - 0.5 * mu) : 100e6 * (1.0 + 0.1 * mu); };
+    const std::string flexible_more =
+        "rule = \"influence_greater\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nfirst = { grains = \"flexible\" }\nsecond = { "
+        "grains = \"rigid\" }\n";
+    const auto falls_more = [](bool flexible, double mu) {
+        return flexible ? 500e6 * (1.0 - 0.5 * mu) : 100e6 * (1.0 + 0.1 * mu);
+    };
     EXPECT_EQ(judged(flexible_more, along_mu(falls_more)).verdict, Verdict::reproduced);
-    EXPECT_EQ(judged(flexible_more, along_mu([](bool flexible, double mu) { return 100e6 * (1.0 + (flexible ? 0.1 : 0.5) * mu); })).verdict, Verdict::contradicted);
+    EXPECT_EQ(
+        judged(flexible_more, along_mu([](bool flexible, double mu) { return 100e6 * (1.0 + (flexible ? 0.1 : 0.5) * mu); }))
+            .verdict,
+        Verdict::contradicted);
 }
 
 TEST(Claims, InfluencesOfTwoAxesAndOfTwoPropertiesCompare) {
-    const StudiesByName studies = made_up({{"Kn", {"1", "2"}}, {"eta", {"0.2", "0.4"}}},
-                                          {{"E_Pa", [](const auto& l, int seed) { return 1e9 * std::stod(l[0]) * (1.0 + 0.1 * std::stod(l[1])) * (1.0 + 1e-6 * seed); }},
-                                           {"nu", [](const auto& l, int seed) { return std::stod(l[1]) * (1.0 + 1e-6 * seed * seed); }}},
-                                          5);
-    EXPECT_EQ(judged("rule = \"influence_greater\"\nproperty = \"E_Pa\"\naxis = \"Kn\"\nthan_axis = \"eta\"\nfirst = { eta = 0.2 }\nsecond = { Kn = 1 }\n", studies).verdict,
+    const StudiesByName studies = made_up(
+        {{"Kn", {"1", "2"}}, {"eta", {"0.2", "0.4"}}},
+        {{"E_Pa",
+          [](const auto& l, int seed) { return 1e9 * std::stod(l[0]) * (1.0 + 0.1 * std::stod(l[1])) * (1.0 + 1e-6 * seed); }},
+         {"nu", [](const auto& l, int seed) { return std::stod(l[1]) * (1.0 + 1e-6 * seed * seed); }}},
+        5);
+    EXPECT_EQ(judged("rule = \"influence_greater\"\nproperty = \"E_Pa\"\naxis = \"Kn\"\nthan_axis = \"eta\"\nfirst = { eta = 0.2 "
+                     "}\nsecond = { Kn = 1 }\n",
+                     studies)
+                  .verdict,
               Verdict::reproduced);
-    EXPECT_EQ(judged("rule = \"influence_greater\"\nproperty = \"E_Pa\"\naxis = \"eta\"\nthan_property = \"nu\"\nfirst = { Kn = 1 }\n", studies).verdict, Verdict::contradicted);
+    EXPECT_EQ(
+        judged("rule = \"influence_greater\"\nproperty = \"E_Pa\"\naxis = \"eta\"\nthan_property = \"nu\"\nfirst = { Kn = 1 }\n",
+               studies)
+            .verdict,
+        Verdict::contradicted);
 }
 
 TEST(Claims, LinearWithMeasuresDeparturesFromTheLine) {
     const std::string linear = "rule = \"linear_with\"\nproperty = \"friction_angle_deg\"\naxis = \"mu\"\nbound = \"10 %\"\n";
-    EXPECT_EQ(judged(linear, along_mu([](bool, double mu) { return 40.0 + 10.0 * mu; }, "friction_angle_deg")).verdict, Verdict::reproduced);
-    const StatementResult bent = judged(linear, along_mu([](bool, double mu) { return 40.0 + 10.0 * mu * mu; }, "friction_angle_deg"));
+    EXPECT_EQ(judged(linear, along_mu([](bool, double mu) { return 40.0 + 10.0 * mu; }, "friction_angle_deg")).verdict,
+              Verdict::reproduced);
+    const StatementResult bent =
+        judged(linear, along_mu([](bool, double mu) { return 40.0 + 10.0 * mu * mu; }, "friction_angle_deg"));
     EXPECT_EQ(bent.verdict, Verdict::contradicted);
     EXPECT_NEAR(bent.comparisons[0].interval.mean, 100.0 * (0.21 - 0.3) / 0.6, 0.1);
 }
@@ -205,12 +244,23 @@ TEST(Claims, LinearWithMeasuresDeparturesFromTheLine) {
 TEST(Claims, BetweenAndCloserTakeThreeModels) {
     const auto three = [](double middle) {
         return made_up({{"grains", {"low", "middle", "high"}}},
-                       {{"UCS_Pa", [=](const auto& l, int seed) { return (l[0] == "low" ? 100e6 : l[0] == "high" ? 200e6 : middle) + 1e5 * ((seed * static_cast<int>(l[0].size())) % 4); }}}, 5);
+                       {{"UCS_Pa",
+                         [=](const auto& l, int seed) {
+                             return (l[0] == "low"    ? 100e6
+                                     : l[0] == "high" ? 200e6
+                                                      : middle) +
+                                    1e5 * ((seed * static_cast<int>(l[0].size())) % 4);
+                         }}},
+                       5);
     };
-    const std::string between = "rule = \"between\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"middle\" }\nsecond = { grains = \"high\" }\nthird = { grains = \"low\" }\n";
+    const std::string between =
+        "rule = \"between\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"middle\" }\nsecond = { grains = \"high\" }\nthird = { "
+        "grains = \"low\" }\n";
     EXPECT_EQ(judged(between, three(150e6)).verdict, Verdict::reproduced);
     EXPECT_EQ(judged(between, three(250e6)).verdict, Verdict::in_part) << "above one bound, but not under the other";
-    const std::string closer = "rule = \"closer\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"middle\" }\nsecond = { grains = \"high\" }\nthird = { grains = \"low\" }\n";
+    const std::string closer =
+        "rule = \"closer\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"middle\" }\nsecond = { grains = \"high\" }\nthird = { "
+        "grains = \"low\" }\n";
     EXPECT_EQ(judged(closer, three(190e6)).verdict, Verdict::reproduced);
     EXPECT_EQ(judged(closer, three(110e6)).verdict, Verdict::contradicted);
 }
@@ -220,10 +270,14 @@ TEST(Claims, ValuesAndQuotientsAreHeldAgainstNumbers) {
     const auto with = [](const std::string& rest) { return "property = \"UCS_Pa\"\n" + rest; };
     EXPECT_EQ(judged(with("rule = \"above\"\nnumber = \"90 MPa\"\n"), studies).verdict, Verdict::reproduced);
     EXPECT_EQ(judged(with("rule = \"below\"\nnumber = \"90 MPa\"\n"), studies).verdict, Verdict::contradicted);
-    EXPECT_EQ(judged(with("rule = \"within\"\nbound = \"5 %\"\nfirst = { grains = \"rigid\" }\n"), studies).verdict, Verdict::reproduced) << "the laboratory's 100 MPa";
-    EXPECT_EQ(judged(with("rule = \"within\"\nbound = \"5 %\"\nfirst = { grains = \"flexible\" }\n"), studies).verdict, Verdict::contradicted);
-    const StatementResult ratio =
-        judged(with("rule = \"within\"\nnumber = 1.1\nbound = \"2 %\"\nfirst = { grains = \"flexible\" }\nsecond = { grains = \"rigid\" }\n"), studies);
+    EXPECT_EQ(judged(with("rule = \"within\"\nbound = \"5 %\"\nfirst = { grains = \"rigid\" }\n"), studies).verdict,
+              Verdict::reproduced)
+        << "the laboratory's 100 MPa";
+    EXPECT_EQ(judged(with("rule = \"within\"\nbound = \"5 %\"\nfirst = { grains = \"flexible\" }\n"), studies).verdict,
+              Verdict::contradicted);
+    const StatementResult ratio = judged(with("rule = \"within\"\nnumber = 1.1\nbound = \"2 %\"\nfirst = { grains = \"flexible\" "
+                                              "}\nsecond = { grains = \"rigid\" }\n"),
+                                         studies);
     EXPECT_EQ(ratio.verdict, Verdict::reproduced);
     EXPECT_EQ(judged("rule = \"below\"\nproperty = \"UCS_Pa / UCS_Pa\"\nnumber = 1.5\n", studies).verdict, Verdict::reproduced);
 }
@@ -279,7 +333,8 @@ TEST(Claims, MistakesAreNamedWithTheirLine) {
         {with_statement("rule = \"negligible\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nbound = \"-5 %\"\n"), 13, "not allowed"},
         {with_statement("rule = \"above\"\nproperty = \"UCS_Pa\"\nnumber = 90\n"), 12, "no unit"},
         {with_statement("rule = \"above\"\nproperty = \"UCS_Pa / \"\nnumber = 90\n"), 11, "is not a property"},
-        {with_statement("rule = \"influence_greater\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\n"), 10, "nothing that the influence is compared with"},
+        {with_statement("rule = \"influence_greater\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\n"), 10,
+         "nothing that the influence is compared with"},
         {with_statement(greater + "not_evaluated = \"no time\"\n"), 9, "study"},
         {with_statement(greater + "colour = 1\n"), 12, "unknown key"},
     };
@@ -298,14 +353,17 @@ TEST(Claims, StatementsThatTheStudyCannotHoldAreRefused) {
     StudiesByName studies = along_mu([](bool, double mu) { return mu; });
     feldspar::Run run;
     run.job.tests = {TestSpec{}};
-    studies.at("study").study.runs = {run};   // uniaxial compression only
+    studies.at("study").study.runs = {run};  // uniaxial compression only
     const std::vector<BadClaims> mistakes{
         {"rule = \"rises_with\"\nproperty = \"UCS\"\naxis = \"mu\"\n", 11, "'UCS' is not a property"},
         {"rule = \"rises_with\"\nproperty = \"DTS_Pa\"\naxis = \"mu\"\n", 11, "needs a test"},
         {"rule = \"rises_with\"\nproperty = \"UCS_Pa\"\naxis = \"my\"\n", 12, "'my' is not an axis"},
-        {"rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexibel\" }\nsecond = { grains = \"rigid\" }\n", 12, "did you mean 'flexible'"},
-        {"rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexible\" }\nsecond = { mu = 0.2 }\n", 13, "which value of the axis 'grains'"},
-        {"rule = \"rises_with\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nwhere = { mu = [0.2, 0.3] }\n", 13, "'0.3' is not a value"},
+        {"rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexibel\" }\nsecond = { grains = \"rigid\" }\n", 12,
+         "did you mean 'flexible'"},
+        {"rule = \"greater\"\nproperty = \"UCS_Pa\"\nfirst = { grains = \"flexible\" }\nsecond = { mu = 0.2 }\n", 13,
+         "which value of the axis 'grains'"},
+        {"rule = \"rises_with\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nwhere = { mu = [0.2, 0.3] }\n", 13,
+         "'0.3' is not a value"},
         {"rule = \"linear_with\"\nproperty = \"UCS_Pa\"\naxis = \"grains\"\nbound = \"5 %\"\n", 12, "is not a number"},
         {"rule = \"within\"\nproperty = \"nu\"\nbound = \"5 %\"\n", 7, "no laboratory value"},
     };
@@ -344,7 +402,8 @@ TEST(PaperStudies, ReadAndHoldTheClaims) {
     for (const Claim& claim : list.claims) {
         results.push_back(evaluate(claim, studies));
         for (const StatementResult& statement : results.back().statements)
-            EXPECT_TRUE(statement.verdict == Verdict::not_run || statement.verdict == Verdict::not_evaluated) << claim.id << ": " << statement.statement.says;
+            EXPECT_TRUE(statement.verdict == Verdict::not_run || statement.verdict == Verdict::not_evaluated)
+                << claim.id << ": " << statement.statement.says;
     }
     EXPECT_NE(claims_markdown(list, results).find("not run"), std::string::npos);
 }

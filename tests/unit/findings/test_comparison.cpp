@@ -15,7 +15,7 @@ TEST(Comparison, ChangesByPackingDoNotFeelWhatPackingsShare) {
     EXPECT_NEAR(change.mean, 0.02, 1e-12);
     EXPECT_NEAR(change.deviation, 0.01, 1e-12);
     EXPECT_NEAR(change.high, 0.02 + 4.302652729749 * 0.01 / std::sqrt(3.0), 1e-9);
-    EXPECT_NEAR(change.chance, 0.0742, 1e-4);   // t = 3.4641 with 2 degrees of freedom
+    EXPECT_NEAR(change.chance, 0.0742, 1e-4);  // t = 3.4641 with 2 degrees of freedom
 }
 
 TEST(Comparison, OnlyPackingsThatBothHaveCount) {
@@ -27,7 +27,8 @@ TEST(Comparison, OnlyPackingsThatBothHaveCount) {
 
 TEST(Comparison, WelchOfTwoKnownSamples) {
     // means 20 and 22, variances 4 and 16, n = 3 and 4: standard error sqrt(4/3 + 4) = 2.3094, 4.5714 degrees of freedom
-    const Change change = change_between_means(statistics_from({18, 20, 22}), statistics_from({22 - std::sqrt(24.0), 22, 22, 22 + std::sqrt(24.0)}));
+    const Change change = change_between_means(statistics_from({18, 20, 22}),
+                                               statistics_from({22 - std::sqrt(24.0), 22, 22, 22 + std::sqrt(24.0)}));
     EXPECT_FALSE(change.by_packing);
     EXPECT_EQ(change.count, 3);
     EXPECT_NEAR(change.mean, 0.1, 1e-12);
@@ -53,7 +54,7 @@ TEST(Comparison, HowManyPackingsWouldDo) {
     change.by_packing = true;
     EXPECT_EQ(packings_for_change(change, 0.07), 11);
     change.by_packing = false;
-    EXPECT_GT(packings_for_change(change, 0.07), 11);   // two means scatter more than one
+    EXPECT_GT(packings_for_change(change, 0.07), 11);  // two means scatter more than one
     EXPECT_EQ(packings_for_change(change, 0.0), 100000);
 }
 

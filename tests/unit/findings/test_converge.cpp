@@ -6,12 +6,12 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "../../small_study.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/findings/converge.hpp"
 #include "feldspar/findings/envelope.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/study/study_report.hpp"
-#include "../../small_study.hpp"
 #include "synthetic_points.hpp"
 
 namespace feldspar {
@@ -25,7 +25,8 @@ std::string text_of(const std::filesystem::path& file) {
 PropertyAlong two_values(const PropertyStatistics& base, const PropertyStatistics& other, bool by_packing) {
     PropertyAlong along{"UCS_Pa", {}, 0, {}};
     along.values.push_back({"3 mm", 3.0, mean_interval(base.values), {}});
-    along.values.push_back({"4.5 mm", 4.5, mean_interval(other.values), by_packing ? change_by_packing(base, other) : change_between_means(base, other)});
+    along.values.push_back({"4.5 mm", 4.5, mean_interval(other.values),
+                            by_packing ? change_by_packing(base, other) : change_between_means(base, other)});
     return along;
 }
 
@@ -34,7 +35,8 @@ Finding verdict_of(const PropertyAlong& along, double within = 0.05) {
 }
 
 TEST(Converge, IndependentWhenAllChangesAreSmall) {
-    const Finding verdict = verdict_of(two_values(statistics_from({100, 101, 102}), statistics_from({100.5, 101.6, 102.5}), true));
+    const Finding verdict =
+        verdict_of(two_values(statistics_from({100, 101, 102}), statistics_from({100.5, 101.6, 102.5}), true));
     EXPECT_EQ(verdict.dependence, Dependence::independent);
     EXPECT_LT(verdict.bound, 0.01);
     EXPECT_EQ(verdict.words.rfind("independent within 0.", 0), 0u) << verdict.words;
@@ -43,7 +45,8 @@ TEST(Converge, IndependentWhenAllChangesAreSmall) {
 TEST(Converge, DependsWhenAChangeStandsOut) {
     const Finding verdict = verdict_of(two_values(statistics_from({100, 101, 102}), statistics_from({120, 121, 122}), false));
     EXPECT_EQ(verdict.dependence, Dependence::depends);
-    for (const char* part : {"grows by 20 %", "from 3 mm to 4.5 mm"}) EXPECT_NE(verdict.words.find(part), std::string::npos) << verdict.words;
+    for (const char* part : {"grows by 20 %", "from 3 mm to 4.5 mm"})
+        EXPECT_NE(verdict.words.find(part), std::string::npos) << verdict.words;
     const Finding falling = verdict_of(two_values(statistics_from({120, 121, 122}), statistics_from({100, 101, 102}), false));
     EXPECT_NE(falling.words.find("falls by 17 %"), std::string::npos) << falling.words;
 }
@@ -52,7 +55,8 @@ TEST(Converge, UndecidedSaysHowManyPackingsWould) {
     const Finding verdict = verdict_of(two_values(statistics_from({90, 100, 110}), statistics_from({95, 99, 112}), false));
     EXPECT_EQ(verdict.dependence, Dependence::undecided);
     EXPECT_GT(verdict.packings, 3);
-    for (const char* part : {"the scatter of 3 packings allows no statement below", "packings would"}) EXPECT_NE(verdict.words.find(part), std::string::npos) << verdict.words;
+    for (const char* part : {"the scatter of 3 packings allows no statement below", "packings would"})
+        EXPECT_NE(verdict.words.find(part), std::string::npos) << verdict.words;
     // with that many packings of the same scatter the interval is as narrow as was asked for
     const Change change = change_between_means(statistics_from({90, 100, 110}), statistics_from({95, 99, 112}));
     EXPECT_EQ(verdict.packings, packings_for_change(change, 0.05 - change.mean));
@@ -60,7 +64,8 @@ TEST(Converge, UndecidedSaysHowManyPackingsWould) {
 
 TEST(Converge, ASmallChangeThatIsSureIsStillIndependence) {
     const Finding verdict = verdict_of(two_values(statistics_from({100, 150, 200}), statistics_from({102, 153, 204.01}), true));
-    EXPECT_LT(two_values(statistics_from({100, 150, 200}), statistics_from({102, 153, 204.01}), true).values[1].change.chance, 1e-5);
+    EXPECT_LT(two_values(statistics_from({100, 150, 200}), statistics_from({102, 153, 204.01}), true).values[1].change.chance,
+              1e-5);
     EXPECT_EQ(verdict.dependence, Dependence::independent);
 }
 
@@ -113,13 +118,15 @@ TEST_F(PlannedConvergence, VariesOneThingAtATime) {
     }
     for (std::size_t p = 1; p < plan.study.points.size(); ++p) {
         int different = 0;
-        for (std::size_t a = 0; a < 4; ++a) different += plan.study.points[p].values[a].label != plan.study.points[0].values[a].label;
+        for (std::size_t a = 0; a < 4; ++a)
+            different += plan.study.points[p].values[a].label != plan.study.points[0].values[a].label;
         EXPECT_EQ(different, 1) << p;
     }
     EXPECT_EQ(plan.study.runs.size(), 9u * 2u * 2u);
     EXPECT_NEAR(plan.study.points[plan.axes[0].points[2]].job.specimen.grain_sizes.maximum_m, 6e-3, 1e-12);
     EXPECT_NEAR(plan.study.points[plan.axes[3].points[0]].job.variants.front().numerics.accuracy, 0.05 / 3.0, 1e-12);
-    EXPECT_NEAR(plan.study.points[plan.axes[3].points[2]].job.variants.front().numerics.accuracy, 0.1, 1e-12);   // four times would be too coarse to allow
+    EXPECT_NEAR(plan.study.points[plan.axes[3].points[2]].job.variants.front().numerics.accuracy, 0.1,
+                1e-12);  // four times would be too coarse to allow
     EXPECT_FALSE(plan.axes[0].same_packings);
     EXPECT_TRUE(plan.axes[2].same_packings);
 }
@@ -142,7 +149,8 @@ TEST_F(PlannedConvergence, FindsWhatMattersAndWritesIt) {
     const Convergence found = judge_convergence(plan, points);
     ASSERT_EQ(found.axes.size(), 4u);
     EXPECT_EQ(found.axes[0].verdict.dependence, Dependence::depends) << found.axes[0].verdict.words;
-    for (std::size_t a = 1; a < 4; ++a) EXPECT_EQ(found.axes[a].verdict.dependence, Dependence::independent) << found.axes[a].verdict.words;
+    for (std::size_t a = 1; a < 4; ++a)
+        EXPECT_EQ(found.axes[a].verdict.dependence, Dependence::independent) << found.axes[a].verdict.words;
     EXPECT_EQ(found.seed_verdict.dependence, Dependence::independent);
     EXPECT_NE(found.overall.find("depends on grain size (UCS)"), std::string::npos) << found.overall;
 
@@ -165,18 +173,18 @@ TEST_F(PlannedConvergence, TheStudysPageHoldsEveryPoint) {
     write_study_report(plan.study, points, folder / "report.html");
     const std::string page = text_of(folder / "report.html");
     EXPECT_NE(page.find("no \\u003c/script> here"), std::string::npos);
-    EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));   // nothing to be fetched
+    EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));  // nothing to be fetched
 }
 
 TEST_F(PlannedConvergence, AnEnvelopeTakesWhatTheJobLacks) {
     const EnvelopePlan plan = plan_envelope(job(), {3, {}, false, folder / "results"});
     const Job& planned = plan.study.points.front().job;
-    ASSERT_EQ(planned.tests.size(), 7u);   // uniaxial, four biaxial, tension, Brazilian
-    EXPECT_NEAR(planned.tests[1].sigma3_Pa, 3e6, 1.0);   // of UCS = 120 MPa
+    ASSERT_EQ(planned.tests.size(), 7u);                // uniaxial, four biaxial, tension, Brazilian
+    EXPECT_NEAR(planned.tests[1].sigma3_Pa, 3e6, 1.0);  // of UCS = 120 MPa
     EXPECT_NEAR(planned.tests[4].sigma3_Pa, 20e6, 1.0);
     EXPECT_EQ(planned.seeds, (std::vector<std::uint64_t>{1, 2, 3}));
     EXPECT_EQ(planned.tests[6].specimen->outline.diameter_m, planned.specimen.outline.width_m);
-    EXPECT_EQ(planned.tests[6].plates, PlateShape::curved);   // as a job has it that says nothing
+    EXPECT_EQ(planned.tests[6].plates, PlateShape::curved);  // as a job has it that says nothing
     EXPECT_EQ(planned.tests[6].plate_Kn_Pa_m, usual_test(methods::brazilian).plate_Kn_Pa_m);
     EXPECT_EQ(planned.tests[1].control, LoadControl::dissipation);
     EXPECT_EQ(plan.study.runs.size(), 21u);

@@ -25,7 +25,8 @@ const EnvelopeConstant& constant(const EnvelopeFits& fits, const std::string& pr
 }
 
 TEST(EnvelopeFits, AnExactLineIsFound) {
-    const EnvelopeFits fits = fit_series(synthetic_series({1, 2, 3}, {3, 6, 12}, [](std::uint64_t, double s) { return line(s); }), false);
+    const EnvelopeFits fits =
+        fit_series(synthetic_series({1, 2, 3}, {3, 6, 12}, [](std::uint64_t, double s) { return line(s); }), false);
     ASSERT_EQ(fits.packings.size(), 3u);
     ASSERT_EQ(fits.strengths.size(), 4u);
     EXPECT_NEAR(constant(fits, "cohesion_Pa").packings.mean, c_MPa * in_MPa, 1.0);
@@ -33,7 +34,7 @@ TEST(EnvelopeFits, AnExactLineIsFound) {
     EXPECT_NEAR(constant(fits, "mohr_coulomb_N").joint, N(), 1e-6);
     EXPECT_NEAR(constant(fits, "UCS_fitted_Pa").joint, line(0.0) * in_MPa, 1.0);
     EXPECT_NEAR(constant(fits, "mohr_coulomb_tension_Pa").joint, line(0.0) / N() * in_MPa, 1.0);
-    EXPECT_NEAR(constant(fits, "cohesion_Pa").packings.low, c_MPa * in_MPa, 1.0);   // packings agree
+    EXPECT_NEAR(constant(fits, "cohesion_Pa").packings.low, c_MPa * in_MPa, 1.0);  // packings agree
     EXPECT_NEAR(fits.joint.mohr_coulomb.rms_Pa, 0.0, 1.0);
     EXPECT_NEAR(fits.joint.mohr_coulomb.R2, 1.0, 1e-9);
     EXPECT_GT(fits.joint.hoek_brown.rms_Pa, 1e5);
@@ -41,7 +42,8 @@ TEST(EnvelopeFits, AnExactLineIsFound) {
 }
 
 TEST(EnvelopeFits, AnExactParabolaIsFoundWithItsTension) {
-    const EnvelopeFits fits = fit_series(synthetic_series({1, 2}, {4, 10, 20}, [](std::uint64_t, double s) { return parabola(s); }), false);
+    const EnvelopeFits fits =
+        fit_series(synthetic_series({1, 2}, {4, 10, 20}, [](std::uint64_t, double s) { return parabola(s); }), false);
     EXPECT_NEAR(fits.joint.fit.hoek_brown_mi, 15.0, 1e-6);
     EXPECT_NEAR(fits.joint.fit.hoek_brown_UCS_Pa, 120.0 * in_MPa, 10.0);
     EXPECT_NEAR(fits.joint.hoek_brown.rms_Pa, 0.0, 10.0);
@@ -59,7 +61,7 @@ TEST(EnvelopeFits, TensilePointsAreInOnlyWhenAsked) {
     const EnvelopeFits without = fit_series(results, false), with = fit_series(results, true);
     EXPECT_NEAR(without.joint.fit.hoek_brown_mi, 15.0, 1e-6);
     EXPECT_GT(std::abs(with.joint.fit.hoek_brown_mi - 15.0), 0.01);
-    EXPECT_DOUBLE_EQ(with.joint.fit.cohesion_Pa, without.joint.fit.cohesion_Pa);   // the line keeps to compression
+    EXPECT_DOUBLE_EQ(with.joint.fit.cohesion_Pa, without.joint.fit.cohesion_Pa);  // the line keeps to compression
     ASSERT_EQ(with.tension.size(), 1u);
     EXPECT_NEAR(with.tension.front().measured.mean, 5.0 * in_MPa, 1e-3);
     EXPECT_NE(with.method.find("-DTS"), std::string::npos);
@@ -68,7 +70,10 @@ TEST(EnvelopeFits, TensilePointsAreInOnlyWhenAsked) {
 
 TEST(EnvelopeFits, IntervalsComeFromThePackings) {
     // three packings whose line stands 10 MPa lower or higher: cohesion scatters, the angle does not
-    const EnvelopeFits fits = fit_series(synthetic_series({1, 2, 3}, {5, 10}, [](std::uint64_t seed, double s) { return line(s) + 10.0 * (static_cast<double>(seed) - 2.0); }), false);
+    const EnvelopeFits fits = fit_series(
+        synthetic_series({1, 2, 3}, {5, 10},
+                         [](std::uint64_t seed, double s) { return line(s) + 10.0 * (static_cast<double>(seed) - 2.0); }),
+        false);
     const MeanInterval ucs = constant(fits, "UCS_fitted_Pa").packings;
     EXPECT_EQ(ucs.count, 3);
     EXPECT_NEAR(ucs.mean, line(0.0) * in_MPa, 10.0);
@@ -81,7 +86,8 @@ TEST(EnvelopeFits, IntervalsComeFromThePackings) {
 }
 
 TEST(EnvelopeFits, OnePackingHasFitsButNoInterval) {
-    const EnvelopeFits fits = fit_series(synthetic_series({7}, {3, 6, 12}, [](std::uint64_t, double s) { return parabola(s); }), false);
+    const EnvelopeFits fits =
+        fit_series(synthetic_series({7}, {3, 6, 12}, [](std::uint64_t, double s) { return parabola(s); }), false);
     ASSERT_EQ(fits.packings.size(), 1u);
     EXPECT_EQ(fits.packings.front().fit.seed, 7u);
     EXPECT_TRUE(std::isnan(constant(fits, "hoek_brown_mi").packings.low));
@@ -99,7 +105,8 @@ TEST(EnvelopeFits, OneConfiningStressSaysNothingOfTheCurve) {
 }
 
 TEST(EnvelopeFits, WithoutConfinementThereIsNothingToFit) {
-    const EnvelopeFits uniaxial = fit_series(synthetic_series({1, 2, 3}, {}, [](std::uint64_t, double s) { return line(s); }), false);
+    const EnvelopeFits uniaxial =
+        fit_series(synthetic_series({1, 2, 3}, {}, [](std::uint64_t, double s) { return line(s); }), false);
     EXPECT_TRUE(uniaxial.packings.empty());
     EXPECT_EQ(uniaxial.UCS_measured.count, 3);
     EXPECT_TRUE(uniaxial.method.empty());

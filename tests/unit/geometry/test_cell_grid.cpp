@@ -1,8 +1,8 @@
 // The grids must find everybody whom a search over all pairs finds.
+#include <gtest/gtest.h>
+
 #include <set>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/cell_grid.hpp"

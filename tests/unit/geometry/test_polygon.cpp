@@ -1,7 +1,7 @@
 // Polygons against closed forms.
-#include <vector>
-
 #include <gtest/gtest.h>
+
+#include <vector>
 
 #include "feldspar/geometry/polygon.hpp"
 

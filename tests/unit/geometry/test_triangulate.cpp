@@ -1,10 +1,10 @@
 // The wrappers around CGAL: they must hand over what was asked for.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <set>
 #include <utility>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -60,7 +60,8 @@ TEST(RegularTriangulation, NamesHiddenAndEqualSites) {
 }
 
 TEST(ConvexPartition, PartsAreConvexAndFillThePolygon) {
-    const std::vector<Vec2> comb = {{0, 0}, {5, 0}, {5, 3}, {4, 3}, {4, 1}, {3, 1}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
+    const std::vector<Vec2> comb = {{0, 0}, {5, 0}, {5, 3}, {4, 3}, {4, 1}, {3, 1},
+                                    {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
     const auto parts = convex_partition(comb);
     double area = 0.0;
     for (const auto& part : parts) {

@@ -8,13 +8,13 @@
 namespace feldspar {
 
 struct BrokenLine {
-    std::string text;      ///< the file with this line broken
-    std::string written;   ///< the line as it is now
+    std::string text;     ///< the file with this line broken
+    std::string written;  ///< the line as it is now
     int line = 0;
 };
 
-/// One file for each `key = value` of `text` with a date for its value, one with a letter less in its key (keys of one or two letters keep them),
-/// and one for each head of a table with a letter less in its last name.
+/// One file for each `key = value` of `text` with a date for its value, one with a letter less in its key (keys of one or two
+/// letters keep them), and one for each head of a table with a letter less in its last name.
 inline std::vector<BrokenLine> broken_lines(const std::string& text) {
     std::vector<std::string> lines;
     std::stringstream stream(text);

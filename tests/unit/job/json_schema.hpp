@@ -1,13 +1,13 @@
-// As much of JSON Schema, Draft 4, as the schema of jobs uses. A word that is not known here is a fault of the schema, or of this checker.
+// As much of JSON Schema, Draft 4, as the schema of jobs uses. A word that is not known here is a fault of the schema, or of this
+// checker.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace feldspar {
 
@@ -76,18 +76,23 @@ private:
             }
             if (!fits) fault("fits none of several");
         }
-        if (schema.contains("type") && !is_type(value, schema["type"])) return fault("is no " + schema["type"].get<std::string>());
-        if (schema.contains("enum") && std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end()) fault("is not one of the words");
+        if (schema.contains("type") && !is_type(value, schema["type"]))
+            return fault("is no " + schema["type"].get<std::string>());
+        if (schema.contains("enum") && std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end())
+            fault("is not one of the words");
         if (value.is_string()) {
-            if (schema.contains("pattern") && !std::regex_search(value.get<std::string>(), std::regex(schema["pattern"].get<std::string>())))
+            if (schema.contains("pattern") &&
+                !std::regex_search(value.get<std::string>(), std::regex(schema["pattern"].get<std::string>())))
                 fault("does not fit the pattern");
             if (value.get<std::string>().size() < schema.value("minLength", 0u)) fault("is too short");
         }
         if (value.is_number()) {
             const double number = value.get<double>();
-            if (schema.contains("minimum") && (schema.value("exclusiveMinimum", false) ? number <= schema["minimum"] : number < schema["minimum"]))
+            if (schema.contains("minimum") &&
+                (schema.value("exclusiveMinimum", false) ? number <= schema["minimum"] : number < schema["minimum"]))
                 fault("is too small");
-            if (schema.contains("maximum") && (schema.value("exclusiveMaximum", false) ? number >= schema["maximum"] : number > schema["maximum"]))
+            if (schema.contains("maximum") &&
+                (schema.value("exclusiveMaximum", false) ? number >= schema["maximum"] : number > schema["maximum"]))
                 fault("is too large");
         }
         if (value.is_array()) check_array(schema, value, place, found);

@@ -36,30 +36,40 @@ TEST(FirstJob, IsReadAsItStandsForEveryKindOfJob) {
         const FirstJob first = first_job(kind, granite());
         const Job job = parse_job(first.text, "first.toml");
         EXPECT_TRUE(first.warnings.empty()) << kind;
-        EXPECT_NEAR(job.variants.front().contact.sigma_nt_Pa / first.first.contact.sigma_nt_Pa, 1.0, 1e-3) << kind;   // four digits
+        EXPECT_NEAR(job.variants.front().contact.sigma_nt_Pa / first.first.contact.sigma_nt_Pa, 1.0, 1e-3)
+            << kind;  // four digits
         EXPECT_EQ(job.laboratory.at("UCS"), 120e6) << kind;
         EXPECT_EQ(job.laboratory.at("BTS"), 9e6) << kind;
-        EXPECT_FALSE(job.laboratory.contains("friction_angle")) << kind;   // was not given
+        EXPECT_FALSE(job.laboratory.contains("friction_angle")) << kind;  // was not given
         EXPECT_EQ(first.text.find("Augig"), std::string::npos) << kind << ": these are not its numbers";
     }
 }
 
 TEST(FirstJob, HasTheUsersUnits) {
     const std::string text = first_job("laboratory", granite()).text;
-    for (const char* line : {"\nUCS = \"120 MPa\" ", "\nE = \"30 GPa\"", "\nBTS = \"9000 kPa\" ", "\n# cohesion = ", "\n# friction_angle = "}) EXPECT_NE(text.find(line), std::string::npos) << line << text;
-    EXPECT_NE(first_job("biaxial", given({{"UCS", "100 MPa"}, {"sigma-ci", "45 MPa"}, {"grain-size", "1.5mm"}})).text.find("\nsigma_ci = \"45 MPa\""), std::string::npos);
-    EXPECT_NE(first_job("biaxial", given({{"UCS", "100 MPa"}, {"grain-size", "1.5mm"}})).text.find("minimum = \"1 mm\", maximum = \"2 mm\""), std::string::npos);
+    for (const char* line :
+         {"\nUCS = \"120 MPa\" ", "\nE = \"30 GPa\"", "\nBTS = \"9000 kPa\" ", "\n# cohesion = ", "\n# friction_angle = "})
+        EXPECT_NE(text.find(line), std::string::npos) << line << text;
+    EXPECT_NE(first_job("biaxial", given({{"UCS", "100 MPa"}, {"sigma-ci", "45 MPa"}, {"grain-size", "1.5mm"}}))
+                  .text.find("\nsigma_ci = \"45 MPa\""),
+              std::string::npos);
+    EXPECT_NE(first_job("biaxial", given({{"UCS", "100 MPa"}, {"grain-size", "1.5mm"}}))
+                  .text.find("minimum = \"1 mm\", maximum = \"2 mm\""),
+              std::string::npos);
 }
 
 TEST(FirstJob, TheRulesExpectWhatIsWanted) {
-    for (const GivenRock& rock : {granite(), given({{"UCS", "40 MPa"}, {"E", "12.5 GPa"}, {"BTS", "2.9 MPa"}}), given({{"UCS", "200 MPa"}, {"E", "70 GPa"}, {"DTS", "14 MPa"}, {"nu", "0.2"}})}) {
+    for (const GivenRock& rock : {granite(), given({{"UCS", "40 MPa"}, {"E", "12.5 GPa"}, {"BTS", "2.9 MPa"}}),
+                                  given({{"UCS", "200 MPa"}, {"E", "70 GPa"}, {"DTS", "14 MPa"}, {"nu", "0.2"}})}) {
         const ReadRock read = read_rock_numbers(rock);
         const FirstParameters first = first_parameters(read.targets, read.grain_m);
-        ASSERT_LT(first.wanted_ratio, first.highest_ratio) << first.wanted_ratio << " of " << first.lowest_ratio << " to " << first.highest_ratio;
+        ASSERT_LT(first.wanted_ratio, first.highest_ratio)
+            << first.wanted_ratio << " of " << first.lowest_ratio << " to " << first.highest_ratio;
         EXPECT_NEAR(first.expected.UCS_Pa / *read.targets.UCS_Pa, 1.0, 1e-6);
         EXPECT_NEAR(first.expected.E_Pa / *read.targets.E_Pa, 1.0, 1e-3);
         const bool of_BTS = read.targets.BTS_Pa.has_value();
-        EXPECT_NEAR(of_BTS ? first.expected.BTS_Pa / *read.targets.BTS_Pa : first.expected.DTS_Pa / *read.targets.DTS_Pa, 1.0, 1e-6);
+        EXPECT_NEAR(of_BTS ? first.expected.BTS_Pa / *read.targets.BTS_Pa : first.expected.DTS_Pa / *read.targets.DTS_Pa, 1.0,
+                    1e-6);
     }
 }
 
@@ -90,8 +100,10 @@ TEST(FirstJob, SaysWhatIsOutOfReach) {
 }
 
 TEST(FirstJob, SaysWhereTheRulesWereNotMeasured) {
-    const FirstJob first = first_job("laboratory", given({}, "cherokee-marble"));   // E is 830 times its UCS
-    EXPECT_TRUE(std::any_of(first.warnings.begin(), first.warnings.end(), [](const std::string& warning) { return warning.find("is below what the rules were measured at") != std::string::npos; }));
+    const FirstJob first = first_job("laboratory", given({}, "cherokee-marble"));  // E is 830 times its UCS
+    EXPECT_TRUE(std::any_of(first.warnings.begin(), first.warnings.end(), [](const std::string& warning) {
+        return warning.find("is below what the rules were measured at") != std::string::npos;
+    }));
 }
 
 TEST(FirstJob, RefusesWhatNoRockHas) {
@@ -103,7 +115,7 @@ TEST(FirstJob, RefusesWhatNoRockHas) {
     EXPECT_EQ(refused(given({{"UCS", "120 MPa"}, {"nu", "quarter"}})).first, "--nu");
     EXPECT_EQ(refused(given({{"UCS", "120 MPa"}, {"friction-angle", "95 deg"}})).first, "--friction-angle");
     EXPECT_EQ(refused(given({{"UCS", "120 MPa"}, {"grain-size", "0.1 m"}})).first, "--grain-size");
-    EXPECT_EQ(refused(given({{"E", "30 GPa"}})).first, "--UCS");   // no strength
+    EXPECT_EQ(refused(given({{"E", "30 GPa"}})).first, "--UCS");  // no strength
     const auto [key, text] = refused(given({{"UCS", "9 MPa"}, {"BTS", "120 MPa"}}));
     EXPECT_EQ(key, "--UCS");
     EXPECT_NE(text.find("exchanged"), std::string::npos) << text;
@@ -116,7 +128,7 @@ TEST(FirstJob, NamedRocksGiveWhatIsMissing) {
     EXPECT_EQ(job.laboratory.at("UCS"), 200e6);
     EXPECT_NE(whole.text.find("Potyondy, Cundall 2004"), std::string::npos);
     const ReadRock part = read_rock_numbers(given({{"UCS", "150 MPa"}}, "granite"));
-    EXPECT_EQ(part.laboratory.size(), 1u);   // the user's alone
+    EXPECT_EQ(part.laboratory.size(), 1u);  // the user's alone
     EXPECT_NEAR(*part.targets.UCS_Pa / *part.targets.BTS_Pa, 122.1 / 8.8, 1e-9);
     EXPECT_FALSE(part.assumed.empty());
     for (const LiteratureRock& rock : literature_rocks()) {
@@ -129,16 +141,24 @@ TEST(FirstJob, NamedRocksGiveWhatIsMissing) {
 TEST(FirstJob, PresetsOfRocksAreTheRules) {
     int rocks = 0;
     for (const LiteratureRock& rock : literature_rocks()) {
-        const std::string name(rock.name), keys = "[specimen]\nshape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"\n[specimen.grains]\ndiameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\n";
+        const std::string name(rock.name),
+            keys =
+                "[specimen]\nshape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"\n[specimen.grains]\ndiameter = { "
+                "distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\n";
         const std::vector<Preset> strengths(strength_presets().begin(), strength_presets().end());
-        if (std::none_of(strengths.begin(), strengths.end(), [&](const Preset& preset) { return preset.name == name; })) continue;   // the Augig granite has those of its paper
+        if (std::none_of(strengths.begin(), strengths.end(), [&](const Preset& preset) { return preset.name == name; }))
+            continue;  // the Augig granite has those of its paper
         ++rocks;
-        const Job job = parse_job(keys + "[material]\nelastic_preset = \"" + name + "\"\nstrength_preset = \"" + name + "\"\n[[test]]\nkind = \"uniaxial-compression\"\n", "job");
+        const Job job = parse_job(keys + "[material]\nelastic_preset = \"" + name + "\"\nstrength_preset = \"" + name +
+                                      "\"\n[[test]]\nkind = \"uniaxial-compression\"\n",
+                                  "job");
         const FirstParameters first = first_job("laboratory", given({}, name)).first;
         const ContactMaterial &preset = job.variants.front().contact, &rule = first.contact;
-        for (const auto& [one, other] : {std::pair(preset.Kn_Pa_m, rule.Kn_Pa_m), std::pair(preset.sigma_nt_Pa, rule.sigma_nt_Pa), std::pair(preset.tau_Pa, rule.tau_Pa), std::pair(preset.mu, rule.mu),
-                                        std::pair(preset.Gfn_J_m2, rule.Gfn_J_m2), std::pair(preset.Gfs_J_m2, rule.Gfs_J_m2), std::pair(job.variants.front().grain.E_Pa, first.grain.E_Pa)})
-            EXPECT_NEAR(one / other, 1.0, 2e-3) << name;   // three to four digits
+        for (const auto& [one, other] :
+             {std::pair(preset.Kn_Pa_m, rule.Kn_Pa_m), std::pair(preset.sigma_nt_Pa, rule.sigma_nt_Pa),
+              std::pair(preset.tau_Pa, rule.tau_Pa), std::pair(preset.mu, rule.mu), std::pair(preset.Gfn_J_m2, rule.Gfn_J_m2),
+              std::pair(preset.Gfs_J_m2, rule.Gfs_J_m2), std::pair(job.variants.front().grain.E_Pa, first.grain.E_Pa)})
+            EXPECT_NEAR(one / other, 1.0, 2e-3) << name;  // three to four digits
     }
     EXPECT_GE(rocks, 6);
 }
@@ -147,12 +167,14 @@ TEST(FirstJob, ContactsThatNoRockHasAreWarnedOf) {
     const std::string text = first_job("uniaxial-compression", granite()).text;
     const auto warned = [&](std::vector<std::pair<std::string, std::string>> values, const std::string& words) {
         const std::vector<std::string> all = warnings(parse_job(with_values(text, "material.contact", values), "job"));
-        return std::any_of(all.begin(), all.end(), [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
+        return std::any_of(all.begin(), all.end(),
+                           [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
     };
     EXPECT_TRUE(warnings(parse_job(text, "job")).empty());
     EXPECT_TRUE(warned({{"mu", "30"}}, "mu = 30 lies outside what rocks have"));
     EXPECT_TRUE(warned({{"eta", "3"}}, "eta = 3 lies outside what rocks have"));
     EXPECT_TRUE(warned({{"Gfn", "\"5000 N/m\""}}, "Gfn = 5000 N/m lies outside what rocks have"));
     // ten times the strengths that the laboratory asks for
-    EXPECT_TRUE(warned({{"sigma_nt", "\"63 MPa\""}, {"tau", "\"268 MPa\""}}, "by the scaling rules (docs/validation/first-parameters.md), the laboratory has 120 MPa"));
+    EXPECT_TRUE(warned({{"sigma_nt", "\"63 MPa\""}, {"tau", "\"268 MPa\""}},
+                       "by the scaling rules (docs/validation/first-parameters.md), the laboratory has 120 MPa"));
 }

@@ -7,16 +7,16 @@
 #include <numbers>
 #include <vector>
 
-#include "feldspar/base/error.hpp"
-#include "feldspar/job/job.hpp"
-#include "feldspar/job/toml_reader.hpp"
-#include "feldspar/job/job_template.hpp"
-#include "feldspar/job/rock_files.hpp"
-#include "feldspar/methods/method.hpp"
-#include "feldspar/specimen/grain_sizes.hpp"
 #include "../../switched_on.hpp"
 #include "../../table7.hpp"
 #include "../../temporary_folder.hpp"
+#include "feldspar/base/error.hpp"
+#include "feldspar/job/job.hpp"
+#include "feldspar/job/job_template.hpp"
+#include "feldspar/job/rock_files.hpp"
+#include "feldspar/job/toml_reader.hpp"
+#include "feldspar/methods/method.hpp"
+#include "feldspar/specimen/grain_sizes.hpp"
 #include "sample_job.hpp"
 
 namespace feldspar {
@@ -86,8 +86,11 @@ TEST(Job, CompressionIsFollowedBehindThePeakUnlessTold) {
     EXPECT_EQ(control(sample_job), LoadControl::dissipation);
     EXPECT_EQ(control(edited("kind = \"uniaxial-compression\"", "kind = \"direct-tension\"")), LoadControl::displacement);
     for (const LoadControl each : load_controls)
-        EXPECT_EQ(control(edited("kind = \"uniaxial-compression\"", std::string("kind = \"uniaxial-compression\"\ncontrol = \"") + name(each) + "\"")), each);
-    EXPECT_EQ(control(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"")), LoadControl::displacement) << "a fixed speed follows nothing";
+        EXPECT_EQ(control(edited("kind = \"uniaxial-compression\"",
+                                 std::string("kind = \"uniaxial-compression\"\ncontrol = \"") + name(each) + "\"")),
+                  each);
+    EXPECT_EQ(control(edited("kind = \"adaptive\"\naccuracy = \"0.5 %\"", "kind = \"paper\"")), LoadControl::displacement)
+        << "a fixed speed follows nothing";
 }
 
 TEST(Job, OwnSpecimensAreCheckedAsThoseOfJobs) {
@@ -99,11 +102,21 @@ TEST(Job, OwnSpecimensAreCheckedAsThoseOfJobs) {
         }
         return std::string();
     };
-    EXPECT_NE(problem("kind = \"three-point-bend\"\nspecimen = { shape = \"disc\", diameter = \"80 mm\" }").find("a disc is no beam"), std::string::npos);
-    EXPECT_NE(problem("kind = \"three-point-bend\"\nspecimen = { shape = \"rectangle\", width = \"220 mm\" }").find("height"), std::string::npos);
-    EXPECT_NE(problem("kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"5 mm\", height = \"10 mm\" }").find("do not fit"), std::string::npos);
-    EXPECT_NE(problem("kind = \"brazilian\"\nspecimen = { shape = \"disc\", diameter = \"50 mm\" }").find("cuts its own disc"), std::string::npos);
-    EXPECT_NE(problem("kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\", grain = 3 }").find("grain"), std::string::npos);
+    EXPECT_NE(
+        problem("kind = \"three-point-bend\"\nspecimen = { shape = \"disc\", diameter = \"80 mm\" }").find("a disc is no beam"),
+        std::string::npos);
+    EXPECT_NE(problem("kind = \"three-point-bend\"\nspecimen = { shape = \"rectangle\", width = \"220 mm\" }").find("height"),
+              std::string::npos);
+    EXPECT_NE(
+        problem("kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"5 mm\", height = \"10 mm\" }")
+            .find("do not fit"),
+        std::string::npos);
+    EXPECT_NE(problem("kind = \"brazilian\"\nspecimen = { shape = \"disc\", diameter = \"50 mm\" }").find("cuts its own disc"),
+              std::string::npos);
+    EXPECT_NE(problem("kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 "
+                      "mm\", grain = 3 }")
+                  .find("grain"),
+              std::string::npos);
 }
 
 TEST(Job, BrazilianDiscHasTheSpecimensWidthUnlessTold) {
@@ -150,9 +163,12 @@ TEST(Job, ReadsEverySizeDistributionAndOutline) {
 
 const char* const holed_and_notched =
     "height = \"160 mm\"\n"
-    "holes = [{ centre = [\"40 mm\", \"80 mm\"], diameter = \"16 mm\" }, { vertices = [[\"10 mm\", \"20 mm\"], [\"20 mm\", \"20 mm\"], [\"15 mm\", \"31.7 mm\"]], label = \"a \\\"wedge\\\"\" }]\n"
-    "notches = [{ from = [\"0 mm\", \"140 mm\"], to = [\"20 mm\", \"140 mm\"], width = \"2 mm\" }, { from = [\"48 mm\", \"80 mm\"], to = [\"60.3 mm\", \"85 mm\"], width = \"0 mm\", label = \"wing\" }]\n"
-    "labels = [{ name = \"load\", at = [\"40 mm\", \"160 mm\"], within = \"3 mm\" }, { name = \"left-end\", box = [[\"0 mm\", \"0 mm\"], [\"1 mm\", \"80 mm\"]] }, "
+    "holes = [{ centre = [\"40 mm\", \"80 mm\"], diameter = \"16 mm\" }, { vertices = [[\"10 mm\", \"20 mm\"], [\"20 mm\", \"20 "
+    "mm\"], [\"15 mm\", \"31.7 mm\"]], label = \"a \\\"wedge\\\"\" }]\n"
+    "notches = [{ from = [\"0 mm\", \"140 mm\"], to = [\"20 mm\", \"140 mm\"], width = \"2 mm\" }, { from = [\"48 mm\", \"80 "
+    "mm\"], to = [\"60.3 mm\", \"85 mm\"], width = \"0 mm\", label = \"wing\" }]\n"
+    "labels = [{ name = \"load\", at = [\"40 mm\", \"160 mm\"], within = \"3 mm\" }, { name = \"left-end\", box = [[\"0 mm\", "
+    "\"0 mm\"], [\"1 mm\", \"80 mm\"]] }, "
     "{ name = \"base\", line = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"]] }]";
 
 TEST(Job, HolesNotchesAndLabelsByPlace) {
@@ -188,13 +204,17 @@ TEST(Job, StagesAreReadAsTheyStandAndWrittenBack) {
     EXPECT_EQ(groups[5].stages.front(), (StageSpec{.kind = StageKind::unload, .end = StageEnd::stress}));
     EXPECT_EQ(groups[6].stages.front().counts, StageValue::changed);
     EXPECT_EQ(groups[8].times, 3);
-    EXPECT_EQ(groups[8].stages.front(), (StageSpec{.kind = StageKind::load, .end = StageEnd::gauge, .value = 1e-5, .counts = StageValue::beyond, .gauge = "gap"}));
+    EXPECT_EQ(groups[8].stages.front(),
+              (StageSpec{
+                  .kind = StageKind::load, .end = StageEnd::gauge, .value = 1e-5, .counts = StageValue::beyond, .gauge = "gap"}));
     EXPECT_EQ(groups[9].times, 0);
     EXPECT_EQ(parse_job(resolved_toml(job), "job").tests.front().stages, groups);
 }
 
 TEST(Job, APressureListIsOneMultiStageTest) {
-    const Job job = parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\", \"10 MPa\"]"), "job");
+    const Job job = parse_job(
+        edited("kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\", \"10 MPa\"]"),
+        "job");
     ASSERT_EQ(job.tests.size(), 1U);
     EXPECT_EQ(job.tests.front().sigma3_Pa, 2e6);
     EXPECT_EQ(job.tests.front().later_sigma3_Pa, (std::vector<double>{5e6, 10e6}));
@@ -235,7 +255,8 @@ TEST(Job, LaboratoryValuesHaveOneNameInside) {
 }
 
 TEST(Job, LaboratoryStrengthsUnderConfinement) {
-    const Job job = parse_job(edited("UCS = \"122.1 MPa\"", "confined = [[\"4 MPa\", \"150 MPa\"], [\"10 MPa\", \"0.195 GPa\"]]"), "job");
+    const Job job =
+        parse_job(edited("UCS = \"122.1 MPa\"", "confined = [[\"4 MPa\", \"150 MPa\"], [\"10 MPa\", \"0.195 GPa\"]]"), "job");
     ASSERT_EQ(job.laboratory_confined.size(), 2u);
     EXPECT_EQ(job.laboratory_confined[0].sigma3_Pa, 4e6);
     EXPECT_EQ(job.laboratory_confined[1].sigma1_Pa, 195e6);
@@ -393,14 +414,18 @@ TEST(ResolvedJob, ReadsBackToTheSameBits) {
     expect_round_trip(
         edited("kind = \"uniaxial-compression\"",
                "kind = \"brazilian\"\ndiameter = \"51 mm\"\nplate_stiffness_factor = 0.1\nplate_mu = 0.33\n[[test]]\nkind = "
-               "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\"\nmaximum_stress = \"300 MPa\""));
+               "\"biaxial\"\nsigma3 = [\"4 MPa\", \"1234 psi\"]\nseeds = [7, 9]\nstop_fraction = \"65 %\"\nmaximum_stress = "
+               "\"300 MPa\""));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplate_Kn = \"3.6e3 GPa/m\""));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\nplates = \"curved\"\njaw_radius = 1.25"));
-    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\""));
+    expect_round_trip(
+        edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"25 deg\""));
     expect_round_trip(edited("height = \"160 mm\"", holed_and_notched));
     expect_round_trip(edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
-                             "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\n"
-                             "edge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\narcs = [{ edge = 1, through = [\"60 mm\", \"80 mm\"] }, { edge = 3, through = [\"20 mm\", \"80 mm\"] }]"));
+                             "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 "
+                             "mm\"], [\"0 mm\", \"160 mm\"]]\n"
+                             "edge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\narcs = [{ edge = 1, through = [\"60 "
+                             "mm\", \"80 mm\"] }, { edge = 3, through = [\"20 mm\", \"80 mm\"] }]"));
     expect_round_trip(edited("seeds = [1, 2, 3, 4, 5]", "seed = 9223372036854775807\nthreads = 3\nat_once = 2"));
     expect_round_trip(edited("UCS = \"122.1 MPa\"", "phi = \"53 deg\"\nmi = 21.5\nnu = 0.23\nE = \"25.8 GPa\""));
     expect_round_trip(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")));
@@ -423,7 +448,7 @@ TEST(ResolvedJob, OfAnUnevenRockReadsBackToTheSameBits) {
     const Job job = parse_job(uneven, "job.toml");
     const Heterogeneity& rock = job.variants.front().rock;
     ASSERT_EQ(rock.minerals.phases.size(), 2U);
-    EXPECT_EQ(rock.minerals.phases[1].grain.E_Pa, 25.8e9);   // that of [material.grain]
+    EXPECT_EQ(rock.minerals.phases[1].grain.E_Pa, 25.8e9);  // that of [material.grain]
     EXPECT_EQ(rock.minerals.phases[1].value, 7);
     EXPECT_EQ(rock.scatter[Scattered::strength].highest, 4.0);
     EXPECT_EQ(rock.scatter[Scattered::E].lowest, 0.05);
@@ -433,13 +458,14 @@ TEST(ResolvedJob, OfAnUnevenRockReadsBackToTheSameBits) {
     EXPECT_EQ(rock.joints[0].contact.Kn_Pa_m, 18e13);
     EXPECT_NEAR(rock.joints[1].set->dip_rad, 0.5235987755982988, 1e-15);
     const double voigt = 0.6 * 94.5 + 0.4 * 25.8, reuss = 1.0 / (0.6 / 94.5 + 0.4 / 25.8);
-    EXPECT_NEAR(job.variants.front().grain.E_Pa / 1e9, 0.5 * (voigt + reuss), 1e-9);   // what estimates reckon with
+    EXPECT_NEAR(job.variants.front().grain.E_Pa / 1e9, 0.5 * (voigt + reuss), 1e-9);  // what estimates reckon with
 }
 
 // Minerals with sizes of their own: those without take the specimen's, and the specimen knows all of them.
 TEST(ResolvedJob, OfMineralsWithSizesReadsBackToTheSameBits) {
     const std::string quartz = "diameter = { distribution = \"uniform\", minimum = \"1 mm\", maximum = \"2 mm\" }\n";
-    const std::string biotite = "diameter = { distribution = \"sieve\", curve = [[\"0.5 mm\", 0], [\"0.9 mm\", \"41.7 %\"], [\"1.3 mm\", 1.0]] }\n";
+    const std::string biotite =
+        "diameter = { distribution = \"sieve\", curve = [[\"0.5 mm\", 0], [\"0.9 mm\", \"41.7 %\"], [\"1.3 mm\", 1.0]] }\n";
     std::string text = edited("cluster_length = \"7 mm\"\n", "", edited("[numerics]", uneven_material));
     text = edited("colour = \"#d9d4c7\"\n", "colour = \"#d9d4c7\"\n" + quartz, text);
     expect_round_trip(text);
@@ -448,7 +474,8 @@ TEST(ResolvedJob, OfMineralsWithSizesReadsBackToTheSameBits) {
     EXPECT_EQ(some.specimen.phase_sizes[0].sizes.minimum_m, 0.001);
     EXPECT_EQ(some.specimen.phase_sizes[0].share, 0.6);
     EXPECT_EQ(some.specimen.phase_sizes[1].sizes.maximum_m, 0.004) << "that of [specimen.grains]";
-    text = edited("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\n", "", edited("value = 7\n", "value = 7\n" + biotite, text));
+    text = edited("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\n", "",
+                  edited("value = 7\n", "value = 7\n" + biotite, text));
     expect_round_trip(text);
     const Job all = parse_job(text, "job.toml");
     EXPECT_EQ(all.specimen.phase_sizes[1].sizes.sieve.size(), 3U);
@@ -461,15 +488,18 @@ TEST(ReadJob, VariantsThatShareAPackingHaveTheSameMineralsInIt) {
     std::string text = edited("cluster_length = \"7 mm\"\n", "", edited("[numerics]", uneven_material));
     text = edited("colour = \"#d9d4c7\"\n", "colour = \"#d9d4c7\"\n" + quartz, text);
     const auto with = [&](const std::string& share, const std::string& rest) {
-        return text + "\n[[variant]]\nname = \"as it is\"\n[[variant]]\nname = \"other\"\n[[variant.material.phase]]\nname = \"quartz\"\nshare = " + share + "\n" + quartz +
-               "[[variant.material.phase]]\nname = \"biotite\"\nshare = " + rest + "\n";
+        return text +
+               "\n[[variant]]\nname = \"as it is\"\n[[variant]]\nname = \"other\"\n[[variant.material.phase]]\nname = "
+               "\"quartz\"\nshare = " +
+               share + "\n" + quartz + "[[variant.material.phase]]\nname = \"biotite\"\nshare = " + rest + "\n";
     };
     EXPECT_EQ(parse_job(with("0.6", "0.4"), "job.toml").specimen.phase_sizes.size(), 2U);
     try {
         parse_job(with("0.3", "0.7"), "job.toml");
         ADD_FAILURE() << "is taken";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("differ in the minerals of which their packing is made"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("differ in the minerals of which their packing is made"), std::string::npos)
+            << error.what();
     }
 }
 
@@ -477,13 +507,16 @@ TEST(ResolvedJob, OfARockFromFilesReadsBackToTheSameBits) {
     const TemporaryFolder folder;
     std::ofstream(folder.path() / "traces.csv") << "x1,y1,x2,y2,set\n10,10,40,60,a\n# a remark\n5,5,9,9,b\n0,20,30,20,a\n";
     std::ofstream(folder.path() / "minerals.txt") << "quartz\nbiotite # dark\n\nquartz\n";
-    std::ofstream(folder.path() / "job.toml") << edited("cluster_length = \"7 mm\"", "list = \"minerals.txt\"", edited("trace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", \"70 mm\"]]", "file = \"traces.csv\"\nunit = \"mm\"\nlayer = \"a\"", edited("[numerics]", uneven_material)));
+    std::ofstream(folder.path() / "job.toml")
+        << edited("cluster_length = \"7 mm\"", "list = \"minerals.txt\"",
+                  edited("trace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", \"70 mm\"]]",
+                         "file = \"traces.csv\"\nunit = \"mm\"\nlayer = \"a\"", edited("[numerics]", uneven_material)));
     const Job job = read_job(folder.path() / "job.toml");
     const Heterogeneity& rock = job.variants.front().rock;
     EXPECT_EQ(rock.minerals.list, (std::vector<int>{0, 1, 0}));
     ASSERT_EQ(rock.joints[0].lines_m.size(), 2U);
     EXPECT_EQ(rock.joints[0].lines_m[1], (std::vector<Vec2>{{0.0, 0.02}, {0.03, 0.02}}));
-    ASSERT_EQ(rock.remarks.size(), 1U);   // the trace of the other set
+    ASSERT_EQ(rock.remarks.size(), 1U);  // the trace of the other set
     EXPECT_FALSE(rock.files.empty());
     EXPECT_EQ(resolved_toml(parse_job(resolved_toml(job), "resolved")), resolved_toml(job));
 }
@@ -494,23 +527,25 @@ TEST(TraceFiles, OfDxfHaveLinesAndPolylines) {
     const std::string lwpolyline = "0\nLWPOLYLINE\n8\nfaults\n90\n3\n70\n1\n10\n0\n20\n0\n10\n5\n20\n0\n10\n5\n20\n5\n";
     const std::string polyline = "0\nPOLYLINE\n8\njoints\n70\n0\n0\nVERTEX\n10\n7\n20\n7\n0\nVERTEX\n10\n8\n20\n16\n0\nSEQEND\n";
     const std::string end = "0\nENDSEC\n0\nEOF\n";
-    const TraceFile all = read_traces(head + line + lwpolyline + polyline + "0\nTEXT\n8\njoints\n1\nhello\n" + end, "a.dxf", "", "");
+    const TraceFile all =
+        read_traces(head + line + lwpolyline + polyline + "0\nTEXT\n8\njoints\n1\nhello\n" + end, "a.dxf", "", "");
     ASSERT_EQ(all.lines_m.size(), 3U);
     EXPECT_EQ(all.lines_m[0], (std::vector<Vec2>{{0.001, 0.002}, {0.003, 0.004}}));
-    EXPECT_EQ(all.lines_m[1].size(), 4U);   // closed
+    EXPECT_EQ(all.lines_m[1].size(), 4U);  // closed
     EXPECT_EQ(all.lines_m[2], (std::vector<Vec2>{{0.007, 0.007}, {0.008, 0.016}}));
     EXPECT_EQ(all.remarks.size(), 1U);
-    EXPECT_EQ(read_traces(head + line + lwpolyline + end, "a.dxf", "cm", "joints").lines_m, (std::vector<std::vector<Vec2>>{{{0.01, 0.02}, {0.03, 0.04}}}));
-    EXPECT_THROW(read_traces("0\nSECTION\n2\nENTITIES\n" + line + end, "a.dxf", "", ""), InputError);   // no unit
-    EXPECT_THROW(read_traces(head + end, "a.dxf", "", ""), InputError);                                       // no trace
+    EXPECT_EQ(read_traces(head + line + lwpolyline + end, "a.dxf", "cm", "joints").lines_m,
+              (std::vector<std::vector<Vec2>>{{{0.01, 0.02}, {0.03, 0.04}}}));
+    EXPECT_THROW(read_traces("0\nSECTION\n2\nENTITIES\n" + line + end, "a.dxf", "", ""), InputError);  // no unit
+    EXPECT_THROW(read_traces(head + end, "a.dxf", "", ""), InputError);                                // no trace
     EXPECT_THROW(read_traces("x1,y1,x2\n1,2,3\n", "a.csv", "", ""), InputError);
     EXPECT_THROW(read_traces("x1,y1,x2,y2\n1,2,3,four\n", "a.csv", "", ""), InputError);
     EXPECT_THROW(read_traces("", "a.txt", "", ""), InputError);
-    EXPECT_THROW(read_traces("x1,x1,x1,y1,x2,y2\n0,1,2,3\n", "a.csv", "", ""), InputError);   // columns beyond the row
-    EXPECT_THROW(read_traces("x1,y1,x2,y2\n0,0,1e308,0\n", "a.csv", "km", ""), InputError);     // no number of metres
+    EXPECT_THROW(read_traces("x1,x1,x1,y1,x2,y2\n0,1,2,3\n", "a.csv", "", ""), InputError);  // columns beyond the row
+    EXPECT_THROW(read_traces("x1,y1,x2,y2\n0,0,1e308,0\n", "a.csv", "km", ""), InputError);  // no number of metres
     const std::string twice = "0\nLWPOLYLINE\n8\nfaults\n70\n1e300\n10\n0\n20\n0\n10\n0\n20\n0\n10\n5\n20\n5\n";
     EXPECT_EQ(read_traces(head + twice + end, "a.dxf", "", "").lines_m.front(), (std::vector<Vec2>{{0.0, 0.0}, {0.005, 0.005}}));
-    EXPECT_THROW(read_traces(head + "0\nLINE\n10\n1\n20\n2\n11\n1\n21\n2\n" + end, "a.dxf", "", ""), InputError);   // a point
+    EXPECT_THROW(read_traces(head + "0\nLINE\n10\n1\n20\n2\n11\n1\n21\n2\n" + end, "a.dxf", "", ""), InputError);  // a point
 }
 
 TEST(PhaseMaps, AreReadByColourOrByValue) {
@@ -530,14 +565,16 @@ TEST(PhaseMaps, AreReadByColourOrByValue) {
     const std::string coloured = png({0x10, 0x20, 0x30, 0xff, 0, 0, 0, 0, 0, 0x10, 0x20, 0x30}, 2, 2, PNG_FORMAT_RGB);
     EXPECT_EQ(read_phase_map(coloured, "map.png", minerals)->phase, (std::vector<std::int8_t>{0, 1, -1, 0}));
     minerals[1].colour = 0x00ff00;
-    EXPECT_THROW(read_phase_map(coloured, "map.png", minerals), InputError);   // a colour outside the legend
+    EXPECT_THROW(read_phase_map(coloured, "map.png", minerals), InputError);  // a colour outside the legend
     minerals[0].value = 1;
     minerals[1].value = 2;
-    EXPECT_EQ(read_phase_map(png({1, 2, 0, 2}, 2, 2, PNG_FORMAT_GRAY), "map.png", minerals)->phase, (std::vector<std::int8_t>{0, 1, -1, 1}));
+    EXPECT_EQ(read_phase_map(png({1, 2, 0, 2}, 2, 2, PNG_FORMAT_GRAY), "map.png", minerals)->phase,
+              (std::vector<std::int8_t>{0, 1, -1, 1}));
     EXPECT_THROW(read_phase_map("no picture", "map.png", minerals), InputError);
-    std::string claims_more = coloured;   // 20,000 x 20,000 pixels in some dozen bytes: refused before 1.2 GB are asked for
+    std::string claims_more = coloured;  // 20,000 x 20,000 pixels in some dozen bytes: refused before 1.2 GB are asked for
     for (const std::size_t at : {16U, 20U}) claims_more.replace(at, 4, std::string("\0\0\x4e\x20", 4));
-    const std::uint32_t checksum = static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(claims_more.data()) + 12, 17));
+    const std::uint32_t checksum =
+        static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(claims_more.data()) + 12, 17));
     for (int i = 0; i < 4; ++i) claims_more[29 + static_cast<std::size_t>(i)] = static_cast<char>(checksum >> (24 - 8 * i));
     try {
         (void)read_phase_map(claims_more, "map.png", minerals);
@@ -552,8 +589,11 @@ TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {
     expect_round_trip(edited("normal = \"edge\"", "normal = \"centres\"", variant_job));
     expect_round_trip(edited("maximum = \"4 mm\" }", "maximum = \"4 mm\" }\nparticles_per_grain = 13.7", variant_job));
     expect_round_trip(edited("kind = \"uniaxial-compression\"", pressed_test));
-    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"direct-shear\"\nnormal_stress = [\"2 MPa\", \"5 MPa\"]\nnormal_stiffness = \"3 GPa/m\"\ngap = \"4 mm\""));
-    expect_round_trip(edited("kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nplate_mu = 0.2\nplate_Kn = \"50 GPa/m\""));
+    expect_round_trip(edited(
+        "kind = \"uniaxial-compression\"",
+        "kind = \"direct-shear\"\nnormal_stress = [\"2 MPa\", \"5 MPa\"]\nnormal_stiffness = \"3 GPa/m\"\ngap = \"4 mm\""));
+    expect_round_trip(
+        edited("kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nplate_mu = 0.2\nplate_Kn = \"50 GPa/m\""));
     expect_round_trip(edited("membrane_plates = 12", "plate_stiffness_factor = 0.3\nplate_mu = 0.1", variant_job));
     expect_round_trip(edited("[[test]]", "[[variant]]\nname = \"alone\"\n[[test]]"));
     expect_round_trip(edited("[material.grain]\nE = \"25.8 GPa\"\nnu = 0.23\n", "[material.grain]\n",
@@ -561,60 +601,78 @@ TEST(ResolvedJob, OfVariantsReadsBackToTheSameBits) {
 }
 
 TEST(ReadJob, AGapGradedCurveIsTaken) {
-    const Job job = parse_job(edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
-                                     R"({ distribution = "sieve", curve = [["1 mm", "0 %"], ["2 mm", "40 %"], ["4 mm", "40 %"], ["5 mm", "100 %"]] })"),
-                              "job");
+    const Job job = parse_job(
+        edited("{ distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
+               R"({ distribution = "sieve", curve = [["1 mm", "0 %"], ["2 mm", "40 %"], ["4 mm", "40 %"], ["5 mm", "100 %"]] })"),
+        "job");
     ASSERT_EQ(job.specimen.grain_sizes.sieve.size(), 4u);
     EXPECT_EQ(job.specimen.grain_sizes.sieve[1].passing, job.specimen.grain_sizes.sieve[2].passing);
 }
 
 TEST(ReadJob, ASlenderColumnIsWarnedOf) {
-    const auto column = [](const char* height) { return warnings(parse_job(edited("height = \"160 mm\"", std::string("height = \"") + height + " mm\""), "job")); };
+    const auto column = [](const char* height) {
+        return warnings(parse_job(edited("height = \"160 mm\"", std::string("height = \"") + height + " mm\""), "job"));
+    };
     EXPECT_TRUE(column("240").empty()) << "three times as high as wide";
     EXPECT_TRUE(column("640").empty()) << "eight times";
-    // E 25.8 GPa, UCS of the laboratory 122.1 MPa: pi sqrt(25800 / (12 x 122.1)) = 13.2; Euler's stress at 20: pi^2 25800 / (12 x 400) = 53.05
+    // E 25.8 GPa, UCS of the laboratory 122.1 MPa: pi sqrt(25800 / (12 x 122.1)) = 13.2; Euler's stress at 20: pi^2 25800 / (12 x
+    // 400) = 53.05
     const auto sentences = column("1600");
     ASSERT_EQ(sentences.size(), 1u);
-    for (const char* part : {"20 times as high as wide", "bends aside at 53 MPa", "strength of 122 MPa", "above height / width of 13.2"})
+    for (const char* part :
+         {"20 times as high as wide", "bends aside at 53 MPa", "strength of 122 MPa", "above height / width of 13.2"})
         EXPECT_NE(sentences.front().find(part), std::string::npos) << part << " in " << sentences.front();
 }
 
 TEST(Job, FrictionMayBeGivenByItsAngle) {
     EXPECT_NEAR(parse_job(edited("mu = 0.40", "phi = \"30 deg\""), "job").variants.front().contact.mu, 0.5773502691896258, 1e-15);
-    EXPECT_NEAR(parse_job(edited("mu = 0.5\n", "phi = \"45 deg\"\n", edited("[numerics]", uneven_material)), "job").variants.front().rock.joints[0].contact.mu, 1.0, 1e-15);
+    EXPECT_NEAR(parse_job(edited("mu = 0.5\n", "phi = \"45 deg\"\n", edited("[numerics]", uneven_material)), "job")
+                    .variants.front()
+                    .rock.joints[0]
+                    .contact.mu,
+                1.0, 1e-15);
 }
 
 TEST(Warnings, NameWhatNoRockHas) {
     const auto told = [](const std::string& text, const char* key) {
         const std::vector<std::string> all = warnings(parse_job(text, "job"));
-        return std::any_of(all.begin(), all.end(), [&](const std::string& sentence) { return sentence.find(key) != std::string::npos; });
+        return std::any_of(all.begin(), all.end(),
+                           [&](const std::string& sentence) { return sentence.find(key) != std::string::npos; });
     };
     EXPECT_TRUE(warnings(parse_job(sample_job, "job")).empty());
     EXPECT_TRUE(told(edited("mu = 0.40", "mu = 30"), "mu = 30"));
     EXPECT_TRUE(told(edited("eta = 0.28", "eta = 3"), "eta = 3"));
     EXPECT_TRUE(told(edited("Gfn = \"20 N/m\"", "Gfn = \"5000 N/m\""), "Gfn = 5000 N/m"));
     EXPECT_TRUE(told(edited("[numerics]", "[material.scatter]\nstrength = { modulus = 1.3 }\n[numerics]"), "cut-off"));
-    EXPECT_FALSE(told(edited("[numerics]", "[material.scatter]\nstrength = { modulus = 1.3, lowest = 0.1 }\n[numerics]"), "cut-off"));
+    EXPECT_FALSE(
+        told(edited("[numerics]", "[material.scatter]\nstrength = { modulus = 1.3, lowest = 0.1 }\n[numerics]"), "cut-off"));
 }
 
 TEST(Warnings, NameADirectionThatDoesNotSoften) {
     EXPECT_TRUE(warnings(parse_job(sample_job, "job")).empty());
     const auto said = [](const std::vector<std::string>& sentences, const char* what) {
-        return std::any_of(sentences.begin(), sentences.end(), [&](const std::string& s) { return s.find(what) != std::string::npos; });
+        return std::any_of(sentences.begin(), sentences.end(),
+                           [&](const std::string& s) { return s.find(what) != std::string::npos; });
     };
-    const auto soft = warnings(parse_job(edited("Kn = \"18.00e4 GPa/m\"", "Kn = \"1 GPa/m\""), "job"));   // sigma_nt / Kn = 8.5 mm
+    const auto soft = warnings(parse_job(edited("Kn = \"18.00e4 GPa/m\"", "Kn = \"1 GPa/m\""), "job"));  // sigma_nt / Kn = 8.5 mm
     EXPECT_TRUE(said(soft, "sigma_nt / Kn"));
     EXPECT_TRUE(said(soft, "tau / (eta Kn)"));
     EXPECT_FALSE(said(soft, "sigma_nt d / E"));
     // 8.5^2 / (2 x 18e4) MPa^2 m/GPa = 0.2007 N/m; 29.75^2 / (2 x 0.28 x 18e4) = 8.78 N/m
-    EXPECT_TRUE(warnings(parse_job(edited("Gfn = \"20 N/m\"", "Gfn = \"0.202 N/m\"", edited("Gfs = \"800 N/m\"", "Gfs = \"8.8 N/m\"")), "job")).empty());
+    EXPECT_TRUE(
+        warnings(
+            parse_job(edited("Gfn = \"20 N/m\"", "Gfn = \"0.202 N/m\"", edited("Gfs = \"800 N/m\"", "Gfs = \"8.8 N/m\"")), "job"))
+            .empty());
     const auto tension = warnings(parse_job(edited("Gfn = \"20 N/m\"", "Gfn = \"0.2 N/m\""), "job"));
     ASSERT_EQ(tension.size(), 1u);
     EXPECT_NE(tension[0].find("Gfn = 0.2 N/m"), std::string::npos) << tension[0];
     const auto shear = warnings(parse_job(edited("Gfs = \"800 N/m\"", "Gfs = \"8.7 N/m\""), "job"));
     ASSERT_EQ(shear.size(), 1u);
     EXPECT_NE(shear[0].find("8.78 N/m"), std::string::npos) << shear[0];
-    EXPECT_TRUE(warnings(parse_job(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")), "job")).empty());
+    EXPECT_TRUE(
+        warnings(parse_job(edited("law = \"bilinear\"", "law = \"brittle\"", edited("Gfn = \"20 N/m\"\nGfs = \"800 N/m\"\n", "")),
+                           "job"))
+            .empty());
 }
 
 TEST(JobTemplate, EveryKindIsAJob) {
@@ -632,7 +690,8 @@ TEST(Examples, AreJobs) {
          std::filesystem::recursive_directory_iterator(std::filesystem::path(FELDSPAR_SOURCE_DIR) / "examples")) {
         if (entry.path().extension() != ".toml") continue;
         SCOPED_TRACE(entry.path().filename().string());
-        if (parse_toml(read_toml_file(entry.path(), "job"), entry.path().string()).contains("targets")) continue;   // a calibration: tests/unit/calibration
+        if (parse_toml(read_toml_file(entry.path(), "job"), entry.path().string()).contains("targets"))
+            continue;  // a calibration: tests/unit/calibration
         ++found;
         Job job;
         ASSERT_NO_THROW(job = read_job(entry.path()));
@@ -680,13 +739,18 @@ TEST(Job, RelativePackingsCountFromTheJobsFolder) {
 class CellsOfAFileInAJob : public testing::Test {
 protected:
     CellsOfAFileInAJob() {
-        folder_.write("cells.csv", "grain,x,y\na,0,0\na,1,0\na,1,1\na,0,1\nb,1,0\nb,2,0\nb,2,1\nb,1,1\nc,0,1\nc,2,1\nc,2,2\nc,0,2\n");
-        folder_.write("units.csv", "grain,x_mm,y_mm\na,0,0\na,10,0\na,10,10\na,0,10\nb,10,0\nb,20,0\nb,20,10\nb,10,10\nc,0,10\nc,20,10\nc,20,20\nc,0,20\n");
+        folder_.write("cells.csv",
+                      "grain,x,y\na,0,0\na,1,0\na,1,1\na,0,1\nb,1,0\nb,2,0\nb,2,1\nb,1,1\nc,0,1\nc,2,1\nc,2,2\nc,0,2\n");
+        folder_.write("units.csv",
+                      "grain,x_mm,y_mm\na,0,0\na,10,0\na,10,10\na,0,10\nb,10,0\nb,20,0\nb,20,10\nb,10,10\nc,0,10\nc,20,10\nc,20,"
+                      "20\nc,0,20\n");
     }
     /// sample_job with this in place of its outline and grains.
     static std::string with(const std::string& outline, const std::string& grains) {
-        return edited("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\nporosity = 0.10\nmerge_length = \"auto\"\n", grains + "\n",
-                      edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", outline));
+        return edited(
+            "diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\nporosity = 0.10\nmerge_length = "
+            "\"auto\"\n",
+            grains + "\n", edited("shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", outline));
     }
     Job read(const std::string& text) {
         folder_.write("job.toml", text);
@@ -714,38 +778,58 @@ TEST_F(CellsOfAFileInAJob, MakeItsSpecimen) {
     EXPECT_EQ(resolved_toml(parse_job(resolved, "job")), resolved);
     EXPECT_NE(resolved.find("shape = \"rectangle\""), std::string::npos);
     const auto said = warnings(job);
-    EXPECT_TRUE(std::any_of(said.begin(), said.end(), [](const std::string& s) { return s.find("the 5 seeds repeat one specimen") != std::string::npos; }));
-    const Job given = read(with("shape = \"rectangle\"\nwidth = \"20 mm\"\nheight = \"20 mm\"", "file = \"units.csv\"\ntolerance = 0.01"));
+    EXPECT_TRUE(std::any_of(said.begin(), said.end(),
+                            [](const std::string& s) { return s.find("the 5 seeds repeat one specimen") != std::string::npos; }));
+    const Job given =
+        read(with("shape = \"rectangle\"\nwidth = \"20 mm\"\nheight = \"20 mm\"", "file = \"units.csv\"\ntolerance = 0.01"));
     EXPECT_EQ(given.specimen.given_cells.unit_m, 1e-3);
     EXPECT_EQ(given.specimen.given_cells.tolerance, 0.01);
 }
 
 TEST_F(CellsOfAFileInAJob, AreCutToSpecimensOfTests) {
     const std::string file = FELDSPAR_SOURCE_DIR "/tests/unit/specimen/data/honeycomb.tess";
-    const Job job = read(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"5 m\"", with("shape = \"from-file\"", "file = \"" + file + "\"\nunit = \"1 m\"")));
+    const Job job = read(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndiameter = \"5 m\"",
+                                with("shape = \"from-file\"", "file = \"" + file + "\"\nunit = \"1 m\"")));
     EXPECT_FALSE(job.specimen.given_cells.cut);
     EXPECT_TRUE(job.tests[0].specimen->given_cells.cut);
     EXPECT_EQ(job.tests[0].specimen->outline.shape, Shape::disc);
-    EXPECT_NE(refusal(edited("kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"from-file\" }", with("shape = \"from-file\"", "file = \"cells.csv\"\nunit = \"1 m\""))).find("own specimen has no file"), std::string::npos);
+    EXPECT_NE(
+        refusal(edited("kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"from-file\" }",
+                       with("shape = \"from-file\"", "file = \"cells.csv\"\nunit = \"1 m\"")))
+            .find("own specimen has no file"),
+        std::string::npos);
     EXPECT_NE(refusal(edited("kind = \"uniaxial-compression\"",
-                             "kind = \"uniaxial-compression\"\nspecimen = { shape = \"polygon\", vertices = [[\"0 m\", \"0 m\"], [\"2 m\", \"0 m\"], [\"1.5 m\", \"1 m\"], [\"2 m\", \"2 m\"], [\"0 m\", \"2 m\"]], edge_labels = [\"bottom\", \"a\", \"b\", \"top\", \"c\"] }",
+                             "kind = \"uniaxial-compression\"\nspecimen = { shape = \"polygon\", vertices = [[\"0 m\", \"0 m\"], "
+                             "[\"2 m\", \"0 m\"], [\"1.5 m\", \"1 m\"], [\"2 m\", \"2 m\"], [\"0 m\", \"2 m\"]], edge_labels = "
+                             "[\"bottom\", \"a\", \"b\", \"top\", \"c\"] }",
                              with("shape = \"from-file\"", "file = \"cells.csv\"\nunit = \"1 m\"")))
                   .find("convex outlines only"),
               std::string::npos);
 }
 
 TEST_F(CellsOfAFileInAJob, AreRefusedWithTheKey) {
-    const std::string from_file = "shape = \"from-file\"", rectangle = "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"";
+    const std::string from_file = "shape = \"from-file\"",
+                      rectangle = "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"";
     const std::string diameter = "diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }";
-    struct Bad { std::string outline, grains, word; };
-    for (const Bad& bad : {Bad{from_file, "file = \"cells.csv\"", "missing key: unit"}, Bad{from_file, "file = \"units.csv\"\nunit = \"mm\"", "head of the file says the unit"},
-                           Bad{from_file, "file = \"cells.csv\"\nunit = \"kg\"", "is no length"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"-1 mm\"", "is no length"},
-                           Bad{from_file, "file = \"cells.csv\"\nunit = \"\"", "unit"}, Bad{from_file, "file = \"none.csv\"\nunit = \"mm\"", "there is no file"},
-                           Bad{from_file, "file = \"job.toml\"\nunit = \"mm\"", ".tess"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"mm\"\n" + diameter, "diameter"},
-                           Bad{from_file, diameter, "no file says what the outline is"}, Bad{rectangle, diameter + "\nunit = \"mm\"", "unit"}, Bad{rectangle, diameter + "\ntolerance = 0.01", "tolerance"},
-                           Bad{from_file + "\nwidth = \"80 mm\"", "file = \"cells.csv\"\nunit = \"mm\"", "width"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"mm\"\ntolerance = 0.5", "from 0 to 0.1"},
-                           Bad{from_file + "\npacking = \"cells.csv\"", "file = \"cells.csv\"\nunit = \"mm\"", "packing"}, Bad{from_file, "file = \"cells.csv\"\nunit = \"40 mm\"\nmerge_length = \"30 mm\"", "half a grain"},
-                           Bad{rectangle, "porosity = 0.1", "missing key: diameter"}}) {
+    struct Bad {
+        std::string outline, grains, word;
+    };
+    for (const Bad& bad :
+         {Bad{from_file, "file = \"cells.csv\"", "missing key: unit"},
+          Bad{from_file, "file = \"units.csv\"\nunit = \"mm\"", "head of the file says the unit"},
+          Bad{from_file, "file = \"cells.csv\"\nunit = \"kg\"", "is no length"},
+          Bad{from_file, "file = \"cells.csv\"\nunit = \"-1 mm\"", "is no length"},
+          Bad{from_file, "file = \"cells.csv\"\nunit = \"\"", "unit"},
+          Bad{from_file, "file = \"none.csv\"\nunit = \"mm\"", "there is no file"},
+          Bad{from_file, "file = \"job.toml\"\nunit = \"mm\"", ".tess"},
+          Bad{from_file, "file = \"cells.csv\"\nunit = \"mm\"\n" + diameter, "diameter"},
+          Bad{from_file, diameter, "no file says what the outline is"}, Bad{rectangle, diameter + "\nunit = \"mm\"", "unit"},
+          Bad{rectangle, diameter + "\ntolerance = 0.01", "tolerance"},
+          Bad{from_file + "\nwidth = \"80 mm\"", "file = \"cells.csv\"\nunit = \"mm\"", "width"},
+          Bad{from_file, "file = \"cells.csv\"\nunit = \"mm\"\ntolerance = 0.5", "from 0 to 0.1"},
+          Bad{from_file + "\npacking = \"cells.csv\"", "file = \"cells.csv\"\nunit = \"mm\"", "packing"},
+          Bad{from_file, "file = \"cells.csv\"\nunit = \"40 mm\"\nmerge_length = \"30 mm\"", "half a grain"},
+          Bad{rectangle, "porosity = 0.1", "missing key: diameter"}}) {
         const std::string said = refusal(with(bad.outline, bad.grains));
         EXPECT_NE(said.find(bad.word), std::string::npos) << bad.grains << "\n" << said;
     }
@@ -766,7 +850,8 @@ TEST(FlattenedDiscs, AreCutFromTheBrazilianSpecimenAlone) {
 }
 
 TEST(FlattenedDiscs, WithNarrowFlatsAreWarnedOf) {
-    const auto said = warnings(parse_job(edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"15 deg\""), "job"));
+    const auto said = warnings(parse_job(
+        edited("kind = \"uniaxial-compression\"", "kind = \"brazilian\"\ndisc = \"flattened\"\nflat_angle = \"15 deg\""), "job"));
     ASSERT_EQ(said.size(), 1u);
     EXPECT_NE(said[0].find("15 degrees: from 20 degrees on"), std::string::npos) << said[0];
 }
@@ -775,8 +860,10 @@ TEST(FlattenedDiscs, WithNarrowFlatsAreWarnedOf) {
 
 // One rock, several specimens: a beam beside the upright specimen, of the same grains.
 TEST(Job, ATestMayBringItsOwnSpecimen) {
-    const std::string beam = "kind = \"three-point-bend\"\nspecimen = { shape = \"rectangle\", width = \"220 mm\", height = \"50 mm\", notches = [{ from = [\"110 mm\", \"0 mm\"], to = "
-                             "[\"110 mm\", \"15 mm\"], width = \"1 mm\" }] }\n\n[[test]]\nkind = \"uniaxial-compression\"";
+    const std::string beam =
+        "kind = \"three-point-bend\"\nspecimen = { shape = \"rectangle\", width = \"220 mm\", height = \"50 mm\", notches = [{ "
+        "from = [\"110 mm\", \"0 mm\"], to = "
+        "[\"110 mm\", \"15 mm\"], width = \"1 mm\" }] }\n\n[[test]]\nkind = \"uniaxial-compression\"";
     const Job job = parse_job(edited("kind = \"uniaxial-compression\"", beam), "job");
     ASSERT_EQ(job.tests.size(), 2u);
     ASSERT_TRUE(job.tests[0].specimen);

@@ -1,4 +1,6 @@
 // The rows of the keys (job/keys.hpp), held against all that comes out of them: the reader, the schema, docs/job.md, templates.
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -7,8 +9,6 @@
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/job/job_sections.hpp"
 #include "feldspar/job/job_template.hpp"
@@ -48,15 +48,20 @@ const std::vector<std::string>& bases() {
         rigid = replaced(rigid, "kind = \"flexible\"", "kind = \"rigid\"");
         std::string inner = replaced(replaced(rigid, "\"rigid\"", "\"inner-particles\""), "contact = \"lobatto3\"\n", "");
         inner = replaced(inner, "kind = \"uniaxial-compression\"", "kind = \"biaxial\"\nsigma3 = \"4 MPa\"");
-        const std::string cut = "thickness = \"80 mm\"\nholes = [{ centre = [\"40 mm\", \"40 mm\"], diameter = \"10 mm\" }]\n"
-                                "notches = [{ from = [\"0 mm\", \"80 mm\"], to = [\"20 mm\", \"80 mm\"], width = \"1 mm\" }]\n"
-                                "labels = [{ name = \"load\", at = [\"40 mm\", \"160 mm\"], within = \"5 mm\" }]\n";
-        const std::string own = replaced(replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test), "thickness = \"80 mm\"\n", cut);
-        const std::size_t first = own.find("[[test.fixture]]"), second = own.find("[[test.fixture]]", first + 1), gauge = own.find("[[test.gauge]]");
-        const std::string plates = own.substr(0, first) + own.substr(second, gauge - second) + own.substr(first, second - first) + own.substr(gauge);
-        const std::string cells = replaced(replaced(sample_job, "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", "shape = \"from-file\""),
-                                           "diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\nporosity = 0.10\n",
-                                           "file = \"" + (source / "tests/unit/specimen/data/honeycomb.tess").string() + "\"\nunit = \"10 mm\"\n");
+        const std::string cut =
+            "thickness = \"80 mm\"\nholes = [{ centre = [\"40 mm\", \"40 mm\"], diameter = \"10 mm\" }]\n"
+            "notches = [{ from = [\"0 mm\", \"80 mm\"], to = [\"20 mm\", \"80 mm\"], width = \"1 mm\" }]\n"
+            "labels = [{ name = \"load\", at = [\"40 mm\", \"160 mm\"], within = \"5 mm\" }]\n";
+        const std::string own =
+            replaced(replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test), "thickness = \"80 mm\"\n", cut);
+        const std::size_t first = own.find("[[test.fixture]]"), second = own.find("[[test.fixture]]", first + 1),
+                          gauge = own.find("[[test.gauge]]");
+        const std::string plates =
+            own.substr(0, first) + own.substr(second, gauge - second) + own.substr(first, second - first) + own.substr(gauge);
+        const std::string cells = replaced(
+            replaced(sample_job, "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"", "shape = \"from-file\""),
+            "diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }\nporosity = 0.10\n",
+            "file = \"" + (source / "tests/unit/specimen/data/honeycomb.tess").string() + "\"\nunit = \"10 mm\"\n");
         return std::vector<std::string>{
             sample_job,
             cells,
@@ -70,18 +75,28 @@ const std::vector<std::string>& bases() {
             replaced(sample_job, "seeds = [1, 2, 3, 4, 5]\n", ""),
             own,
             plates,
-            replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\" }"),
+            replaced(
+                sample_job, "kind = \"uniaxial-compression\"",
+                "kind = \"uniaxial-compression\"\nspecimen = { shape = \"rectangle\", width = \"40 mm\", height = \"80 mm\" }"),
             replaced(sample_job, "kind = \"uniaxial-compression\"\n", custom_test_in_stages),
             replaced(sample_job, "kind = \"uniaxial-compression\"\n", pressed_test),
             replaced(sample_job, "shape = \"rectangle\"\nwidth = \"80 mm\"\nheight = \"160 mm\"",
-                     "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], [\"0 mm\", \"160 mm\"]]\nedge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\n"
+                     "shape = \"polygon\"\nvertices = [[\"0 mm\", \"0 mm\"], [\"80 mm\", \"0 mm\"], [\"80 mm\", \"160 mm\"], "
+                     "[\"0 mm\", \"160 mm\"]]\nedge_labels = [\"bottom\", \"right\", \"top\", \"left\"]\n"
                      "arcs = [{ edge = 1, through = [\"60 mm\", \"80 mm\"] }]"),
             replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"cyclic-compression\""),
             replaced(sample_job, "[numerics]", uneven_material),
-            replaced(replaced(sample_job, "[numerics]", uneven_material), "[[material.joint]]\nname = \"fault\"\ntrace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", \"70 mm\"]]\nmu = 0.5\nopening = \"1 um\"\n", ""),
-            replaced(replaced(replaced(sample_job, "[numerics]", uneven_material), "cluster_length = \"7 mm\"\n", ""), "value = 7\n", "value = 7\ndiameter = { distribution = \"uniform\", minimum = \"1 mm\", maximum = \"2 mm\" }\n"),
-            replaced(replaced(sample_job, "[numerics]", uneven_material), "mu = 0.5\n", "mu = 0.5\ndilation = \"9 deg\"\ndilation_slip = \"1 mm\"\n"),
-            replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
+            replaced(replaced(sample_job, "[numerics]", uneven_material),
+                     "[[material.joint]]\nname = \"fault\"\ntrace = [[\"0 mm\", \"20 mm\"], [\"40 mm\", \"60 mm\"], [\"80 mm\", "
+                     "\"70 mm\"]]\nmu = 0.5\nopening = \"1 um\"\n",
+                     ""),
+            replaced(replaced(replaced(sample_job, "[numerics]", uneven_material), "cluster_length = \"7 mm\"\n", ""),
+                     "value = 7\n",
+                     "value = 7\ndiameter = { distribution = \"uniform\", minimum = \"1 mm\", maximum = \"2 mm\" }\n"),
+            replaced(replaced(sample_job, "[numerics]", uneven_material), "mu = 0.5\n",
+                     "mu = 0.5\ndilation = \"9 deg\"\ndilation_slip = \"1 mm\"\n"),
+            replaced(sample_job, "kind = \"uniaxial-compression\"",
+                     "kind = \"multi-stage-biaxial\"\nsigma3 = [\"2 MPa\", \"5 MPa\"]"),
         };
     }();
     return all;
@@ -115,7 +130,8 @@ TEST(Keys, DefaultsOfTheRowsAreThoseOfAJobThatSaysNothing) {
                 toml::table value = parse_toml("value = " + usual_text(key), "row");
                 find_table(with, table.path)->insert_or_assign(key.name, *value.get("value"));
                 try {
-                    EXPECT_EQ(resolved_toml(read_tree(with, base, "job")), resolved_toml(read_tree(without, base, "job"))) << table.head << " " << key.name;
+                    EXPECT_EQ(resolved_toml(read_tree(with, base, "job")), resolved_toml(read_tree(without, base, "job")))
+                        << table.head << " " << key.name;
                     shown = true;
                 } catch (const InputError&) {  // this job has no such key
                 }
@@ -165,7 +181,8 @@ TEST(Keys, EachIsAsOftenAsItsNameInATableAndSaysWhatItIs) {
 }
 
 TEST(Keys, OfATestSayWhichMethodsTakeThem) {
-    EXPECT_EQ(applies_text(job_key("test", "sigma3")), "with `kind = \"biaxial\", \"hole-compression\", \"multi-stage-biaxial\"`");
+    EXPECT_EQ(applies_text(job_key("test", "sigma3")),
+              "with `kind = \"biaxial\", \"hole-compression\", \"multi-stage-biaxial\"`");
     EXPECT_EQ(applies_text(job_key("test", "flat_angle")), "with `kind = \"brazilian\"`");
     EXPECT_EQ(applies_text(job_key("test", "stop_fraction")), "");
     EXPECT_TRUE(job_key("test", "plate_mu").when.holds("biaxial"));
@@ -187,7 +204,8 @@ TEST(Schema, HasEveryKeyOfEveryTable) {
         EXPECT_EQ(object["properties"].size(), table.keys.size()) << table.head;
         for (const JobKey& key : table.keys) {
             ASSERT_TRUE(object["properties"].contains(key.name)) << table.head << " " << key.name;
-            EXPECT_FALSE(object["properties"][std::string(key.name)].value("description", "").empty()) << table.head << " " << key.name;
+            EXPECT_FALSE(object["properties"][std::string(key.name)].value("description", "").empty())
+                << table.head << " " << key.name;
         }
     }
 }
@@ -228,7 +246,8 @@ TEST(Schema, RefusesWhatIsNoJob) {
         {"model.kind: is not one of the words", replaced(sample_job, "\"flexible\"", "\"flexibel\"")},
         {"material.grain.nu: is too large", replaced(sample_job, "nu = 0.23", "nu = 0.5")},
         {"test[1]: lacks kind", replaced(sample_job, "kind = \"uniaxial-compression\"", "snapshots = 3")},
-        {"test[1].snapshots: is no integer", replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"biaxial\"\nsnapshots = 0.5")},
+        {"test[1].snapshots: is no integer",
+         replaced(sample_job, "kind = \"uniaxial-compression\"", "kind = \"biaxial\"\nsnapshots = 0.5")},
         {"run.seeds[2]: is too small", replaced(sample_job, "[1, 2, 3, 4, 5]", "[1, -2]")},
         {"run.threads: fits none of several", replaced(sample_job, "seeds = [1, 2, 3, 4, 5]", "threads = 257")},
         {"laboratory.confined[1]: has too few", replaced(sample_job, "UCS = \"122.1 MPa\"", "confined = [[\"4 MPa\"]]")},
@@ -244,11 +263,13 @@ TEST(JobReference, HasTheTablesOfTheRows) {
     if (record != nullptr && *record != '\0' && std::string(record) != "0") {
         std::ofstream(file, std::ios::binary) << wanted;
     } else {
-        EXPECT_TRUE(text == wanted) << "the tables of docs/job.md are not those of src/feldspar/job/keys.cpp. To write them anew:\n"
-                                       "    FELDSPAR_RECORD=1 build/release/test_job --gtest_filter='JobReference.*'";
+        EXPECT_TRUE(text == wanted)
+            << "the tables of docs/job.md are not those of src/feldspar/job/keys.cpp. To write them anew:\n"
+               "    FELDSPAR_RECORD=1 build/release/test_job --gtest_filter='JobReference.*'";
     }
     for (const KeyTable& table : job_tables())
-        EXPECT_NE(wanted.find(key_reference(table)), std::string::npos) << "docs/job.md has no place for the keys of " << table.head;
+        EXPECT_NE(wanted.find(key_reference(table)), std::string::npos)
+            << "docs/job.md has no place for the keys of " << table.head;
 }
 
 TEST(JobReference, RefusesMarksWithoutATableOrAnEnd) {

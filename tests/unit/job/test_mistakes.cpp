@@ -1,4 +1,5 @@
-// All mistakes of a job at once: in the order of lines, each as it is told when it is the only one, and none that only follows from another.
+// All mistakes of a job at once: in the order of lines, each as it is told when it is the only one, and none that only follows
+// from another.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -117,11 +118,13 @@ TEST(Mistakes, ASyntaxErrorStaysAlone) {
 
 // What rests on the broken value must not be held against what stands in for it.
 TEST(Mistakes, OneBrokenLineIsOneMistakeAtItsLine) {
-    for (const std::string& job : {sample_job, variant_job, job_template("laboratory"), job_template("brazilian"), job_template("biaxial")})
+    for (const std::string& job :
+         {sample_job, variant_job, job_template("laboratory"), job_template("brazilian"), job_template("biaxial")})
         for (const BrokenLine& broken : broken_lines(job)) {
             const std::vector<InputError> found = mistakes_of(broken.text);
             ASSERT_EQ(found.size(), 1u) << broken.written << "\n" << message_of(broken.text);
-            if (found.front().problem().find("syntax error") != std::string::npos) continue;   // a head that tears a list of tables in two
+            if (found.front().problem().find("syntax error") != std::string::npos)
+                continue;  // a head that tears a list of tables in two
             EXPECT_EQ(found.front().place().line, broken.line) << broken.written << "\n" << found.front().what();
         }
 }
@@ -130,7 +133,7 @@ TEST(Mistakes, TwoBrokenLinesAreTwoMistakes) {
     const std::vector<BrokenLine> first = broken_lines(sample_job);
     std::size_t tried = 0;
     for (std::size_t i = 0; i < first.size(); ++i) {
-        if (first[i].written.starts_with('[')) continue;   // what is in a table of an unknown name is not read
+        if (first[i].written.starts_with('[')) continue;  // what is in a table of an unknown name is not read
         const std::vector<BrokenLine> both = broken_lines(first[i].text);
         for (std::size_t j = 0; j < both.size(); ++j) {
             if (both[j].line <= first[i].line || both[j].written.starts_with('[')) continue;

@@ -32,7 +32,8 @@ std::string with_tests(const std::string& tests) {
 }
 
 TEST(SetKeys, LiesOverTheFile) {
-    const Job job = with({"material.contact.tau=31MPa", "material.contact.mu = 0.5", "run.seeds=[7, 8]", "model.plane=\"strain\"", "name=other"});
+    const Job job = with(
+        {"material.contact.tau=31MPa", "material.contact.mu = 0.5", "run.seeds=[7, 8]", "model.plane=\"strain\"", "name=other"});
     EXPECT_EQ(job.variants.front().contact.tau_Pa, 31e6);
     EXPECT_EQ(job.variants.front().contact.mu, 0.5);
     EXPECT_EQ(job.seeds, (std::vector<std::uint64_t>{7, 8}));
@@ -57,7 +58,8 @@ TEST(SetKeys, OfAllTestsOrOfAKind) {
             if (test.kind == kind) return test.plate_mu;
         return std::nullopt;
     };
-    const std::vector<std::string> all{"test.plate_mu=0.25"}, one{"test.brazilian.plate_mu=0.15"}, short_name{"test.BTS.plate_mu=0.15"};
+    const std::vector<std::string> all{"test.plate_mu=0.25"}, one{"test.brazilian.plate_mu=0.15"},
+        short_name{"test.BTS.plate_mu=0.15"};
     const Job of_all = parse_job(text, "rock.toml", all);
     EXPECT_EQ(mu(of_all, methods::brazilian), 0.25);
     EXPECT_EQ(mu(of_all, methods::uniaxial_compression), 0.25);
@@ -66,7 +68,8 @@ TEST(SetKeys, OfAllTestsOrOfAKind) {
         EXPECT_EQ(mu(of_one, methods::brazilian), 0.15);
         EXPECT_NE(mu(of_one, methods::uniaxial_compression), 0.15);
     }
-    EXPECT_NE(refused("test.DTS.plate_mu=0.2").find("the job has no test 'direct-tension'"), std::string::npos) << refused("test.DTS.plate_mu=0.2");
+    EXPECT_NE(refused("test.DTS.plate_mu=0.2").find("the job has no test 'direct-tension'"), std::string::npos)
+        << refused("test.DTS.plate_mu=0.2");
 }
 
 TEST(SetKeys, OfAVariantByItsName) {
@@ -98,7 +101,7 @@ TEST(SetKeys, WrongOnesAreRefusedByName) {
         const std::string message = refused(setting);
         EXPECT_FALSE(message.empty()) << setting;
         for (const std::string& part : parts) EXPECT_NE(message.find(part), std::string::npos) << setting << " -> " << message;
-        EXPECT_EQ(message.find("rock.toml:"), std::string::npos) << message;   // no line of the file is to blame
+        EXPECT_EQ(message.find("rock.toml:"), std::string::npos) << message;  // no line of the file is to blame
     }
 }
 
@@ -127,19 +130,20 @@ TEST(GivenUnits, AreThoseOfTheUser) {
     EXPECT_NE(text.find("minimum = \"2 mm\""), std::string::npos) << text;
     EXPECT_NE(text.find("E = \"25.8 GPa\""), std::string::npos) << text;
     EXPECT_NE(text.find("tau = \"31e3 kPa\""), std::string::npos) << text;
-    EXPECT_EQ(resolved_toml(parse_job(text, "again")), resolved_toml(parse_job(resolved_toml(job), "again")));   // the same to the last bit
+    EXPECT_EQ(resolved_toml(parse_job(text, "again")),
+              resolved_toml(parse_job(resolved_toml(job), "again")));  // the same to the last bit
 }
 
 TEST(GivenUnits, AreNotGuessed) {
     Job job = parse_job(sample_job, "rock.toml");
-    job.specimen.outline.width_m = 0.0801;   // no longer what was written
+    job.specimen.outline.width_m = 0.0801;  // no longer what was written
     EXPECT_NE(resolved_toml_in_given_units(job).find("width = \"0.0801 m\""), std::string::npos);
 }
 
 TEST(Names, KeepTheirLetters) {
     EXPECT_EQ(parse_job(sample_job, "Größe 3.toml").name, "Größe-3");
     EXPECT_EQ(parse_job(sample_job, "花岗岩.toml").name, "花岗岩");
-    EXPECT_EQ(parse_job(sample_job, "a\xff\x62.toml").name, "a-b");   // no UTF-8
+    EXPECT_EQ(parse_job(sample_job, "a\xff\x62.toml").name, "a-b");  // no UTF-8
     EXPECT_EQ(parse_job("name = \"Žula-2\"\n" + std::string(sample_job), "x.toml").name, "Žula-2");
     EXPECT_THROW(parse_job("name = \"a/b\"\n" + std::string(sample_job), "x.toml"), InputError);
     EXPECT_EQ(variant_stem("Glimmer, höher"), "glimmer-höher");

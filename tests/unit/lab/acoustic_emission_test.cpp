@@ -1,12 +1,13 @@
 // Events, magnitudes, moments and statistics of cracks.
+#include "feldspar/lab/acoustic_emission.hpp"
+
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <memory>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "feldspar/base/rng.hpp"
-#include "feldspar/lab/acoustic_emission.hpp"
 
 namespace feldspar {
 namespace {
@@ -18,7 +19,7 @@ TestResult result_with(std::vector<Crack> cracks) {
     r.specimen = specimen;
     r.grain = {60e9, 0.25, 2700.0};
     r.length_m = 0.15;
-    r.travel_steps = 400.0;   // 0.375 mm a step: a radius of 15 mm is 40 steps
+    r.travel_steps = 400.0;  // 0.375 mm a step: a radius of 15 mm is 40 steps
     r.cracks = std::move(cracks);
     return r;
 }
@@ -34,10 +35,11 @@ Crack crack(long long step, Vec2 place, double energy_J = 1e-3) {
 }
 
 TEST(AcousticEvents, GatherCracksThatAreNearInPlaceAndTime) {
-    const AcousticEmission e = acoustic_emission(result_with({crack(100, {0.0, 0.0}), crack(130, {0.01, 0.0}),        // joins
-                                                              crack(131, {0.1, 0.0}),                              // elsewhere
-                                                              crack(165, {0.0, 0.01}),                             // joins: 35 steps after the last of its event
-                                                              crack(300, {0.0, 0.0})}));                           // later
+    const AcousticEmission e =
+        acoustic_emission(result_with({crack(100, {0.0, 0.0}), crack(130, {0.01, 0.0}),  // joins
+                                       crack(131, {0.1, 0.0}),                           // elsewhere
+                                       crack(165, {0.0, 0.01}),    // joins: 35 steps after the last of its event
+                                       crack(300, {0.0, 0.0})}));  // later
     EXPECT_DOUBLE_EQ(e.radius_m, 0.015);
     EXPECT_DOUBLE_EQ(e.window_steps, 40.0);
     ASSERT_EQ(e.events.size(), 3U);
@@ -45,11 +47,13 @@ TEST(AcousticEvents, GatherCracksThatAreNearInPlaceAndTime) {
     EXPECT_EQ(e.events[1].cracks, 1);
     EXPECT_EQ(e.events[2].first_step, 300);
     EXPECT_NEAR(e.events[0].place.x, 0.01 / 3.0, 1e-15);
-    EXPECT_EQ(gather_events(result_with({crack(100, {0.0, 0.0}), crack(130, {0.01, 0.0})}), 2.0).events.size(), 2U);   // a smaller radius
+    EXPECT_EQ(gather_events(result_with({crack(100, {0.0, 0.0}), crack(130, {0.01, 0.0})}), 2.0).events.size(),
+              2U);  // a smaller radius
 }
 
 TEST(AcousticEvents, AreCountedForSeveralRadii) {
-    const AcousticEmission e = acoustic_emission(result_with({crack(100, {0.0, 0.0}), crack(101, {0.01, 0.0})}));   // 3.3 grains apart
+    const AcousticEmission e =
+        acoustic_emission(result_with({crack(100, {0.0, 0.0}), crack(101, {0.01, 0.0})}));  // 3.3 grains apart
     ASSERT_EQ(e.counts.size(), 3U);
     EXPECT_EQ(e.counts[0].events, 2U);
     EXPECT_EQ(e.counts[1].events, 2U);
@@ -72,14 +76,15 @@ TEST(AcousticEvents, HaveTheEnergyOfTheirCracks) {
 }
 
 TEST(AcousticEvents, MagnitudeIsThatOfGutenbergAndRichter) {
-    EXPECT_NEAR(acoustic_emission(result_with({crack(1, {}, 2.4e-3)})).events[0].magnitude, -4.95, 0.005);   // an edge of 1.5 x 80 mm at 20 N/m
+    EXPECT_NEAR(acoustic_emission(result_with({crack(1, {}, 2.4e-3)})).events[0].magnitude, -4.95,
+                0.005);  // an edge of 1.5 x 80 mm at 20 N/m
 }
 
 // Equation (P66) by hand: a crack that opens is explosive, one that slides has no volume.
 TEST(AcousticEvents, MomentTellsOpeningFromSliding) {
     Crack opens = crack(1, {});
     opens.opening_m = 1e-6;
-    const double G = 60e9 / 2.5, lambda = 2.0 * G * 0.25 / 0.75;   // plane stress
+    const double G = 60e9 / 2.5, lambda = 2.0 * G * 0.25 / 0.75;  // plane stress
     const AcousticEvent open = acoustic_emission(result_with({opens})).events[0];
     EXPECT_NEAR(open.moment_Nm.yy, 1e-4 * (lambda + 2.0 * G) * 1e-6, 1e-9);
     EXPECT_NEAR(open.moment_Nm.xx, 1e-4 * lambda * 1e-6, 1e-9);
@@ -89,12 +94,13 @@ TEST(AcousticEvents, MomentTellsOpeningFromSliding) {
     slides.slip_m = -1e-6;
     const AcousticEvent slide = acoustic_emission(result_with({slides})).events[0];
     EXPECT_NEAR(slide.isotropy, 0.0, 1e-9);
-    EXPECT_NEAR(slide.moment_Nm.xy, 1e-4 * G * 1e-6, 1e-9);   // slip to the right on the upper face: rot90(n) = (-1, 0)
+    EXPECT_NEAR(slide.moment_Nm.xy, 1e-4 * G * 1e-6, 1e-9);  // slip to the right on the upper face: rot90(n) = (-1, 0)
     EXPECT_NEAR(slide.moment_magnitude, 2.0 / 3.0 * std::log10(1e-4 * G * 1e-6) - 6.07, 1e-9);
 }
 
-TEST(BValue, IsThatOfTheExample) {   // SeismoStats: 24 magnitudes in bins of 0.1
-    const std::vector<double> m{2.0, 2.5, 2.1, 2.2, 2.5, 2.2, 2.6, 2.3, 2.7, 2.2, 2.4, 2.0, 2.7, 2.2, 2.3, 2.1, 2.4, 2.6, 2.2, 2.2, 2.7, 2.4, 2.2, 2.5};
+TEST(BValue, IsThatOfTheExample) {  // SeismoStats: 24 magnitudes in bins of 0.1
+    const std::vector<double> m{2.0, 2.5, 2.1, 2.2, 2.5, 2.2, 2.6, 2.3, 2.7, 2.2, 2.4, 2.0,
+                                2.7, 2.2, 2.3, 2.1, 2.4, 2.6, 2.2, 2.2, 2.7, 2.4, 2.2, 2.5};
     const BValue fit = b_value(m, 2.0, 0.1);
     EXPECT_NEAR(fit.b, 1.114920, 1e-6);
     EXPECT_EQ(fit.events, 24);
@@ -107,7 +113,7 @@ TEST(BValue, OfExponentialMagnitudesIsTheirSlope) {
     std::vector<double> m;
     for (int i = 0; i < 20000; ++i) m.push_back(-6.0 - std::log(1.0 - random.uniform()) / (1.3 * std::log(10.0)));
     const BValue fit = b_value(m, -6.0);
-    EXPECT_NEAR(fit.b, 1.3, 3.0 * 1.3 / std::sqrt(20000.0));   // three standard errors
+    EXPECT_NEAR(fit.b, 1.3, 3.0 * 1.3 / std::sqrt(20000.0));  // three standard errors
     EXPECT_NEAR(fit.error, 1.3 / std::sqrt(20000.0), 0.1 * fit.error);
 }
 
@@ -127,7 +133,7 @@ TEST(FractalDimension, IsTwoInThePlaneAndOneOnALine) {
         plane.push_back({random.uniform(), random.uniform()});
         line.push_back({random.uniform(), 0.0});
     }
-    EXPECT_NEAR(correlation_dimension(plane), 2.0, 0.25);   // the edge takes some off
+    EXPECT_NEAR(correlation_dimension(plane), 2.0, 0.25);  // the edge takes some off
     EXPECT_NEAR(correlation_dimension(line), 1.0, 0.12);
 }
 

@@ -1,7 +1,8 @@
 // Cycles read from records by formula: what each loses and keeps is known.
+#include "feldspar/lab/cycles.hpp"
+
 #include <gtest/gtest.h>
 
-#include "feldspar/lab/cycles.hpp"
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/lab/multi_stage.hpp"
 #include "synthetic_records.hpp"
@@ -32,8 +33,9 @@ TestResult record_of(MethodId kind, const std::vector<Corner>& corners, int rows
         stage.first_row = r.history.size() - 1;
         for (int i = 1; i <= rows; ++i) {
             const double share = static_cast<double>(i) / rows;
-            HistoryRow next = synthetic::row(Phase::loading, from.step + 10 * i, from.axial_strain + share * (to.strain - from.axial_strain),
-                                             from.axial_stress_Pa + share * (to.stress_Pa - from.axial_stress_Pa));
+            HistoryRow next =
+                synthetic::row(Phase::loading, from.step + 10 * i, from.axial_strain + share * (to.strain - from.axial_strain),
+                               from.axial_stress_Pa + share * (to.stress_Pa - from.axial_stress_Pa));
             next.lateral_strain_gauge = from.lateral_strain_gauge + share * (to.lateral - from.lateral_strain_gauge);
             next.stage = static_cast<int>(r.stages.size()) + 1;
             next.energy = {};
@@ -49,7 +51,8 @@ TestResult record_of(MethodId kind, const std::vector<Corner>& corners, int rows
 
 // To 50 MPa and back to 1 MPa with 25 GPa and 20 GPa; to 80 MPa with 22 GPa and back with 16 GPa; then to failure at 60 MPa.
 TestResult two_cycles() {
-    const double back1 = 2e-3 - 49 * MPa_ / 20e9, top2 = back1 + 79 * MPa_ / 22e9, back2 = top2 - 79 * MPa_ / 16e9, top3 = back2 + 59 * MPa_ / 12e9;
+    const double back1 = 2e-3 - 49 * MPa_ / 20e9, top2 = back1 + 79 * MPa_ / 22e9, back2 = top2 - 79 * MPa_ / 16e9,
+                 top3 = back2 + 59 * MPa_ / 12e9;
     return record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_},
                                                    {StageKind::unload, back1, -1.1e-4, 1 * MPa_},
                                                    {StageKind::load, top2, -1.4e-3, 80 * MPa_},
@@ -97,7 +100,9 @@ TEST(Cycles, ShareTheWorkOfTheTest) {
 
 TEST(Cycles, ThereAreNoneWithoutUnloading) {
     EXPECT_TRUE(cycles_of(synthetic::linear(methods::uniaxial_compression, 100 * MPa_)).empty());
-    EXPECT_TRUE(cycles_of(record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_}, {StageKind::hold, 2e-3, -5e-4, 49 * MPa_}})).empty());
+    EXPECT_TRUE(cycles_of(record_of(methods::cyclic_compression,
+                                    {{StageKind::load, 2e-3, -5e-4, 50 * MPa_}, {StageKind::hold, 2e-3, -5e-4, 49 * MPa_}}))
+                    .empty());
 }
 
 TEST(PeakInStages, IsTheLargestStressThatALoadingHasFallenFrom) {
@@ -105,11 +110,15 @@ TEST(PeakInStages, IsTheLargestStressThatALoadingHasFallenFrom) {
     ASSERT_TRUE(peak);
     EXPECT_EQ(peak->stress_Pa, 80 * MPa_);
     EXPECT_TRUE(peak->reached) << "the third loading fails";
-    const auto open = find_peak(record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_}, {StageKind::unload, 0.0, 0.0, 1 * MPa_}, {StageKind::load, 2e-3, -5e-4, 49 * MPa_}}));
+    const auto open = find_peak(record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_},
+                                                                        {StageKind::unload, 0.0, 0.0, 1 * MPa_},
+                                                                        {StageKind::load, 2e-3, -5e-4, 49 * MPa_}}));
     ASSERT_TRUE(open);
     EXPECT_FALSE(open->reached) << "what is unloaded has not failed";
     // The second loading ends by its widening, without a fall of its own: it is wider than at the peak and bears less.
-    const auto weaker = find_peak(record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_}, {StageKind::unload, 0.0, -1e-4, 1 * MPa_}, {StageKind::load, 2.1e-3, -9e-4, 40 * MPa_}}));
+    const auto weaker = find_peak(record_of(methods::cyclic_compression, {{StageKind::load, 2e-3, -5e-4, 50 * MPa_},
+                                                                          {StageKind::unload, 0.0, -1e-4, 1 * MPa_},
+                                                                          {StageKind::load, 2.1e-3, -9e-4, 40 * MPa_}}));
     ASSERT_TRUE(weaker);
     EXPECT_TRUE(weaker->reached);
 }
@@ -122,7 +131,8 @@ TEST(LoadingCurve, LeavesLoopsOut) {
 }
 
 TEST(MultiStage, EarlierStrengthsAreScaledByTheLastStage) {
-    // Under 2 MPa the volume turns at 52 MPa, under 5 MPa at 75 MPa, before the peak of 89 MPa there: deviators 50, 70 and 84 MPa.
+    // Under 2 MPa the volume turns at 52 MPa, under 5 MPa at 75 MPa, before the peak of 89 MPa there: deviators 50, 70 and 84
+    // MPa.
     TestResult r = record_of(methods::multi_stage_biaxial, {{StageKind::load, 2.0e-3, -0.5e-3, 52 * MPa_},
                                                             {StageKind::load, 2.1e-3, -0.8e-3, 51 * MPa_},
                                                             {StageKind::confine, 2.1e-3, -0.7e-3, 51 * MPa_},

@@ -1,8 +1,9 @@
-#include <cmath>
+#include "feldspar/lab/damage_thresholds.hpp"
 
 #include <gtest/gtest.h>
 
-#include "feldspar/lab/damage_thresholds.hpp"
+#include <cmath>
+
 #include "synthetic_records.hpp"
 
 using namespace feldspar;
@@ -66,10 +67,10 @@ TEST(DamageThresholds, LateralStrainResponse) {
 TEST(DamageThresholds, CrackCountTakesOnePercentOfTheCracksAtThePeak) {
     TestResult r = dilating(b_for_cd);
     for (int i = 0; i < 250; ++i) r.cracks.push_back(crack(500 + i, 50e6 + 0.1e6 * i));
-    for (int i = 0; i < 1000; ++i) r.cracks.push_back(crack(1201 + i, 60e6));   // after the peak: not counted
+    for (int i = 0; i < 1000; ++i) r.cracks.push_back(crack(1201 + i, 60e6));  // after the peak: not counted
     EXPECT_NEAR(measure(r).sigma_ci_crack_count_Pa, 50.2e6, 1.0) << "the third of 250";
     EXPECT_DOUBLE_EQ(measure(r).first_crack_Pa, 50e6);
-    std::swap(r.cracks[0], r.cracks[249]);   // the order of the list does not matter
+    std::swap(r.cracks[0], r.cracks[249]);  // the order of the list does not matter
     EXPECT_NEAR(measure(r).sigma_ci_crack_count_Pa, 50.2e6, 1.0);
     EXPECT_DOUBLE_EQ(measure(r).first_crack_Pa, 50e6);
 }

@@ -62,7 +62,8 @@ TEST(SplittingCrack, CracksBesideThePlatesDoNotSplitIt) {
 TEST(SplittingCrack, APathOutsideTheCentralBandDoesNotSplitIt) {
     EXPECT_FALSE(searched(path({{0.012, -0.030}, {0.012, 0.030}}, 0)).split()) << "the band is 8 mm to either side";
     EXPECT_TRUE(searched(path({{0.007, -0.030}, {0.007, 0.030}}, 0)).split());
-    EXPECT_FALSE(searched(path({{0.0, -0.030}, {0.0, -0.002}, {0.014, 0.0}, {0.0, 0.002}, {0.0, 0.030}}, 0)).split()) << "leaves the band between its halves";
+    EXPECT_FALSE(searched(path({{0.0, -0.030}, {0.0, -0.002}, {0.014, 0.0}, {0.0, 0.002}, {0.0, 0.030}}, 0)).split())
+        << "leaves the band between its halves";
     EXPECT_EQ(searched(path({{0.012, -0.030}, {0.012, 0.030}}, 0)).begin(), std::nullopt);
     // coarse grains widen the band: two grains of 6 mm
     EXPECT_DOUBLE_EQ((LoadedDisc{{0.0, 0.0}, disc_radius, 0.006}).band_half_width_m(), 0.012);
@@ -78,9 +79,10 @@ TEST(SplittingCrack, APathThatWandersSplitsItAndBranchesDoNotMatter) {
 
 TEST(SplittingCrack, TheOrderOfCracksWithinAStepDoesNotMatter) {
     auto cracks = path({{0.0, -0.026}, {0.005, -0.016}, {-0.006, -0.004}, {0.004, 0.010}, {0.0, 0.026}}, 0);
-    for (Crack& c : cracks) c.step = c.step / 20;   // many at once
+    for (Crack& c : cracks) c.step = c.step / 20;  // many at once
     const SplittingCrack one = searched(cracks);
-    std::stable_sort(cracks.begin(), cracks.end(), [](const Crack& a, const Crack& b) { return a.step != b.step ? a.step < b.step : a.place.x > b.place.x; });
+    std::stable_sort(cracks.begin(), cracks.end(),
+                     [](const Crack& a, const Crack& b) { return a.step != b.step ? a.step < b.step : a.place.x > b.place.x; });
     const SplittingCrack other = searched(cracks);
     EXPECT_EQ(one.split_step(), other.split_step());
     EXPECT_EQ(one.begin()->step, other.begin()->step);
@@ -90,7 +92,7 @@ TEST(SplittingCrack, TheOrderOfCracksWithinAStepDoesNotMatter) {
 // (P1): a dip at 6.2, a higher stress at 9 while the disc splits, and a still higher one when its halves carry load again.
 TEST(BrazilianStrength, IsTheLargestStressUntilTheDiscIsSplit) {
     TestResult r = disc_record({1e6, 4e6, 6.2e6, 5e6, 7e6, 9e6, 8.9e6, 4e6, 11e6});
-    r.cracks = path({{0.0, 0.036}, {0.0, 0.038}}, 25);   // beside the plate, early
+    r.cracks = path({{0.0, 0.036}, {0.0, 0.038}}, 25);  // beside the plate, early
     for (Crack& c : path({{0.0, -0.026}, {0.0, 0.026}}, 61)) {
         c.step = 61;
         r.cracks.push_back(c);
@@ -119,12 +121,13 @@ TEST(BrazilianStrength, IsALowerBoundWhileTheDiscIsWhole) {
 
 TEST(BrazilianStrength, SaysWhereTheFirstCrackAndTheSplittingOneBegan) {
     TestResult r = disc_record({2e6, 4e6, 6e6, 8e6, 3e6});
-    Crack beside = path({{0.010, 0.034}, {0.0105, 0.034}}, 11).front();   // in no path
+    Crack beside = path({{0.010, 0.034}, {0.0105, 0.034}}, 11).front();  // in no path
     beside.axial_stress_Pa = 4e6;
     std::vector<Crack> from_centre = path({{0.0, -0.001}, {0.0, 0.001}}, 21);
     for (Crack& c : from_centre) c.axial_stress_Pa = 6e6;
     r.cracks = both({beside}, from_centre);
-    for (const auto& half : {path({{0.0, 0.001}, {0.0, 0.030}}, 31), path({{0.0, -0.001}, {0.0, -0.030}}, 31)}) r.cracks = both(r.cracks, half);
+    for (const auto& half : {path({{0.0, 0.001}, {0.0, 0.030}}, 31), path({{0.0, -0.001}, {0.0, -0.030}}, 31)})
+        r.cracks = both(r.cracks, half);
     const BrazilianFailure b = measure(r).brazilian;
     EXPECT_NEAR(b.first_crack_radius, std::hypot(10.25, 34.0) / 40.0, 1e-9);
     EXPECT_NEAR(b.first_crack_angle_deg, std::atan2(10.25, 34.0) * 180.0 / std::acos(-1.0), 1e-9);
@@ -134,7 +137,8 @@ TEST(BrazilianStrength, SaysWhereTheFirstCrackAndTheSplittingOneBegan) {
     EXPECT_TRUE(b.valid);
     EXPECT_EQ(judge(r).verdict.find("centre start"), std::string::npos);
 
-    r.cracks = both(path({{0.0, 0.038}, {0.0, 0.020}}, 1), r.cracks);   // the same path meets a crack from the plate that came first
+    r.cracks =
+        both(path({{0.0, 0.038}, {0.0, 0.020}}, 1), r.cracks);  // the same path meets a crack from the plate that came first
     const BrazilianFailure from_plate = measure(r).brazilian;
     EXPECT_GT(from_plate.splitting_radius, 0.9);
     EXPECT_TRUE(from_plate.split);
@@ -154,7 +158,8 @@ TEST(BrazilianStrength, ItsMomentsAreMarkedInTheirOrder) {
     const std::vector<BrazilianMark> marks = brazilian_marks(r);
     std::vector<std::string> names;
     for (const BrazilianMark& mark : marks) names.push_back(mark.name);
-    EXPECT_EQ(names, (std::vector<std::string>{"first crack", "first dip", "start of the splitting crack", "strength", "largest stress"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"first crack", "first dip", "start of the splitting crack", "strength",
+                                               "largest stress"}));
     EXPECT_EQ(marks[0].crack, 0);
     EXPECT_EQ(marks[1].crack, -1);
     EXPECT_DOUBLE_EQ(marks[1].stress_Pa, 6.2e6);
@@ -164,7 +169,8 @@ TEST(BrazilianStrength, ItsMomentsAreMarkedInTheirOrder) {
     EXPECT_DOUBLE_EQ(marks[3].stress_Pa, 9e6);
     EXPECT_DOUBLE_EQ(marks[4].stress_Pa, 11e6);
     EXPECT_TRUE(brazilian_marks(linear(methods::uniaxial_compression, 100e6)).empty());
-    EXPECT_EQ(brazilian_marks(disc_record({1e6, 2e6})).size(), 2u) << "without cracks: the strength, and the dip that is where it is";
+    EXPECT_EQ(brazilian_marks(disc_record({1e6, 2e6})).size(), 2u)
+        << "without cracks: the strength, and the dip that is where it is";
 }
 
 TEST(BrazilianStrength, SaysWhyATestIsNotValid) {
@@ -191,7 +197,7 @@ TEST(BrazilianStrength, KeepsTheArcsOfContactOfTheRowOfTheStrength) {
 TEST(Arcs, TakeTensionFromTheCentre) {
     EXPECT_EQ(tension_under_arcs(0.0), 1.0);
     const double a = 0.5 * 4.0 * std::acos(-1.0) / 180.0;
-    EXPECT_NEAR(tension_under_arcs(4.0), 1.0 - 4.0 / 3.0 * a * a, 1e-6);   // the next term is 4/15 a^4 = 4e-7
+    EXPECT_NEAR(tension_under_arcs(4.0), 1.0 - 4.0 / 3.0 * a * a, 1e-6);  // the next term is 4/15 a^4 = 4e-7
     EXPECT_NEAR(tension_under_arcs(90.0), 4.0 / std::acos(-1.0) - 1.0, 1e-12);
 
     TestResult r = disc_record({2e6, 4e6, 6e6, 8e6, 3e6});
@@ -201,7 +207,8 @@ TEST(Arcs, TakeTensionFromTheCentre) {
     };
     EXPECT_TRUE(remarks_at(20.0).empty());
     ASSERT_EQ(remarks_at(30.0).size(), 1u);
-    EXPECT_NE(remarks_at(30.0).front().find("arcs of 30 degrees: the tension in its centre was down to 0.91"), std::string::npos) << remarks_at(30.0).front();
+    EXPECT_NE(remarks_at(30.0).front().find("arcs of 30 degrees: the tension in its centre was down to 0.91"), std::string::npos)
+        << remarks_at(30.0).front();
 }
 
 }  // namespace

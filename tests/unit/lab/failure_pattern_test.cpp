@@ -1,10 +1,11 @@
 // Failure patterns drawn by hand, with known shares, directions and concentration.
+#include "feldspar/lab/failure_pattern.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "feldspar/lab/failure_pattern.hpp"
 #include "synthetic_records.hpp"
 
 namespace feldspar {
@@ -38,7 +39,8 @@ TEST(FailurePattern, SharesAreByLength) {
 
 TEST(FailurePattern, DirectionsAreLinesWithoutAHead) {
     TestResult result = synthetic::linear(methods::uniaxial_compression, 100e6);
-    result.cracks = {crack_at({0.04, 0.08}, 175.0), crack_at({0.04, 0.08}, 5.0), crack_at({0.04, 0.08}, -5.0), crack_at({0.04, 0.08}, -175.0)};
+    result.cracks = {crack_at({0.04, 0.08}, 175.0), crack_at({0.04, 0.08}, 5.0), crack_at({0.04, 0.08}, -5.0),
+                     crack_at({0.04, 0.08}, -175.0)};
     FailurePattern pattern = failure_pattern(result);
     EXPECT_NEAR(pattern.crack_angle_deg, 0.0, 1e-9);
     EXPECT_NEAR(pattern.crack_alignment, std::cos(10.0 * 3.14159265358979323846 / 180.0), 1e-12);
@@ -62,12 +64,14 @@ TEST(FailurePattern, OneBandIsAllInATenthAndEvenCrackingIsATenth) {
     EXPECT_NEAR(failure_pattern(result).crack_localisation, 0.1, 1e-9);
 }
 
-/// Cracks of a direction along a line through the middle of the specimen, at `tilt` degrees from the loading axis, and a few elsewhere.
+/// Cracks of a direction along a line through the middle of the specimen, at `tilt` degrees from the loading axis, and a few
+/// elsewhere.
 TestResult banded(double tilt, double direction, MethodId kind = methods::uniaxial_compression) {
     TestResult result = synthetic::linear(kind, 100e6);
     result.specimen = rectangle();
     const double angle = tilt * 3.14159265358979323846 / 180.0;
-    for (int i = -30; i <= 30; ++i) result.cracks.push_back(crack_at({0.04 + 1e-3 * i * std::sin(angle), 0.08 + 1e-3 * i * std::cos(angle)}, direction));
+    for (int i = -30; i <= 30; ++i)
+        result.cracks.push_back(crack_at({0.04 + 1e-3 * i * std::sin(angle), 0.08 + 1e-3 * i * std::cos(angle)}, direction));
     return result;
 }
 
@@ -79,7 +83,7 @@ TEST(FailurePattern, TheMostCrackedTenthHasALengthAndADirection) {
     }
     TestResult even = synthetic::linear(methods::uniaxial_compression, 100e6);
     even.specimen = rectangle();
-    for (int i = 0; i < 4; ++i)   // a square of cracks: no direction
+    for (int i = 0; i < 4; ++i)  // a square of cracks: no direction
         for (int j = 0; j < 4; ++j) even.cracks.push_back(crack_at({0.033 + 0.002 * i, 0.073 + 0.002 * j}, 0.0));
     EXPECT_NEAR(failure_pattern(even).band_elongation, 1.0, 1e-6);
 }
@@ -90,12 +94,14 @@ TEST(FailureMode, IsNamedByWhereTheCracksAreAndHowTheyLie) {
     EXPECT_EQ(failure_mode(banded(30.0, 2.0, methods::biaxial)).name, "shear band");
     EXPECT_EQ(failure_mode(banded(75.0, 2.0)).name, "axial cracks without one form");
     EXPECT_EQ(failure_mode(banded(30.0, 2.0)).words,
-              "The most cracked tenth of the specimen has 100 % of the crack length; it is 1414.2 times as long as wide, at 30 degrees to the loading axis. "
+              "The most cracked tenth of the specimen has 100 % of the crack length; it is 1414.2 times as long as wide, at 30 "
+              "degrees to the loading axis. "
               "100 % of the crack length is tensile; cracks lie at 2 degrees to the axis in the mean, with an alignment of 1.00");
     TestResult everywhere = synthetic::linear(methods::uniaxial_compression, 100e6);
     everywhere.specimen = rectangle();
     for (int i = 0; i < 10; ++i)
-        for (int j = 0; j < 20; ++j) everywhere.cracks.push_back(crack_at({0.004 + 0.008 * i, 0.004 + 0.008 * j}, 37.0 * (i + 3 * j)));
+        for (int j = 0; j < 20; ++j)
+            everywhere.cracks.push_back(crack_at({0.004 + 0.008 * i, 0.004 + 0.008 * j}, 37.0 * (i + 3 * j)));
     EXPECT_EQ(failure_mode(everywhere).name, "crushing");
 }
 
@@ -105,7 +111,8 @@ TEST(FailureMode, IsOfSpecimensThatFailedInCompression) {
     few.cracks.resize(20);
     EXPECT_TRUE(failure_mode(few).name.empty());
     TestResult whole = banded(30.0, 2.0);
-    while (!whole.history.empty() && whole.history.back().axial_stress_Pa < 0.999 * 100e6) whole.history.pop_back();   // ends at its largest stress
+    while (!whole.history.empty() && whole.history.back().axial_stress_Pa < 0.999 * 100e6)
+        whole.history.pop_back();  // ends at its largest stress
     EXPECT_TRUE(failure_mode(whole).name.empty());
 }
 
@@ -116,7 +123,8 @@ TEST(FailurePattern, TheFallIsMeasuredInStrainsAtThePeak) {
 
 TEST(FailurePattern, NothingCrackedSaysNothing) {
     const FailurePattern pattern = failure_pattern(synthetic::record(methods::brazilian));
-    for (const double value : {pattern.tensile_share, pattern.crack_angle_deg, pattern.crack_alignment, pattern.crack_localisation, pattern.post_peak_strain})
+    for (const double value : {pattern.tensile_share, pattern.crack_angle_deg, pattern.crack_alignment,
+                               pattern.crack_localisation, pattern.post_peak_strain})
         EXPECT_TRUE(std::isnan(value));
 }
 

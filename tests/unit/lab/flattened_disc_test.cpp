@@ -14,23 +14,26 @@ namespace {
 double k(double degrees, FlatLoading loading) { return flat_coefficient(degrees * std::numbers::pi / 180.0, loading); }
 
 TEST(FlattenedDisc, UnderAUniformPressureHasThePublishedCoefficient) {
-    EXPECT_NEAR(k(20.0, {}), 0.9644, 5e-4);   // Wang and others 2004, finite elements
+    EXPECT_NEAR(k(20.0, {}), 0.9644, 5e-4);  // Wang and others 2004, finite elements
     EXPECT_NEAR(k(30.0, {}), 0.9208, 1e-3);
     EXPECT_DOUBLE_EQ(flat_coefficient(0.0, {}), 1.0) << "a whole disc";
 }
 
-// Finite elements of the disc between rigid and yielding plates: 864 quadrilaterals of nine nodes on a quarter, nu 0.23. The tolerance is
-// what the fits leave.
+// Finite elements of the disc between rigid and yielding plates: 864 quadrilaterals of nine nodes on a quarter, nu 0.23. The
+// tolerance is what the fits leave.
 TEST(FlattenedDisc, IsThatOfFiniteElementsForEveryPlate) {
     struct Case {
         double degrees, hardness, eta, mu, expected;
     };
-    for (const Case& c : {Case{10, 0, 0, 0, 0.9910},      {20, 0, 0, 0, 0.9643},      {30, 0, 0, 0, 0.9203},       {40, 0, 0, 0, 0.8607},
-                          {10, 1e4, 0, 0, 0.9847},        {20, 1e4, 0, 0, 0.9399},    {30, 1e4, 0, 0, 0.8694},     {40, 1e4, 0, 0, 0.7798},
-                          {20, 0.43, 0, 0, 0.9606},       {20, 48, 0, 0, 0.9419},     {20, 0.43, 0.28, 0.4, 0.9566}, {20, 0.43, 1, 0.4, 0.9494},
-                          {20, 48, 0.28, 0.05, 0.9371},   {20, 48, 0.28, 0.2, 0.9240}, {20, 48, 0.28, 0.4, 0.9155},  {20, 48, 0.28, 1e9, 0.9145},
-                          {10, 1e3, 0.28, 0.4, 0.9681},   {30, 1e3, 0.28, 0.4, 0.8396}, {40, 1e3, 0.28, 0.4, 0.7547}, {30, 0.43, 0.28, 0.4, 0.9076}})
-        EXPECT_NEAR(k(c.degrees, {c.hardness, c.eta, c.mu}), c.expected, 2e-3) << c.degrees << " degrees, hardness " << c.hardness << ", mu " << c.mu;
+    for (const Case& c : {Case{10, 0, 0, 0, 0.9910},    {20, 0, 0, 0, 0.9643},         {30, 0, 0, 0, 0.9203},
+                          {40, 0, 0, 0, 0.8607},        {10, 1e4, 0, 0, 0.9847},       {20, 1e4, 0, 0, 0.9399},
+                          {30, 1e4, 0, 0, 0.8694},      {40, 1e4, 0, 0, 0.7798},       {20, 0.43, 0, 0, 0.9606},
+                          {20, 48, 0, 0, 0.9419},       {20, 0.43, 0.28, 0.4, 0.9566}, {20, 0.43, 1, 0.4, 0.9494},
+                          {20, 48, 0.28, 0.05, 0.9371}, {20, 48, 0.28, 0.2, 0.9240},   {20, 48, 0.28, 0.4, 0.9155},
+                          {20, 48, 0.28, 1e9, 0.9145},  {10, 1e3, 0.28, 0.4, 0.9681},  {30, 1e3, 0.28, 0.4, 0.8396},
+                          {40, 1e3, 0.28, 0.4, 0.7547}, {30, 0.43, 0.28, 0.4, 0.9076}})
+        EXPECT_NEAR(k(c.degrees, {c.hardness, c.eta, c.mu}), c.expected, 2e-3)
+            << c.degrees << " degrees, hardness " << c.hardness << ", mu " << c.mu;
 }
 
 TEST(FlattenedDisc, HasLessOfTheLoadInItsCentreTheWiderAndHarderAndRougherItIsPressed) {
@@ -44,7 +47,7 @@ TEST(FlattenedDisc, HasLessOfTheLoadInItsCentreTheWiderAndHarderAndRougherItIsPr
 TEST(FlattenedDisc, IsSplitByAPathOverSixTenthsOfWhatIsLeftOfItsDiameter) {
     const LoadedDisc whole{{0.0, 0.0}, 0.04, 0.003}, flattened{{0.0, 0.0}, 0.04, 0.003, 0.03};
     SplittingCrack a(whole), b(flattened);
-    for (const Crack& c : synthetic::path({{0.0, -0.019}, {0.0, 0.019}}, 0)) {   // 38 mm: 0.475 of 80 mm, 0.633 of 60 mm
+    for (const Crack& c : synthetic::path({{0.0, -0.019}, {0.0, 0.019}}, 0)) {  // 38 mm: 0.475 of 80 mm, 0.633 of 60 mm
         a.add(c);
         b.add(c);
     }

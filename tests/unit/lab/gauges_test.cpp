@@ -1,10 +1,10 @@
 // The weights of the strain gauge: those of the least-squares plane, at a cost in proportion to the grains.
 #include "feldspar/lab/gauges.hpp"
 
-#include <cmath>
+#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <gtest/gtest.h>
+#include <cmath>
 
 #include "feldspar/base/rng.hpp"
 
@@ -24,17 +24,17 @@ std::vector<Vec2> scattered(int count, Vec2 corner, double width_m, double heigh
 TEST(Gauge, TheWeightsAreThoseOfThePseudoInverse) {
     const double height = 0.16;
     const std::vector<Vec2> points = scattered(50, {0.3, -0.2}, 0.08, height);
-    Eigen::MatrixXd A(50, 3);   // value = c0 + c1 x + c2 y, lengths over the height
+    Eigen::MatrixXd A(50, 3);  // value = c0 + c1 x + c2 y, lengths over the height
     for (int i = 0; i < 50; ++i) A.row(i) << 1.0, points[i].x / height, points[i].y / height;
     const Eigen::MatrixXd expected = A.completeOrthogonalDecomposition().pseudoInverse() / height;
     const SlopeWeights weights = slope_weights(points, height);
-    for (int i = 0; i < 50; ++i) {   // weights are about 1 / (50 x 0.05 m); rounding of the decomposition
+    for (int i = 0; i < 50; ++i) {  // weights are about 1 / (50 x 0.05 m); rounding of the decomposition
         EXPECT_NEAR(weights.x[i], expected(1, i), 1e-12);
         EXPECT_NEAR(weights.y[i], expected(2, i), 1e-12);
     }
 }
 
-TEST(Gauge, AMillionPointsOfAPlaneGiveItsSlopes) {   // through an N x N matrix, these would take 8 TB
+TEST(Gauge, AMillionPointsOfAPlaneGiveItsSlopes) {  // through an N x N matrix, these would take 8 TB
     const std::vector<Vec2> points = scattered(1'000'000, {0.0, 0.0}, 1.0, 2.0);
     const SlopeWeights weights = slope_weights(points, 2.0);
     double along_x = 0.0, along_y = 0.0;
@@ -43,14 +43,14 @@ TEST(Gauge, AMillionPointsOfAPlaneGiveItsSlopes) {   // through an N x N matrix,
         along_x += weights.x[i] * value;
         along_y += weights.y[i] * value;
     }
-    EXPECT_NEAR(along_x, 2e-3, 1e-11);   // rounding of a million terms of 7e-6
+    EXPECT_NEAR(along_x, 2e-3, 1e-11);  // rounding of a million terms of 7e-6
     EXPECT_NEAR(along_y, -5e-3, 1e-11);
 }
 
 TEST(Gauge, PointsOnALineGiveTheSlopeAlongIt) {
     const std::vector<Vec2> points = {{0.0, 0.0}, {0.0, 0.1}, {0.0, 0.2}};
     const SlopeWeights weights = slope_weights(points, 0.2);
-    EXPECT_NEAR(weights.y[2] - weights.y[0], 10.0, 1e-12);   // (0.1 - -0.1) / (0.1^2 + 0.1^2)
+    EXPECT_NEAR(weights.y[2] - weights.y[0], 10.0, 1e-12);  // (0.1 - -0.1) / (0.1^2 + 0.1^2)
     for (const double w : weights.x) EXPECT_EQ(w, 0.0);
 }
 

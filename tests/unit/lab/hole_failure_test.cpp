@@ -1,10 +1,10 @@
 // What is read of a plate with a hole, from a record written by hand.
 #include "feldspar/lab/hole_failure.hpp"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <memory>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/methods/round_hole.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -73,7 +73,7 @@ TEST(HoleFailure, IsReadFromTheRecord) {
     EXPECT_DOUBLE_EQ(p.pole_crack_Pa, 29.0 * MPa);
     EXPECT_DOUBLE_EQ(p.side_crack_Pa, 37.0 * MPa);
     EXPECT_DOUBLE_EQ(p.breakout_Pa, 58.0 * MPa);
-    EXPECT_NEAR(p.breakout_side_stress_Pa, 3.2 * 60.0 * MPa, 1.0);   // of the row that closes the interval
+    EXPECT_NEAR(p.breakout_side_stress_Pa, 3.2 * 60.0 * MPa, 1.0);  // of the row that closes the interval
     EXPECT_NEAR(p.depth_at_peak_m, 3.0 * mm, 1e-9);
     EXPECT_NEAR(p.depth_at_end_m, 6.5 * mm, 1e-9);
 }
@@ -83,7 +83,8 @@ TEST(HoleFailure, UnderAPressureThereAreNoFactorsAndWithoutCracksThereIsNoFailur
     EXPECT_TRUE(std::isnan(hole_failure(r, {6, 60.0 * MPa, true}).side_factor));
     r.cracks.clear();
     const HoleProperties p = hole_failure(r, {6, 60.0 * MPa, true});
-    for (const double none : {p.pole_crack_Pa, p.side_crack_Pa, p.breakout_Pa, p.breakout_side_stress_Pa}) EXPECT_TRUE(std::isnan(none));
+    for (const double none : {p.pole_crack_Pa, p.side_crack_Pa, p.breakout_Pa, p.breakout_side_stress_Pa})
+        EXPECT_TRUE(std::isnan(none));
     EXPECT_EQ(p.depth_at_end_m, 0.0);
 }
 

@@ -1,7 +1,7 @@
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <limits>
-
-#include <gtest/gtest.h>
 
 #include "synthetic_records.hpp"
 
@@ -86,9 +86,7 @@ TEST(Judge, LimitsOfTheVerdictTable) {
         {"imbalance", methods::brazilian, 3e-2, 5e-2, set_imbalance},
     };
     for (const Limit& line : table) {
-        const auto grade = [&](double value) {
-            return judged(line.kind, [&](HistoryRow& h) { line.set(h, value); }).grade;
-        };
+        const auto grade = [&](double value) { return judged(line.kind, [&](HistoryRow& h) { line.set(h, value); }).grade; };
         EXPECT_EQ(grade(0.99 * line.a), 'A') << line.quantity << ", " << name(line.kind);
         EXPECT_EQ(grade(1.01 * line.a), 'B') << line.quantity << ", " << name(line.kind);
         EXPECT_EQ(grade(0.99 * line.b), 'B') << line.quantity << ", " << name(line.kind);
@@ -100,10 +98,11 @@ TEST(Judge, LimitsOfTheVerdictTable) {
 TEST(Judge, EstimatesTheErrorOfTheStrength) {
     const auto change = [](HistoryRow& h) {
         if (std::abs(h.axial_stress_Pa) < 89.5e6) return set_median(h, 1.0);
-        set_median(h, std::abs(h.axial_stress_Pa) < 94.5e6 ? 0.0 : 1.1e-2);   // six of the eleven rows
+        set_median(h, std::abs(h.axial_stress_Pa) < 94.5e6 ? 0.0 : 1.1e-2);  // six of the eleven rows
         set_growth(h, 0.02);
     };
-    const QuasiStaticEvidence pressed = judged(methods::uniaxial_compression, change), pulled = judged(methods::direct_tension, change);
+    const QuasiStaticEvidence pressed = judged(methods::uniaxial_compression, change),
+                              pulled = judged(methods::direct_tension, change);
     EXPECT_NEAR(pressed.residual_median, 6e-3, 1e-12);
     EXPECT_NEAR(pressed.load_per_travel_time, 0.02, 1e-12);
     EXPECT_NEAR(pressed.error_estimate, 2.0 * 6e-3 + 5e-3, 1e-12);
@@ -128,7 +127,7 @@ TEST(Judge, SaysWhatFailedAndWhatToDo) {
     EXPECT_EQ(e.grade, 'C');
     EXPECT_TRUE(says(e, "Not shown to be quasi-static")) << e.verdict;
     EXPECT_TRUE(says(e, "two platens' loads is 4.2 % (2 % allowed)")) << e.verdict;
-    EXPECT_TRUE(says(e, "run with accuracy = \"0.5 %\"")) << e.verdict;   // 2.1 times smaller than the default
+    EXPECT_TRUE(says(e, "run with accuracy = \"0.5 %\"")) << e.verdict;  // 2.1 times smaller than the default
 
     TestResult r = linear(methods::uniaxial_compression, 100e6);
     for (HistoryRow& h : r.history) set_error(h, 1e-2);
@@ -150,7 +149,7 @@ TEST(Judge, TheRepeatAtAThirdOfTheTargetTakesThePlaceOfTheEstimate) {
     r.evidence.peak_change_at_third = -0.003;
     EXPECT_EQ(judge(r).grade, 'A');
     EXPECT_TRUE(judge(r).confirmed);
-    EXPECT_NEAR(judge(r).error_estimate, 0.0045, 1e-12);   // in proportion to the rate: two thirds of it show
+    EXPECT_NEAR(judge(r).error_estimate, 0.0045, 1e-12);  // in proportion to the rate: two thirds of it show
     EXPECT_TRUE(says(judge(r), "-0.3 %")) << judge(r).verdict;
     r.evidence.peak_change_at_third = -0.012;
     EXPECT_EQ(judge(r).grade, 'B');

@@ -1,8 +1,8 @@
-#include <cmath>
-#include <limits>
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
 
 #include "feldspar/lab/loading_curve.hpp"
 #include "feldspar/methods/method.hpp"
@@ -33,7 +33,7 @@ TEST(Measure, ARatioAboveOneHalfIsRemarkedOn) {
     TestResult r = linear(methods::uniaxial_compression, 120e6);
     EXPECT_TRUE(measure(r).remarks.empty());
     for (HistoryRow& row : r.history)
-        if (row.axial_stress_Pa > 0.2 * 120e6) row.lateral_strain_gauge = -0.65 * row.axial_strain_gauge;   // cracks have opened
+        if (row.axial_stress_Pa > 0.2 * 120e6) row.lateral_strain_gauge = -0.65 * row.axial_strain_gauge;  // cracks have opened
     const TestProperties p = measure(r);
     EXPECT_NEAR(p.nu, 0.65, 1e-12);
     ASSERT_EQ(p.remarks.size(), 1u);
@@ -77,7 +77,7 @@ TEST(Measure, ParabolaSeparatesSecantTangentAndAverage) {
 TEST(Measure, ElasticStartOfTwoRowsIsEnough) {
     TestResult r = record(methods::uniaxial_compression);
     r.history.push_back(row(Phase::elastic, 0, 0.0, 0.0));
-    r.history.push_back(row(Phase::elastic, 0, 80e6 / E, 80e6));      // 80 % of the peak in closed form
+    r.history.push_back(row(Phase::elastic, 0, 80e6 / E, 80e6));  // 80 % of the peak in closed form
     r.history.push_back(row(Phase::loading, 10, 100e6 / E, 100e6));
     r.history.push_back(row(Phase::loading, 20, 101e6 / E, 50e6));
     TestProperties p = measure(r);
@@ -85,7 +85,7 @@ TEST(Measure, ElasticStartOfTwoRowsIsEnough) {
     EXPECT_NEAR(p.E_tangent_Pa / E, 1.0, 1e-12);
     EXPECT_NEAR(p.E_average_Pa / E, 1.0, 1e-12);
     EXPECT_NEAR(p.nu, nu, 1e-12);
-    r.history.erase(r.history.begin());   // the origin is known without a row
+    r.history.erase(r.history.begin());  // the origin is known without a row
     p = measure(r);
     EXPECT_NEAR(p.E_tangent_Pa / E, 1.0, 1e-12);
 }
@@ -94,7 +94,7 @@ TEST(Measure, BiaxialReadsTheDeviatorSinceTheStartOfShearing) {
     const double sigma3 = 10e6, strength = 180e6;
     TestResult r = record(methods::biaxial);
     r.test.sigma3_Pa = sigma3;
-    for (int i = 1; i <= 5; ++i) {   // consolidation: other stiffness, other lateral strain
+    for (int i = 1; i <= 5; ++i) {  // consolidation: other stiffness, other lateral strain
         HistoryRow h = row(Phase::consolidation, i, 3e-4 * i / 5.0, sigma3 * i / 5.0);
         h.lateral_strain_gauge = 3e-4 * i / 5.0;
         r.history.push_back(h);
@@ -113,7 +113,8 @@ TEST(Measure, BiaxialReadsTheDeviatorSinceTheStartOfShearing) {
     EXPECT_NEAR(p.E_gauge_Pa / E, 1.0, 1e-12);
     EXPECT_NEAR(p.nu, nu, 1e-10);
 
-    r.history.erase(r.history.begin(), r.history.begin() + 5);   // a record that lost its consolidation: the first row is the origin
+    r.history.erase(r.history.begin(),
+                    r.history.begin() + 5);  // a record that lost its consolidation: the first row is the origin
     EXPECT_NEAR(measure(r).E_secant_Pa / E, 1.0, 1e-12);
 }
 
@@ -138,7 +139,8 @@ TEST(Measure, TheFirstDipOfADiscIsTheLargestStressBeforeAFallOfFivePercent) {
         ++step;
         r.history.push_back(row(Phase::loading, step, 1e-4 * static_cast<double>(step), stress));
     };
-    for (double s : {0.2e6, 0.1e6, 1e6, 4e6, 6e6, 5.9e6, 6.2e6, 5.6e6, 5e6, 7e6, 9e6, 4e6}) add(s);   // settling, a 2 % dip, the peak, a second one
+    for (double s : {0.2e6, 0.1e6, 1e6, 4e6, 6e6, 5.9e6, 6.2e6, 5.6e6, 5e6, 7e6, 9e6, 4e6})
+        add(s);  // settling, a 2 % dip, the peak, a second one
     const TestProperties p = measure(r);
     EXPECT_DOUBLE_EQ(p.brazilian.first_dip_Pa, 6.2e6);
     EXPECT_DOUBLE_EQ(p.brazilian.largest_Pa, 9e6);
@@ -156,7 +158,7 @@ TEST(Measure, PeakIsReachedOnlyAfterAFallOfFivePercent) {
     EXPECT_FALSE(measure(r).peak_reached);
     r.history.push_back(row(Phase::loading, 4, 2.2e-3, 95e6));
     EXPECT_TRUE(measure(r).peak_reached);
-    r.history.push_back(row(Phase::loading, 5, 3e-3, 110e6));   // climbs again: the new maximum is not passed yet
+    r.history.push_back(row(Phase::loading, 5, 3e-3, 110e6));  // climbs again: the new maximum is not passed yet
     EXPECT_FALSE(measure(r).peak_reached);
     EXPECT_DOUBLE_EQ(measure(r).peak_stress_Pa, 110e6);
 }
@@ -175,7 +177,8 @@ TEST(Measure, StoppedBeforeThePeakKeepsModuliButNoThresholds) {
 
 TEST(Measure, DegenerateRecordsGiveNotANumberAndNeverCrash) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (const MethodId kind : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension, methods::biaxial, methods::brazilian}) {
+    for (const MethodId kind : std::initializer_list<MethodId>{methods::uniaxial_compression, methods::direct_tension,
+                                                               methods::biaxial, methods::brazilian}) {
         TestResult r = record(kind);
         r.test.sigma3_Pa = kind == methods::biaxial ? 4e6 : 0.0;
         const double sign = method_of(kind).loading.sign;
@@ -194,15 +197,17 @@ TEST(Measure, DegenerateRecordsGiveNotANumberAndNeverCrash) {
         r.history = {row(Phase::loading, 1, sign * 1e-4, sign * 5e6)};
         EXPECT_DOUBLE_EQ(measure(r).peak_stress_Pa, 5e6) << name(kind) << ": one row";
 
-        r.history = {row(Phase::loading, 1, 0.0, sign * 5e6), row(Phase::loading, 2, 0.0, sign * 6e6), row(Phase::loading, 3, 0.0, sign * 1e6)};
+        r.history = {row(Phase::loading, 1, 0.0, sign * 5e6), row(Phase::loading, 2, 0.0, sign * 6e6),
+                     row(Phase::loading, 3, 0.0, sign * 1e6)};
         EXPECT_TRUE(std::isnan(measure(r).E_secant_Pa)) << name(kind) << ": no strain";
         EXPECT_TRUE(std::isnan(measure(r).E_tangent_Pa)) << name(kind);
 
         r.history = {row(Phase::loading, 1, -sign * 1e-4, -sign * 5e6)};
         EXPECT_TRUE(std::isnan(measure(r).peak_stress_Pa)) << name(kind) << ": loaded the other way";
 
-        r.history = {row(Phase::loading, 1, sign * 1e-4, sign * 5e6), row(Phase::loading, 2, sign * 2e-4, sign * 9e6), row(Phase::loading, 3, sign * 2e-4, sign * 4e6)};
-        for (HistoryRow& h : r.history) h.axial_strain_gauge = h.lateral_strain_gauge = nan;   // no gauges
+        r.history = {row(Phase::loading, 1, sign * 1e-4, sign * 5e6), row(Phase::loading, 2, sign * 2e-4, sign * 9e6),
+                     row(Phase::loading, 3, sign * 2e-4, sign * 4e6)};
+        for (HistoryRow& h : r.history) h.axial_strain_gauge = h.lateral_strain_gauge = nan;  // no gauges
         EXPECT_TRUE(std::isnan(measure(r).nu)) << name(kind);
         EXPECT_TRUE(std::isnan(measure(r).E_gauge_Pa)) << name(kind);
         EXPECT_TRUE(std::isnan(measure(r).sigma_cd_Pa)) << name(kind);

@@ -1,7 +1,7 @@
 // The branch behind the peak, on records whose answer is known.
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/lab/properties.hpp"
 #include "synthetic_records.hpp"
@@ -13,14 +13,16 @@ namespace {
 
 constexpr double kPeak = 100e6;
 
-// Linear up to the peak, then down to a quarter of it along a straight branch: strain changes by `compliance` times the fall of the stress.
+// Linear up to the peak, then down to a quarter of it along a straight branch: strain changes by `compliance` times the fall of
+// the stress.
 TestResult straight(double compliance, double offset_Pa = 0.0) {
     TestResult r = syn::record(offset_Pa > 0.0 ? methods::biaxial : methods::uniaxial_compression);
     r.test.control = LoadControl::dissipation;
     r.test.sigma3_Pa = offset_Pa;
     long long step = 0;
     if (offset_Pa > 0.0) r.history.push_back(syn::row(Phase::consolidation, 0, 0.0, offset_Pa));
-    for (int i = 0; i <= 100; ++i) r.history.push_back(syn::row(Phase::loading, step += 10, i / 100.0 * kPeak / syn::E, offset_Pa + i / 100.0 * kPeak));
+    for (int i = 0; i <= 100; ++i)
+        r.history.push_back(syn::row(Phase::loading, step += 10, i / 100.0 * kPeak / syn::E, offset_Pa + i / 100.0 * kPeak));
     for (int i = 1; i <= 75; ++i) {
         const double fall = i / 100.0 * kPeak;
         r.history.push_back(syn::row(Phase::loading, step += 10, kPeak / syn::E - compliance * fall, offset_Pa + kPeak - fall));

@@ -1,9 +1,10 @@
-// The tables of a test's numbers and of a rock's properties: names that can be told apart, numbers that are given back, tests that define them.
+// The tables of a test's numbers and of a rock's properties: names that can be told apart, numbers that are given back, tests
+// that define them.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <set>
 #include <string>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
@@ -26,11 +27,13 @@ TestResult broken(MethodId kind) {
 TEST(Quantities, HaveNamesOfTheirOwnInEachFile) {
     std::set<std::string> kept, summary, report;
     for (const TestQuantity& q : test_quantities()) {
-        const std::string group = std::to_string(static_cast<int>(q.group)) + " ";   // summary.json and the report nest some groups
+        const std::string group =
+            std::to_string(static_cast<int>(q.group)) + " ";  // summary.json and the report nest some groups
         EXPECT_TRUE(kept.insert(q.kept_name()).second) << q.kept_name();
         EXPECT_TRUE(q.summary == TestQuantity::absent || summary.insert(group + q.summary_name()).second) << q.summary_name();
         EXPECT_TRUE(q.report == TestQuantity::absent || report.insert(group + q.report_name()).second) << q.report_name();
-        EXPECT_TRUE(q.ledger != TestQuantity::absent || q.summary != TestQuantity::absent || q.report != TestQuantity::absent) << q.name << " is in no file";
+        EXPECT_TRUE(q.ledger != TestQuantity::absent || q.summary != TestQuantity::absent || q.report != TestQuantity::absent)
+            << q.name << " is in no file";
     }
 }
 
@@ -60,7 +63,7 @@ TEST(Quantities, AreGivenBackAsTheyAreKept) {
         }
     }
     TestResult result;
-    test_quantity("steps").put(result, std::nan(""));   // a ledger without this column
+    test_quantity("steps").put(result, std::nan(""));  // a ledger without this column
     EXPECT_EQ(result.steps, 0);
 }
 
@@ -91,7 +94,8 @@ TEST(RockProperties, ComeFromWhatExists) {
             case test:
                 ASSERT_EQ(p.tests.size(), 1U) << p.name;
                 ASSERT_NE(p.quantity, nullptr) << p.name;
-                EXPECT_TRUE(p.quantity->tests.contains(*p.tests.begin())) << p.name << " is read from a test that does not define it";
+                EXPECT_TRUE(p.quantity->tests.contains(*p.tests.begin()))
+                    << p.name << " is read from a test that does not define it";
                 break;
             case ratio: {
                 ASSERT_TRUE(rock_property(p.above) != nullptr && rock_property(p.below) != nullptr) << p.name;
@@ -100,10 +104,15 @@ TEST(RockProperties, ComeFromWhatExists) {
                 EXPECT_EQ(p.tests, both) << p.name;
                 break;
             }
-            case envelope: EXPECT_NE(p.fit, nullptr) << p.name; break;
-            case shear_envelope: EXPECT_NE(p.shear_fit, nullptr) << p.name; break;
+            case envelope:
+                EXPECT_NE(p.fit, nullptr) << p.name;
+                break;
+            case shear_envelope:
+                EXPECT_NE(p.shear_fit, nullptr) << p.name;
+                break;
             case confined_strength:
-            case formed: break;
+            case formed:
+                break;
         }
     }
 }

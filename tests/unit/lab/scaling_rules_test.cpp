@@ -46,7 +46,7 @@ TEST(ScalingRules, AreThoseOfTheTable) {
     int even = 0;
     for (const auto& row : rows) {
         const auto number = [&](const char* name) { return std::stod(row.at(name)); };
-        if (!row.at("weibull_modulus").empty() || number("mu") > 0.9) continue;   // as the fit of even rocks
+        if (!row.at("weibull_modulus").empty() || number("mu") > 0.9) continue;  // as the fit of even rocks
         const GrainMaterial grain{number("E_GPa") * 1e9, number("nu"), 2650.0};
         ContactMaterial c;
         c.Kn_Pa_m = number("Kn_GPa_m") * 1e9;
@@ -61,8 +61,10 @@ TEST(ScalingRules, AreThoseOfTheTable) {
         UCS += std::pow(std::log(expected.UCS_Pa / (number("UCS_MPa") * 1e6)), 2);
         DTS += std::pow(std::log(expected.DTS_Pa / (number("DTS_MPa") * 1e6)), 2);
         BTS += std::pow(std::log(expected.BTS_Pa / (number("BTS_MPa") * 1e6)), 2);
-        EXPECT_NEAR(expected.E_Pa / (number("E_rock_GPa") * 1e9), 1.0, 0.02) << row.at("point");   // the modulus follows from stiffnesses alone
-        EXPECT_NEAR(expected.nu, number("nu_rock"), 0.02) << row.at("point");   // to 0.003 but where it cracks before a tenth of its strength
+        EXPECT_NEAR(expected.E_Pa / (number("E_rock_GPa") * 1e9), 1.0, 0.02)
+            << row.at("point");  // the modulus follows from stiffnesses alone
+        EXPECT_NEAR(expected.nu, number("nu_rock"), 0.02)
+            << row.at("point");  // to 0.003 but where it cracks before a tenth of its strength
     }
     ASSERT_GT(even, 60);
     // On the packings that they were fitted to the rules err less than on those that were left out.
@@ -103,7 +105,7 @@ TEST(ScalingRules, FrictionFollowsTheAngle) {
     EXPECT_TRUE(low.friction_reached && high.friction_reached);
     EXPECT_LT(low.contact.mu, high.contact.mu);
     EXPECT_NEAR(high.expected.friction_angle_deg, 55.0, 0.1);
-    targets.friction_angle_deg = 15.0;   // no contacts of the experiment have so little
+    targets.friction_angle_deg = 15.0;  // no contacts of the experiment have so little
     EXPECT_FALSE(first_parameters(targets, grain_m).friction_reached);
 }
 
@@ -115,7 +117,7 @@ TEST(ScalingRules, ScatterRaisesTheRatio) {
     EXPECT_GT(first_parameters(targets, grain_m).wanted_ratio, first_parameters(targets, grain_m).highest_ratio);
     const auto scatter = scatter_for(targets, grain_m);
     ASSERT_TRUE(scatter.has_value());
-    EXPECT_NEAR(first_parameters(targets, grain_m, *scatter).highest_ratio / 24.0, 1.0, 1e-3);   // the least that does
+    EXPECT_NEAR(first_parameters(targets, grain_m, *scatter).highest_ratio / 24.0, 1.0, 1e-3);  // the least that does
     targets.BTS_Pa = 120e6 / 100.0;
     EXPECT_FALSE(scatter_for(targets, grain_m).has_value());
     EXPECT_THROW(first_parameters({}, grain_m), std::invalid_argument);

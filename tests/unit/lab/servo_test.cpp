@@ -1,7 +1,7 @@
 // The servo on rows made up for it: travel time 400 steps, rows every 10 steps, platens at 0.4 mm.
-#include <gtest/gtest.h>
-
 #include "feldspar/lab/servo.hpp"
+
+#include <gtest/gtest.h>
 
 using namespace feldspar;
 
@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kShare = 0.01, kTravelTime = 400.0, kTravel = 4e-4, kElastic = 2.0;
 constexpr int kBlock = 10;
-constexpr double kForward = kShare * kTravel / kTravelTime;   // of a body in which nothing fails
-constexpr double kLimit = kShare * kElastic / kTravelTime * kBlock;   // J between two rows
+constexpr double kForward = kShare * kTravel / kTravelTime;          // of a body in which nothing fails
+constexpr double kLimit = kShare * kElastic / kTravelTime * kBlock;  // J between two rows
 
 HistoryRow dissipated(double fracture, double friction = 0.0) {
     HistoryRow row;
@@ -60,7 +60,7 @@ TEST(Servo, HowFarItGoesBackForABurstDoesNotDependOnTheSmoothing) {
     servo.observe(dissipated(spent), kBlock);
     constexpr int kRows = 200;
     for (int i = 0; i < kRows; ++i) {
-        if (i == 50) spent += 12.0 * kLimit;   // smoothed over four rows: 3 limits, so the bound of -4 is not reached
+        if (i == 50) spent += 12.0 * kLimit;  // smoothed over four rows: 3 limits, so the bound of -4 is not reached
         servo.observe(dissipated(spent), kBlock);
         travel += servo.speed(kTravel) * kBlock;
     }
@@ -71,7 +71,7 @@ TEST(Servo, LateralStrainMayGrowByItsShareInATravelTime) {
     const auto after_growth = [](double limits) {
         Servo servo(LoadControl::lateral_strain, kShare, kTravelTime);
         HistoryRow row;
-        row.lateral_strain_gauge = -1e-3;   // where loading began: of an isotropic stress, say
+        row.lateral_strain_gauge = -1e-3;  // where loading began: of an isotropic stress, say
         servo.observe(row, kBlock);
         double widening = 2e-3;
         for (int i = 0; i < 400; ++i) {
@@ -82,7 +82,7 @@ TEST(Servo, LateralStrainMayGrowByItsShareInATravelTime) {
         return servo.speed(kTravel) / kForward;
     };
     EXPECT_NEAR(after_growth(0.0), 1.0, 1e-9);
-    EXPECT_NEAR(after_growth(1.0), 0.0, 1e-3);   // growth is taken over the widening at the end of a row: a 4000th less
+    EXPECT_NEAR(after_growth(1.0), 0.0, 1e-3);  // growth is taken over the widening at the end of a row: a 4000th less
     EXPECT_NEAR(after_growth(2.0), -1.0, 2e-3);
 }
 

@@ -1,13 +1,13 @@
 // What the outline means for the numbers of a test: section, uniform strain, buckling.
 #include "feldspar/lab/specimen_shape.hpp"
-#include "feldspar/methods/platens.hpp"
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include <gtest/gtest.h>
-
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/methods/platens.hpp"
 #include "feldspar/specimen/outline.hpp"
 #include "synthetic_records.hpp"
 
@@ -34,7 +34,18 @@ OutlineSpec labelled(std::vector<Vec2> vertices, std::vector<std::string> labels
 /// 20 mm wide with a waist of 8 mm; `waist` is its height, about the middle of 50 mm, with shoulders of 4 mm.
 OutlineSpec bone(double waist_m) {
     const double a = 0.025 - 0.5 * waist_m, b = 0.025 + 0.5 * waist_m;
-    return labelled({{0, 0}, {0.020, 0}, {0.020, a - 0.004}, {0.014, a}, {0.014, b}, {0.020, b + 0.004}, {0.020, 0.050}, {0, 0.050}, {0, b + 0.004}, {0.006, b}, {0.006, a}, {0, a - 0.004}},
+    return labelled({{0, 0},
+                     {0.020, 0},
+                     {0.020, a - 0.004},
+                     {0.014, a},
+                     {0.014, b},
+                     {0.020, b + 0.004},
+                     {0.020, 0.050},
+                     {0, 0.050},
+                     {0, b + 0.004},
+                     {0.006, b},
+                     {0.006, a},
+                     {0, a - 0.004}},
                     {"bottom", "a", "b", "c", "d", "e", "top", "f", "g", "h", "i", "j"});
 }
 
@@ -51,7 +62,8 @@ TestResult on(const OutlineSpec& outline, MethodId kind, double peak_Pa) {
 }  // namespace
 
 TEST(SpecimenShape, ARectangleKeepsItsNumbers) {
-    const TestResult with = on(bar(0.08, 0.16), methods::uniaxial_compression, 100e6), without = linear(methods::uniaxial_compression, 100e6);
+    const TestResult with = on(bar(0.08, 0.16), methods::uniaxial_compression, 100e6),
+                     without = linear(methods::uniaxial_compression, 100e6);
     EXPECT_EQ(with.properties.E_secant_Pa, without.properties.E_secant_Pa);
     EXPECT_EQ(with.properties.nu, without.properties.nu);
     EXPECT_DOUBLE_EQ(with.properties.section_width_m, 0.08);
@@ -65,7 +77,9 @@ TEST(SpecimenShape, AWaistIsTheSectionAndLeavesNoModulus) {
     EXPECT_NEAR(p.section_width_m, 0.008, 1e-15);
     EXPECT_NEAR(p.peak_stress_Pa, 8e6, 1.0);
     EXPECT_TRUE(p.peak_reached);
-    for (const double value : {p.E_secant_Pa, p.E_tangent_Pa, p.E_average_Pa, p.E_gauge_Pa, p.E_initial_Pa, p.nu, p.nu_tangent, p.nu_initial}) EXPECT_TRUE(std::isnan(value));
+    for (const double value :
+         {p.E_secant_Pa, p.E_tangent_Pa, p.E_average_Pa, p.E_gauge_Pa, p.E_initial_Pa, p.nu, p.nu_tangent, p.nu_initial})
+        EXPECT_TRUE(std::isnan(value));
     ASSERT_EQ(p.remarks.size(), 1u);
     EXPECT_NE(p.remarks.front().find("8 mm wide"), std::string::npos) << p.remarks.front();
     EXPECT_NE(p.remarks.front().find("strain gauge"), std::string::npos);
@@ -88,7 +102,7 @@ TEST(SpecimenShape, ATaperOfTwoPercentIsUniformAndOneOfThreeIsNot) {
 }
 
 TEST(SpecimenShape, EulersStressIsThatOfPlatensThatSlide) {
-    EXPECT_NEAR(euler_stress_Pa(22.38e9, 0.005, 0.200), 11.5e6, 0.05e6);   // pi^2 22.38e9 / (12 x 40^2)
+    EXPECT_NEAR(euler_stress_Pa(22.38e9, 0.005, 0.200), 11.5e6, 0.05e6);  // pi^2 22.38e9 / (12 x 40^2)
     EXPECT_NEAR(slenderest(22.38e9, 128e6), 11.99, 0.01);
     EXPECT_NEAR(euler_stress_Pa(22.38e9, 1.0, slenderest(22.38e9, 128e6)), 128e6, 1.0) << "one is the other's inverse";
 }
@@ -98,7 +112,7 @@ TEST(SpecimenShape, AColumnThatWouldBendGetsGradeC) {
     EXPECT_EQ(on(bar(0.01, 0.142), methods::uniaxial_compression, 100e6).evidence.grade, 'A');
     const QuasiStaticEvidence e = on(bar(0.01, 0.145), methods::uniaxial_compression, 100e6).evidence;
     EXPECT_EQ(e.grade, 'C');
-    EXPECT_NE(e.verdict.find("would bend aside at 97.8 MPa"), std::string::npos) << e.verdict;   // pi^2 25000 / (12 x 14.5^2)
+    EXPECT_NE(e.verdict.find("would bend aside at 97.8 MPa"), std::string::npos) << e.verdict;  // pi^2 25000 / (12 x 14.5^2)
     EXPECT_NE(e.verdict.find("below 14.3"), std::string::npos) << e.verdict;
     EXPECT_EQ(on(bar(0.01, 0.4), methods::direct_tension, 100e6).evidence.grade, 'A') << "what is pulled does not bend";
 }

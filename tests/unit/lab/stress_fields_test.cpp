@@ -1,9 +1,10 @@
-// The stress fields around holes and tips are in equilibrium, compatible and free of traction where they should be; a fit finds the factors that it is given.
+// The stress fields around holes and tips are in equilibrium, compatible and free of traction where they should be; a fit finds
+// the factors that it is given.
 #include "feldspar/lab/stress_fields.hpp"
 
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 #include "feldspar/base/rng.hpp"
 
@@ -17,7 +18,8 @@ struct Checked {
 
 Checked checked(const StressField& field, Vec2 at, double scale) {
     const double h = 1e-3 * scale;
-    const Mat2 c = field(at), e = field(at + Vec2{h, 0.0}), w = field(at - Vec2{h, 0.0}), n = field(at + Vec2{0.0, h}), s = field(at - Vec2{0.0, h});
+    const Mat2 c = field(at), e = field(at + Vec2{h, 0.0}), w = field(at - Vec2{h, 0.0}), n = field(at + Vec2{0.0, h}),
+               s = field(at - Vec2{0.0, h});
     const auto trace = [](const Mat2& m) { return m.xx + m.yy; };
     const double size = norm({norm({c.xx, c.yy}), c.xy});
     const Vec2 divergence = {(e.xx - w.xx + n.xy - s.xy) / (2.0 * h), (e.xy - w.xy + n.yy - s.yy) / (2.0 * h)};
@@ -52,7 +54,7 @@ TEST(StressFields, AroundATipAreElasticAndFreeOfTractionOnItsFaces) {
             EXPECT_NEAR(norm(face * rot90(ahead)), 0.0, 1e-6);
         }
     }
-    const double r = 1e-3, expected = 1.0 / std::sqrt(2.0 * M_PI * r);   // K over sqrt(2 pi r) ahead of the tip
+    const double r = 1e-3, expected = 1.0 / std::sqrt(2.0 * M_PI * r);  // K over sqrt(2 pi r) ahead of the tip
     const std::vector<StressField> fields = fields_around_tip({0.0, 1.0}, extent);
     EXPECT_NEAR(fields[0]({0.0, r}).xx, expected, 1e-9 * expected);
     EXPECT_NEAR(std::abs(fields[1]({0.0, r}).xy), expected, 1e-9 * expected);
@@ -60,14 +62,17 @@ TEST(StressFields, AroundATipAreElasticAndFreeOfTractionOnItsFaces) {
 
 TEST(StressFields, OfAHoleUnderUniaxialStressAreKirschs) {
     const double radius = 5e-3;
-    const std::vector<StressField> fields = fields_around_hole(radius, true);   // equal on all sides, across against along, shear
+    const std::vector<StressField> fields = fields_around_hole(radius, true);  // equal on all sides, across against along, shear
     ASSERT_EQ(fields.size(), 3U);
-    const auto stress = [&](double r, double angle) {   // 1 along y: half of the first, and a quarter of the second, which has 2 along y and -2 along x
-        const Vec2 at = r * radius * turned({1.0, 0.0}, angle);
-        const Mat2 a = fields[0](at), b = fields[1](at);
-        return Mat2{0.5 * a.xx + 0.25 * b.xx, 0.0, 0.0, 0.5 * a.yy + 0.25 * b.yy};
-    };
-    for (const auto& [r, tangential] : {std::pair{1.0, 3.0}, {1.25, 1.934}, {1.5, 1.519}, {2.0, 1.219}, {3.0, 1.074}}) EXPECT_NEAR(stress(r, 0.0).yy, tangential, 5e-4);
+    const auto stress =
+        [&](double r,
+            double angle) {  // 1 along y: half of the first, and a quarter of the second, which has 2 along y and -2 along x
+            const Vec2 at = r * radius * turned({1.0, 0.0}, angle);
+            const Mat2 a = fields[0](at), b = fields[1](at);
+            return Mat2{0.5 * a.xx + 0.25 * b.xx, 0.0, 0.0, 0.5 * a.yy + 0.25 * b.yy};
+        };
+    for (const auto& [r, tangential] : {std::pair{1.0, 3.0}, {1.25, 1.934}, {1.5, 1.519}, {2.0, 1.219}, {3.0, 1.074}})
+        EXPECT_NEAR(stress(r, 0.0).yy, tangential, 5e-4);
     EXPECT_NEAR(stress(1.0, 0.5 * M_PI).xx, -1.0, 1e-12);
     EXPECT_NEAR(stress(1e4, 1.0).yy, 1.0, 1e-7);
     EXPECT_NEAR(stress(1e4, 1.0).xx, 0.0, 1e-7);
@@ -87,7 +92,8 @@ TEST(StressFields, AFitFindsTheFactors) {
         Mat2 sum;
         for (std::size_t k = 0; k < fields.size(); ++k) {
             const Mat2 s = fields[k](at);
-            sum = {sum.xx + factors[k] * s.xx, sum.xy + factors[k] * s.xy, sum.yx + factors[k] * s.yx, sum.yy + factors[k] * s.yy};
+            sum = {sum.xx + factors[k] * s.xx, sum.xy + factors[k] * s.xy, sum.yx + factors[k] * s.yx,
+                   sum.yy + factors[k] * s.yy};
         }
         stresses.push_back(sum);
     }
@@ -99,9 +105,9 @@ TEST(StressFields, AFitFindsTheFactors) {
             const Mat2& s = stresses[static_cast<std::size_t>(cell)];
             value += w.xx * s.xx + w.xy * s.xy + w.yx * s.yx + w.yy * s.yy;
         }
-        EXPECT_NEAR(value, factors[k], 1e-7) << k;   // the condition of the fit is some 1e5
+        EXPECT_NEAR(value, factors[k], 1e-7) << k;  // the condition of the fit is some 1e5
     }
-    EXPECT_TRUE(fitted_value(std::span(samples).first(3), fields, wanted).empty());   // nine numbers for eleven factors
+    EXPECT_TRUE(fitted_value(std::span(samples).first(3), fields, wanted).empty());  // nine numbers for eleven factors
 }
 
 }  // namespace

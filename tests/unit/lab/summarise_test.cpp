@@ -1,8 +1,8 @@
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/regression.hpp"
 #include "feldspar/lab/quantities.hpp"
@@ -93,7 +93,7 @@ TEST(Summarise, EnvelopesAreFittedOnEachPacking) {
         results.push_back(tested(methods::biaxial, seed, base + N * 4e6, 4e6));
         results.push_back(tested(methods::biaxial, seed, base + N * 10e6, 10e6));
     }
-    results.push_back(tested(methods::uniaxial_compression, 4, 90e6));   // no biaxial test: not in the fit
+    results.push_back(tested(methods::uniaxial_compression, 4, 90e6));  // no biaxial test: not in the fit
     const PropertySummary s = summarise(results);
     ASSERT_EQ(s.fits.size(), 3u);
     EXPECT_EQ(s.fits[1].seed, 2u);
@@ -110,10 +110,11 @@ TEST(Summarise, EnvelopesAreFittedOnEachPacking) {
 }
 
 TEST(Summarise, StrengthsOfUnfinishedTestsAreLeftOut) {
-    std::vector<TestResult> results{tested(methods::uniaxial_compression, 1, 120e6), tested(methods::uniaxial_compression, 2, 120e6)};
-    results[0].history.resize(90);                    // stopped on purpose: the modulus stands, the strength does not
+    std::vector<TestResult> results{tested(methods::uniaxial_compression, 1, 120e6),
+                                    tested(methods::uniaxial_compression, 2, 120e6)};
+    results[0].history.resize(90);  // stopped on purpose: the modulus stands, the strength does not
     results[0].properties = measure(results[0]);
-    results[1].history.resize(3);                     // interrupted early
+    results[1].history.resize(3);  // interrupted early
     results[1].properties = measure(results[1]);
     results[1].interrupted = true;
     const PropertySummary s = summarise(results);
@@ -124,8 +125,9 @@ TEST(Summarise, StrengthsOfUnfinishedTestsAreLeftOut) {
 
 namespace {
 
-// A plane of 0.1 m x 0.05 m that is sheared: elastic to 0.2 mm, down to the residual strength at 0.3 mm, on to 2 mm; it dilates with a slope of 0.2 from
-// 0.15 to 0.3 mm. Stresses on what is left of the plane are c + sigma tan(phi), and 2 MPa + sigma tan(30 degrees) at last.
+// A plane of 0.1 m x 0.05 m that is sheared: elastic to 0.2 mm, down to the residual strength at 0.3 mm, on to 2 mm; it dilates
+// with a slope of 0.2 from 0.15 to 0.3 mm. Stresses on what is left of the plane are c + sigma tan(phi), and 2 MPa + sigma tan(30
+// degrees) at last.
 TestResult sheared(double sigma_Pa, double cohesion_Pa, double phi) {
     constexpr double L = 0.1, t = 0.05, peak_m = 0.2e-3, fallen_m = 0.3e-3, end_m = 2e-3;
     TestResult r = record(methods::direct_shear);
@@ -136,10 +138,13 @@ TestResult sheared(double sigma_Pa, double cohesion_Pa, double phi) {
     r.gauges.resize(2);
     r.gauges[0].name = "dilation";
     r.gauges[1].name = "normal-force";
-    const double strength_Pa = cohesion_Pa + sigma_Pa * std::tan(phi), residual_Pa = 2e6 + sigma_Pa * std::tan(std::numbers::pi / 6.0);
+    const double strength_Pa = cohesion_Pa + sigma_Pa * std::tan(phi),
+                 residual_Pa = 2e6 + sigma_Pa * std::tan(std::numbers::pi / 6.0);
     for (int i = -1; i <= 400; ++i) {
         const double u = std::max(0, i) * end_m / 400.0, left = (L - u) / L;
-        const double tau = u <= peak_m ? strength_Pa * u / peak_m : u <= fallen_m ? strength_Pa + (residual_Pa - strength_Pa) * (u - peak_m) / (fallen_m - peak_m) : residual_Pa;
+        const double tau = u <= peak_m     ? strength_Pa * u / peak_m
+                           : u <= fallen_m ? strength_Pa + (residual_Pa - strength_Pa) * (u - peak_m) / (fallen_m - peak_m)
+                                           : residual_Pa;
         HistoryRow h = row(i < 0 ? Phase::consolidation : Phase::loading, i, u / L, left * tau);
         h.platen_displacement_m = u;
         h.gauges = {0.2 * std::clamp(u - 0.15e-3, 0.0, 0.15e-3), left * sigma_Pa * L * t};
@@ -151,7 +156,7 @@ TestResult sheared(double sigma_Pa, double cohesion_Pa, double phi) {
 
 }  // namespace
 
-TEST(Summarise, DirectShearGivesBackItsLinesAndItsDilation) {   // (P59)-(P63)
+TEST(Summarise, DirectShearGivesBackItsLinesAndItsDilation) {  // (P59)-(P63)
     const double phi = std::atan(0.8);
     const std::vector<TestResult> results{sheared(2e6, 5e6, phi), sheared(6e6, 5e6, phi), sheared(10e6, 5e6, phi)};
     for (const TestResult& r : results) {
@@ -167,8 +172,8 @@ TEST(Summarise, DirectShearGivesBackItsLinesAndItsDilation) {   // (P59)-(P63)
     EXPECT_NEAR(s.values.at("shear_friction_angle_deg").median, phi * 180.0 / std::numbers::pi, 1e-4);
     EXPECT_NEAR(s.values.at("residual_cohesion_Pa").median, 2e6, 10.0);
     EXPECT_NEAR(s.values.at("residual_friction_angle_deg").median, 30.0, 1e-4);
-    EXPECT_TRUE(summarise({results.data(), 1}).shear_fits.empty());   // a line needs two points
-    TestResult short_of_it = results[0];   // the record ends before three times the way of the peak
+    EXPECT_TRUE(summarise({results.data(), 1}).shear_fits.empty());  // a line needs two points
+    TestResult short_of_it = results[0];                             // the record ends before three times the way of the peak
     short_of_it.history.resize(102);
     short_of_it.properties = measure(short_of_it);
     EXPECT_TRUE(std::isnan(test_quantity("shear_strength_residual").value(short_of_it)));

@@ -48,7 +48,7 @@ inline Crack crack(long long step, double stress_Pa) {
     return c;
 }
 
-constexpr double disc_radius = 0.040, disc_grain = 0.003;   // m
+constexpr double disc_radius = 0.040, disc_grain = 0.003;  // m
 
 /// A disc of 80 mm with grains of 3 mm, as far as reading a record goes.
 inline std::shared_ptr<const Specimen> disc_specimen() {
@@ -77,7 +77,8 @@ inline std::vector<Crack> path(const std::vector<Vec2>& corners, long long step)
     return cracks;
 }
 
-/// Linear elastic up to `peak_Pa` in `rows` loading rows, then three rows down to 0.7 of it. `sign` -1 pulls. A disc splits behind its peak.
+/// Linear elastic up to `peak_Pa` in `rows` loading rows, then three rows down to 0.7 of it. `sign` -1 pulls. A disc splits
+/// behind its peak.
 inline TestResult linear(MethodId kind, double peak_Pa, int rows = 100, double sign = 1.0) {
     TestResult r = record(kind);
     for (int i = 1; i <= rows; ++i) {
@@ -85,7 +86,8 @@ inline TestResult linear(MethodId kind, double peak_Pa, int rows = 100, double s
         r.history.push_back(row(Phase::loading, 10 * i, stress / E, stress));
     }
     for (int i = 1; i <= 3; ++i) {
-        r.history.push_back(row(Phase::loading, 10 * (rows + i), sign * peak_Pa / E * (1.0 + 0.01 * i), sign * peak_Pa * (1.0 - 0.1 * i)));
+        r.history.push_back(
+            row(Phase::loading, 10 * (rows + i), sign * peak_Pa / E * (1.0 + 0.01 * i), sign * peak_Pa * (1.0 - 0.1 * i)));
     }
     if (kind == methods::brazilian) {
         r.specimen = disc_specimen();

@@ -1,4 +1,5 @@
-// What a run leaves on the board, and what of it a page is sent. Tests that run are played by records made here; a real one is looked at in tests/unit/study/test_run_job.cpp.
+// What a run leaves on the board, and what of it a page is sent. Tests that run are played by records made here; a real one is
+// looked at in tests/unit/study/test_run_job.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +44,9 @@ class Record final : public TestSight {
 public:
     explicit Record(const TestResult& result) : result_(result) {}
     const TestResult& so_far() const override { return result_; }
-    std::vector<Vec2> displacements() const override { return std::vector<Vec2>(result_.specimen->mesh.nodes.size(), Vec2{1e-3, -2e-3}); }
+    std::vector<Vec2> displacements() const override {
+        return std::vector<Vec2>(result_.specimen->mesh.nodes.size(), Vec2{1e-3, -2e-3});
+    }
 
 private:
     const TestResult& result_;
@@ -81,10 +84,10 @@ TEST_F(LiveBoardTest, TheFirstNewsHoldEverythingAndTheNextOnlyWhatIsNew) {
     EXPECT_EQ(test["axes"]["stress"], "Axial stress");
     EXPECT_EQ(test["curve"]["from"], 0);
     EXPECT_EQ(test["curve"]["stress"].size(), 50u);
-    EXPECT_EQ(test["curve"]["stress"][49], 49);   // MPa
-    EXPECT_EQ(test["curve"]["strain"][49], 49);   // 10^-3
+    EXPECT_EQ(test["curve"]["stress"][49], 49);  // MPa
+    EXPECT_EQ(test["curve"]["strain"][49], 49);  // 10^-3
     EXPECT_EQ(test["curve"]["tensile"][49], 4);
-    EXPECT_EQ(test["cracks"]["x0"], Json({0, 1, 2}));   // mm
+    EXPECT_EQ(test["cracks"]["x0"], Json({0, 1, 2}));  // mm
     EXPECT_EQ(test["cracks"]["mode"], Json({1, 1, 1}));
     EXPECT_EQ(test["cracks"]["b"], Json({0, 1, 2}));
     EXPECT_TRUE(news(page).is_null());
@@ -106,7 +109,7 @@ TEST_F(LiveBoardTest, APassageThatIsTakenBackIsForgottenByThePageToo) {
     LiveStream page(board_);
     see(watch, record(50, 5));
     (void)news(page);
-    TestResult again = record(60, 2);   // longer by now, but of another passage
+    TestResult again = record(60, 2);  // longer by now, but of another passage
     again.passages = 2;
     see(watch, again);
     const Json test = news(page)["tests"][0];
@@ -118,7 +121,7 @@ TEST_F(LiveBoardTest, APassageThatIsTakenBackIsForgottenByThePageToo) {
 
 TEST_F(LiveBoardTest, GrainsAreSentOnceAndTheirDisplacementsAgainAndAgain) {
     auto specimen = std::make_shared<Specimen>();
-    specimen->mesh.nodes = {{0, 0}, {0.01, 0}, {0, 0.02}, {0.003, 0.003}};   // a grain of three corners with a node inside
+    specimen->mesh.nodes = {{0, 0}, {0.01, 0}, {0, 0.02}, {0.003, 0.003}};  // a grain of three corners with a node inside
     specimen->mesh.node_begin = {0, 4};
     specimen->mesh.vertex_count = {3};
     TestWatch& watch = board_.begins(0, specimen);
@@ -127,10 +130,10 @@ TEST_F(LiveBoardTest, GrainsAreSentOnceAndTheirDisplacementsAgainAndAgain) {
     result.specimen = specimen;
     see(watch, result);
     const Json test = news(page)["tests"][0];
-    EXPECT_EQ(test["outline"]["height"], 20.0);   // mm
-    EXPECT_EQ(test["outline"]["begin"], "AAAAAAMAAAA=");   // 0, 3
-    EXPECT_NEAR(test["frame"]["scale"].get<double>() * 32767, 2.0, 1e-9);   // mm
-    EXPECT_EQ(test["frame"]["steps"].get<std::string>().size(), 16u);       // three corners of two int16
+    EXPECT_EQ(test["outline"]["height"], 20.0);                            // mm
+    EXPECT_EQ(test["outline"]["begin"], "AAAAAAMAAAA=");                   // 0, 3
+    EXPECT_NEAR(test["frame"]["scale"].get<double>() * 32767, 2.0, 1e-9);  // mm
+    EXPECT_EQ(test["frame"]["steps"].get<std::string>().size(), 16u);      // three corners of two int16
     LiveStream another(board_);
     EXPECT_TRUE(news(another)["tests"][0].contains("outline"));
     see(watch, result);
@@ -202,7 +205,7 @@ TEST_F(LiveBoardTest, WhatWaitsIsExpectedToTakeAsLongAsItsLike) {
     progress.seconds_left = 30.0;
     board_.progress(0, progress);
     const double left = news(page)["run"]["seconds_left"];
-    EXPECT_NEAR(left, 60.0, 1.0) << "one runs and one like it waits";   // the seconds that this test has taken so far
+    EXPECT_NEAR(left, 60.0, 1.0) << "one runs and one like it waits";  // the seconds that this test has taken so far
 }
 
 TEST_F(LiveBoardTest, NobodyWaitsForNewsThatAreThere) {
@@ -214,7 +217,8 @@ TEST_F(LiveBoardTest, NobodyWaitsForNewsThatAreThere) {
 }
 
 TEST(LivePage, IsTheReportWithWhatGoesOnAndMayAskOnlyItsOwnServer) {
-    const std::string report = "<head><meta content=\"default-src 'none'; img-src data:\"></head><body><main id=\"page\"></main></body></html>";
+    const std::string report =
+        "<head><meta content=\"default-src 'none'; img-src data:\"></head><body><main id=\"page\"></main></body></html>";
     const std::string page = live_page(report, "a <name>", "");
     EXPECT_NE(page.find("default-src 'none'; connect-src 'self'; img-src data:"), std::string::npos);
     EXPECT_NE(page.find("<main id=\"page\"></main>"), std::string::npos);

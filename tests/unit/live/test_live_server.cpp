@@ -1,4 +1,5 @@
-// The server of the live view: who gets an answer, what the answers say, and how it ends. Every request goes through a real socket on this machine.
+// The server of the live view: who gets an answer, what the answers say, and how it ends. Every request goes through a real
+// socket on this machine.
 #include <gtest/gtest.h>
 #include <httplib.h>
 
@@ -10,9 +11,9 @@
 #include <string>
 #include <thread>
 
+#include "../../temporary_folder.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/live/live_server.hpp"
-#include "../../temporary_folder.hpp"
 
 namespace feldspar {
 namespace {
@@ -50,7 +51,7 @@ protected:
     LiveBoard board_{"disc", stop_};
     std::optional<LiveServer> server_;
     int port_ = 0;
-    std::string path_;   // "/<token>/"
+    std::string path_;  // "/<token>/"
 };
 
 TEST_F(LiveServerTest, ShowsThePageAtItsAddressAlone) {
@@ -64,7 +65,9 @@ TEST_F(LiveServerTest, ShowsThePageAtItsAddressAlone) {
     EXPECT_FALSE(page->has_header("Access-Control-Allow-Origin"));
     std::string wrong = path_;
     wrong[wrong.size() - 2] = wrong[wrong.size() - 2] == '0' ? '1' : '0';
-    for (const std::string& path : {std::string("/"), wrong, wrong + "events", path_.substr(0, path_.size() - 2) + "/", path_.substr(0, path_.size() - 1), std::string("//") + path_, std::string("/events"), path_ + "../x"})
+    for (const std::string& path :
+         {std::string("/"), wrong, wrong + "events", path_.substr(0, path_.size() - 2) + "/", path_.substr(0, path_.size() - 1),
+          std::string("//") + path_, std::string("/events"), path_ + "../x"})
         EXPECT_GE(status(path), 400) << path;
     EXPECT_EQ(status(wrong), 403);
     EXPECT_EQ(status(path_ + "nothing"), 404);
@@ -106,7 +109,7 @@ TEST(LiveToken, IsComparedAsAWhole) {
 
 TEST_F(LiveServerTest, EveryServerHasATokenOfItsOwn) {
     const LiveServer another(board_, LiveSettings{});
-    EXPECT_EQ(path_.size(), 50u);   // 24 random bytes
+    EXPECT_EQ(path_.size(), 50u);  // 24 random bytes
     EXPECT_EQ(another.url().find(path_), std::string::npos);
 }
 
@@ -115,7 +118,8 @@ TEST_F(LiveServerTest, SendsEventsAndEndsWhatThePageAsksFor) {
     auto asker = client();
     EXPECT_EQ(asker.Post(path_ + "stop", "0", "text/plain")->status, 409) << "it does not run yet";
     const TestWatch& watch = board_.begins(0, nullptr);
-    for (const char* body : {"", "-1", "0x", "1e0", "everything"}) EXPECT_EQ(asker.Post(path_ + "stop", body, "text/plain")->status, 400) << body;
+    for (const char* body : {"", "-1", "0x", "1e0", "everything"})
+        EXPECT_EQ(asker.Post(path_ + "stop", body, "text/plain")->status, 400) << body;
     EXPECT_EQ(asker.Post(path_ + "stop", std::string(5000, '0'), "text/plain")->status, 413);
     EXPECT_FALSE(watch.ended());
     EXPECT_EQ(asker.Post(path_ + "stop", "0", "text/plain")->status, 200);
@@ -135,9 +139,10 @@ TEST_F(LiveServerTest, ThePageBecomesTheReportWhenTheRunIsOver) {
     });
     while (!board_.is_looked_at()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     board_.report(folder / "report.html");
-    EXPECT_EQ(client().Get(path_ + "report.html")->body, "<html><meta content=\"default-src 'none';\"><body>the whole report</body></html>");
+    EXPECT_EQ(client().Get(path_ + "report.html")->body,
+              "<html><meta content=\"default-src 'none';\"><body>the whole report</body></html>");
     board_.over("all tests have ended");
-    server_.reset();   // waits until the page has it
+    server_.reset();  // waits until the page has it
     page.get();
     EXPECT_NE(heard.find("all tests have ended"), std::string::npos);
 }

@@ -25,11 +25,12 @@ public:
     std::vector<Vec2> displacements;
 
 private:
-    int looks_;   // after which the user ends the test; < 0: never
+    int looks_;  // after which the user ends the test; < 0: never
 };
 
 TestSetup small_test() {
-    TestSetup setup = fixtures::setup(fixtures::rectangle(0.012, 0.024), methods::uniaxial_compression, {}, ContactLaw::bilinear, 5);
+    TestSetup setup =
+        fixtures::setup(fixtures::rectangle(0.012, 0.024), methods::uniaxial_compression, {}, ContactLaw::bilinear, 5);
     setup.numerics.accuracy = 0.05;
     return setup;
 }
@@ -64,7 +65,7 @@ TEST(WatchedTest, LookingAtEveryRecordChangesNoBit) {
 
 TEST(WatchedTest, EndsWhenItsUserWantsItWithAllThatItHas) {
     TestSetup setup = small_test();
-    setup.numerics.confirm = true;   // an ended test is not repeated
+    setup.numerics.confirm = true;  // an ended test is not repeated
     Looking ending(5);
     const TestResult result = run(setup, &ending);
     EXPECT_EQ(ending.seen, 5);

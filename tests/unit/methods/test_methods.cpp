@@ -37,9 +37,11 @@ TEST(Methods, MeasureEachThingOnce) {
         confined += m.loading.on_envelope && m.specimen.confined;
         for (const MethodProperty& property : m.properties) {
             properties.insert(property.name);
-            for (const MethodId other : test_methods())   // the same name, the same thing
+            for (const MethodId other : test_methods())  // the same name, the same thing
                 for (const MethodProperty& same : method_of(other).properties) {
-                    if (same.name == property.name) { EXPECT_EQ(same.unit, property.unit) << property.name; }
+                    if (same.name == property.name) {
+                        EXPECT_EQ(same.unit, property.unit) << property.name;
+                    }
                 }
             EXPECT_NE(property.value, nullptr) << property.name;
             EXPECT_STRNE(property.label, "") << property.name;
@@ -47,7 +49,8 @@ TEST(Methods, MeasureEachThingOnce) {
         EXPECT_EQ(m.properties.empty(), std::string_view(m.properties_table).empty());
         for (const MethodKey& key : m.keys) {
             EXPECT_STRNE(key.meaning, "") << key.name;
-            EXPECT_EQ(key.needed + key.value.has_value() + (*key.usual != 0), 1) << key.name << " says once what holds without it";
+            EXPECT_EQ(key.needed + key.value.has_value() + (*key.usual != 0), 1)
+                << key.name << " says once what holds without it";
         }
         EXPECT_STRNE(m.job.title, "");
         EXPECT_STRNE(m.job.gives, "");
@@ -61,19 +64,21 @@ TEST(Methods, FactsAgree) {
         const TestMethod& m = method_of(kind);
         SCOPED_TRACE(name(kind));
         EXPECT_EQ(std::abs(m.loading.sign), 1.0);
-        EXPECT_FALSE(m.specimen.glued && m.loading.sign > 0.0);                    // what is pressed needs no glue, and what is pulled does
-        EXPECT_FALSE(m.specimen.own_disc && m.specimen.confined);                  // a disc has no sides to press on
+        EXPECT_FALSE(m.specimen.glued && m.loading.sign > 0.0);    // what is pressed needs no glue, and what is pulled does
+        EXPECT_FALSE(m.specimen.own_disc && m.specimen.confined);  // a disc has no sides to press on
         EXPECT_FALSE(m.loading.tensile && (m.loading.bends || m.loading.widens));  // columns and dilation are of compression
         EXPECT_LE(m.verdict.imbalance_a, m.verdict.imbalance_b);
         EXPECT_GT(m.rate.residual_target * m.rate.residual_share, 0.0);
-        // With R* at its first target the unbalanced part of the error is of the order of the accuracy asked for, in every method.
+        // With R* at its first target the unbalanced part of the error is of the order of the accuracy asked for, in every
+        // method.
         EXPECT_GE(m.rate.residual_target * m.rate.residual_share, 1.0 - 1e-12);
         EXPECT_LE(m.rate.residual_target * m.rate.residual_share, 2.0);
     }
 }
 
 TEST(Methods, UsualDiscsStandBetweenJawsOnTapeAndFlattenedOnesBetweenPlates) {
-    const TestSpec disc = usual_test(methods::brazilian), flattened = usual_test(methods::brazilian, true), column = usual_test(methods::uniaxial_compression);
+    const TestSpec disc = usual_test(methods::brazilian), flattened = usual_test(methods::brazilian, true),
+                   column = usual_test(methods::uniaxial_compression);
     EXPECT_EQ(disc.plates, PlateShape::curved);
     EXPECT_EQ(disc.plate_Kn_Pa_m, 1.6e12);
     EXPECT_EQ(flattened.plates, PlateShape::flat);

@@ -31,6 +31,7 @@ TEST(Bands, ShareOutAllPacksAndBodiesOnce) {
             bodies += (bands[b].grains.end - bands[b].grains.begin) + (bands[b].rigid.end - bands[b].rigid.begin);
         }
         EXPECT_EQ(contacts, e.assembly.packs.contacts.size());
-        EXPECT_EQ(bodies, grains == GrainKind::flexible ? e.assembly.packs.grains.size() : bands.back().rigid.end - bands.front().rigid.begin);
+        EXPECT_EQ(bodies, grains == GrainKind::flexible ? e.assembly.packs.grains.size()
+                                                        : bands.back().rigid.end - bands.front().rigid.begin);
     }
 }

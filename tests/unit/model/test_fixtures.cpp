@@ -41,7 +41,7 @@ TEST(Fixtures, ARowOfNodesIsThatOfItsLabel) {
     EXPECT_EQ(held.size(), assembly.fixtures[0].nodes.size()) << "no node twice";
     const auto at_top = [&](int n) { return std::abs(assembly.nodes.reference[n].y - kHeight) < kNear; };
     for (const std::int32_t n : held) EXPECT_TRUE(at_top(n)) << n;
-    for (const GrainEdge& edge : assembly.edges)   // a grain that touches the top with a corner has a node there and no edge
+    for (const GrainEdge& edge : assembly.edges)  // a grain that touches the top with a corner has a node there and no edge
         if (at_top(edge.node[0]) && at_top(edge.node[1])) {
             EXPECT_TRUE(held.contains(edge.node[0]) && held.contains(edge.node[1]));
         }
@@ -63,7 +63,9 @@ TEST(Fixtures, WhatRemainsIsWhatNoneBeforeHasTaken) {
     const Assembly assembly = attached({row("top"), row("bottom"), rest});
     const std::vector<std::int32_t>& sides = assembly.fixtures[2].nodes;
     EXPECT_FALSE(sides.empty());
-    for (const int n : sides) EXPECT_TRUE(std::abs(assembly.nodes.reference[n].x) < kNear || std::abs(assembly.nodes.reference[n].x - kWidth) < kNear) << n;
+    for (const int n : sides)
+        EXPECT_TRUE(std::abs(assembly.nodes.reference[n].x) < kNear || std::abs(assembly.nodes.reference[n].x - kWidth) < kNear)
+            << n;
 }
 
 TEST(Fixtures, APlateStartsAtFirstTouchAndPressesAlongItsNormal) {

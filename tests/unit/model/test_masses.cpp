@@ -13,7 +13,9 @@ namespace {
 
 constexpr double kDensity = 2650.0;
 
-Assembly of(const Specimen& specimen, GrainKind grains) { return assemble(specimen, fixtures::model(grains), fixtures::granite(), fixtures::table7()); }
+Assembly of(const Specimen& specimen, GrainKind grains) {
+    return assemble(specimen, fixtures::model(grains), fixtures::granite(), fixtures::table7());
+}
 
 }  // namespace
 
@@ -26,11 +28,12 @@ TEST(Masses, RealOnesAddUpToTheSpecimens) {
         set_real_masses(assembly);
         double sum_kg = 0.0;
         for (const Body& body : assembly.bodies) {
-            if (body.kind == BodyKind::rigid) sum_kg += assembly.nodes.mass[body.centre_node];
+            if (body.kind == BodyKind::rigid)
+                sum_kg += assembly.nodes.mass[body.centre_node];
             else
                 for (const int n : body.nodes()) sum_kg += assembly.nodes.mass[n];
         }
-        EXPECT_NEAR(sum_kg / whole_kg, 1.0, 1e-9);   // sums of triangles against a product
+        EXPECT_NEAR(sum_kg / whole_kg, 1.0, 1e-9);  // sums of triangles against a product
     }
 }
 
@@ -41,7 +44,8 @@ TEST(Masses, OfTheRotationIsTheMomentOfInertiaOverTheRadiusSquared) {
     set_real_masses(assembly);
     for (const Body& body : assembly.bodies) {
         const double mass_kg = assembly.nodes.mass[body.centre_node];
-        EXPECT_NEAR(assembly.nodes.mass[body.centre_node + 1], mass_kg * body.gyration_m2 / (body.radius_m * body.radius_m), 1e-12 * mass_kg);
+        EXPECT_NEAR(assembly.nodes.mass[body.centre_node + 1], mass_kg * body.gyration_m2 / (body.radius_m * body.radius_m),
+                    1e-12 * mass_kg);
     }
 }
 

@@ -1,4 +1,6 @@
 // What a rock with minerals, scatter, initial cracks and joints comes to on a specimen.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -6,8 +8,6 @@
 #include <numeric>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -25,7 +25,9 @@ const Specimen& plate() {
     return *specimen;
 }
 
-Texture texture(const Heterogeneity& rock, const Specimen& specimen = plate()) { return Texture(specimen, fixtures::granite(), fixtures::table7(), rock); }
+Texture texture(const Heterogeneity& rock, const Specimen& specimen = plate()) {
+    return Texture(specimen, fixtures::granite(), fixtures::table7(), rock);
+}
 
 // The largest distance between the shares of a sample below its values and those of the distribution.
 double kolmogorov_smirnov(std::vector<double> sample, double (*share)(double, double), double parameter) {
@@ -47,28 +49,43 @@ std::vector<double> strengths(const Heterogeneity& rock, const Specimen& specime
     for (int c = 0; c < std::ssize(cells); ++c)
         for (std::size_t k = 0; k < cells[c].vertices.size(); ++k) {
             if (cells[c].neighbours[k] <= c) continue;
-            const Vec2 from = specimen.cells.vertices[cells[c].vertices[k]], to = specimen.cells.vertices[cells[c].vertices[(k + 1) % cells[c].vertices.size()]];
-            factors.push_back(t.contact(c, cells[c].neighbours[k], from, to).material.sigma_nt_Pa / fixtures::table7().sigma_nt_Pa);
+            const Vec2 from = specimen.cells.vertices[cells[c].vertices[k]],
+                       to = specimen.cells.vertices[cells[c].vertices[(k + 1) % cells[c].vertices.size()]];
+            factors.push_back(t.contact(c, cells[c].neighbours[k], from, to).material.sigma_nt_Pa /
+                              fixtures::table7().sigma_nt_Pa);
         }
     return factors;
 }
 
 TEST(Scatter, DrawsFollowTheirDistributions) {
     Heterogeneity rock;
-    const double limit = 1.63 / std::sqrt(static_cast<double>(strengths(rock).size()));   // at 1 %
+    const double limit = 1.63 / std::sqrt(static_cast<double>(strengths(rock).size()));  // at 1 %
     rock.scatter[Scattered::strength] = {.kind = DistributionKind::weibull, .weibull_modulus = 2.5};
-    EXPECT_LT(kolmogorov_smirnov(strengths(rock), [](double f, double m) { return 1.0 - std::exp(-std::pow(f * std::tgamma(1.0 + 1.0 / m), m)); }, 2.5), limit);
+    EXPECT_LT(kolmogorov_smirnov(
+                  strengths(rock),
+                  [](double f, double m) { return 1.0 - std::exp(-std::pow(f * std::tgamma(1.0 + 1.0 / m), m)); }, 2.5),
+              limit);
     rock.scatter[Scattered::strength] = {.kind = DistributionKind::log_normal, .variation = 0.4};
-    EXPECT_LT(kolmogorov_smirnov(strengths(rock), [](double f, double v) { const double s = std::sqrt(std::log1p(v * v)); return 0.5 * std::erfc(-(std::log(f) / s + 0.5 * s) / std::numbers::sqrt2); }, 0.4), limit);
+    EXPECT_LT(kolmogorov_smirnov(
+                  strengths(rock),
+                  [](double f, double v) {
+                      const double s = std::sqrt(std::log1p(v * v));
+                      return 0.5 * std::erfc(-(std::log(f) / s + 0.5 * s) / std::numbers::sqrt2);
+                  },
+                  0.4),
+              limit);
     rock.scatter[Scattered::strength] = {.kind = DistributionKind::normal, .variation = 0.2};
-    EXPECT_LT(kolmogorov_smirnov(strengths(rock), [](double f, double v) { return 0.5 * std::erfc(-(f - 1.0) / v / std::numbers::sqrt2); }, 0.2), limit);
+    EXPECT_LT(kolmogorov_smirnov(
+                  strengths(rock), [](double f, double v) { return 0.5 * std::erfc(-(f - 1.0) / v / std::numbers::sqrt2); }, 0.2),
+              limit);
 }
 
 TEST(Scatter, FactorsHaveTheMeanOneAndTheStatedVariation) {
-    for (const auto& [modulus, variation, median] : {std::array{1.3, 0.776, 0.817}, std::array{2.0, 0.523, 0.939}, std::array{6.0, 0.194, 1.014}}) {   // closed form
+    for (const auto& [modulus, variation, median] :
+         {std::array{1.3, 0.776, 0.817}, std::array{2.0, 0.523, 0.939}, std::array{6.0, 0.194, 1.014}}) {  // closed form
         const Distribution d{.kind = DistributionKind::weibull, .weibull_modulus = modulus};
         EXPECT_NEAR(factor_at(d, 0.5), median, 1e-3);
-        EXPECT_NEAR(weibull_modulus_of(variation), modulus, 0.005 * modulus);   // of a variation given to three digits
+        EXPECT_NEAR(weibull_modulus_of(variation), modulus, 0.005 * modulus);  // of a variation given to three digits
         double mean = 0.0, square = 0.0;
         constexpr int kPoints = 200000;
         for (int i = 0; i < kPoints; ++i) {
@@ -76,18 +93,19 @@ TEST(Scatter, FactorsHaveTheMeanOneAndTheStatedVariation) {
             mean += f / kPoints;
             square += f * f / kPoints;
         }
-        EXPECT_NEAR(mean, 1.0, 1e-3);   // the tail of the sum
+        EXPECT_NEAR(mean, 1.0, 1e-3);  // the tail of the sum
         EXPECT_NEAR(std::sqrt(square - mean * mean), variation, 2e-3);
     }
 }
 
 TEST(Scatter, IsCutOffAtBothEnds) {
     Heterogeneity rock;
-    rock.scatter[Scattered::strength] = {.kind = DistributionKind::weibull, .weibull_modulus = 1.5, .lowest = 0.3, .highest = 1.6};
+    rock.scatter[Scattered::strength] = {
+        .kind = DistributionKind::weibull, .weibull_modulus = 1.5, .lowest = 0.3, .highest = 1.6};
     const std::vector<double> f = strengths(rock);
     EXPECT_GE(*std::min_element(f.begin(), f.end()), 0.3);
     EXPECT_LE(*std::max_element(f.begin(), f.end()), 1.6);
-    EXPECT_LT(std::count(f.begin(), f.end(), 0.3), 3);   // cut off, not heaped up there
+    EXPECT_LT(std::count(f.begin(), f.end(), 0.3), 3);  // cut off, not heaped up there
 }
 
 TEST(Scatter, IsDrawnByTheGrainsThatAContactJoins) {
@@ -98,13 +116,14 @@ TEST(Scatter, IsDrawnByTheGrainsThatAContactJoins) {
     const auto inside = std::find_if(cell.neighbours.begin(), cell.neighbours.end(), [](int n) { return n >= 0; });
     ASSERT_NE(inside, cell.neighbours.end());
     const double f = t.contact(50, *inside, {}, {}).material.sigma_nt_Pa;
-    EXPECT_EQ(t.contact(*inside, 50, {1.0, 2.0}, {3.0, 4.0}).material.sigma_nt_Pa, f);   // whatever the order and the place
-    const ContactMaterial m = t.contact(50, *inside, {}, {}).material;   // strengths move together, energies by the square
+    EXPECT_EQ(t.contact(*inside, 50, {1.0, 2.0}, {3.0, 4.0}).material.sigma_nt_Pa, f);  // whatever the order and the place
+    const ContactMaterial m = t.contact(50, *inside, {}, {}).material;  // strengths move together, energies by the square
     const double factor = f / fixtures::table7().sigma_nt_Pa;
     EXPECT_DOUBLE_EQ(m.tau_Pa / fixtures::table7().tau_Pa, factor);
     EXPECT_NEAR(m.Gfn_J_m2 / fixtures::table7().Gfn_J_m2, factor * factor, 1e-12);
     EXPECT_EQ(m.Kn_Pa_m, fixtures::table7().Kn_Pa_m);
-    EXPECT_NE(strengths(rock, *fixtures::make(fixtures::rectangle(0.06, 0.12), 2)), strengths(rock));   // another packing, other draws
+    EXPECT_NE(strengths(rock, *fixtures::make(fixtures::rectangle(0.06, 0.12), 2)),
+              strengths(rock));  // another packing, other draws
 }
 
 // Over many pairs of contacts a given distance apart, the normal scores of their draws have the covariance exp(-r^2 / (2 l^2)).
@@ -115,27 +134,32 @@ TEST(Scatter, OfARandomFieldIsCorrelatedOverItsLength) {
     const double s = std::sqrt(std::log1p(0.09));
     double product = 0.0, square = 0.0;
     int pairs = 0;
-    for (std::uint64_t seed = 1; seed <= 300; ++seed) {   // of fields, not of packings
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {  // of fields, not of packings
         Specimen specimen;
         specimen.seed = seed;
         specimen.spec = plate().spec;
         const Texture t(specimen, fixtures::granite(), fixtures::table7(), rock);
         for (int i = 0; i < 5; ++i) {
             const Vec2 x = {0.02 * i, 0.01};
-            const auto score = [&](Vec2 at) { return std::log(t.contact(0, 1, at, at).material.sigma_nt_Pa / fixtures::table7().sigma_nt_Pa) / s + 0.5 * s; };
+            const auto score = [&](Vec2 at) {
+                return std::log(t.contact(0, 1, at, at).material.sigma_nt_Pa / fixtures::table7().sigma_nt_Pa) / s + 0.5 * s;
+            };
             const double a = score(x), b = score({x.x, x.y + kLength});
             product += a * b;
             square += a * a;
             ++pairs;
         }
     }
-    EXPECT_NEAR(square / pairs, 1.0, 0.12);                       // three standard errors of 1500 draws
+    EXPECT_NEAR(square / pairs, 1.0, 0.12);  // three standard errors of 1500 draws
     EXPECT_NEAR(product / pairs, std::exp(-0.5), 0.09);
 }
 
 Heterogeneity granite_of_four() {
     Heterogeneity rock;
-    rock.minerals.phases = {{"quartz", 0.31, {94.5e9, 0.08, 2650.0}}, {"K-feldspar", 0.27, {69.8e9, 0.28, 2560.0}}, {"plagioclase", 0.38, {88.1e9, 0.26, 2630.0}}, {"biotite", 0.04, {33.8e9, 0.36, 3050.0}}};
+    rock.minerals.phases = {{"quartz", 0.31, {94.5e9, 0.08, 2650.0}},
+                            {"K-feldspar", 0.27, {69.8e9, 0.28, 2560.0}},
+                            {"plagioclase", 0.38, {88.1e9, 0.26, 2630.0}},
+                            {"biotite", 0.04, {33.8e9, 0.36, 3050.0}}};
     return rock;
 }
 
@@ -145,7 +169,8 @@ TEST(Minerals, HaveTheirSharesOfTheArea) {
     for (const double length : {0.0, 0.01}) {
         rock.minerals.cluster_length_m = length;
         const TextureSummary summary = texture(rock).summary();
-        for (std::size_t p = 0; p < 4; ++p) EXPECT_NEAR(summary.area_shares[p], rock.minerals.phases[p].share, 2.0 * grain) << length;   // two grains
+        for (std::size_t p = 0; p < 4; ++p)
+            EXPECT_NEAR(summary.area_shares[p], rock.minerals.phases[p].share, 2.0 * grain) << length;  // two grains
         EXPECT_EQ(std::accumulate(summary.grains.begin(), summary.grains.end(), 0), std::ssize(plate().cells.cells));
     }
 }
@@ -178,19 +203,19 @@ TEST(Minerals, ComeFromAListOrAMap) {
     EXPECT_THROW(texture(rock), InputError);
 
     rock.minerals.list.clear();
-    PhaseMap map{60, 120, std::vector<std::int8_t>(60 * 120, 0)};   // the upper half biotite
+    PhaseMap map{60, 120, std::vector<std::int8_t>(60 * 120, 0)};  // the upper half biotite
     std::fill(map.phase.begin(), map.phase.begin() + 60 * 60, std::int8_t{3});
     rock.minerals.map = std::make_shared<PhaseMap>(map);
     const Texture t = texture(rock);
     for (std::size_t c = 0; c < t.phases().size(); ++c) {
         const double y = plate().mesh.nodes[plate().mesh.centre_node[c]].y;
-        if (std::abs(y - 0.06) < 0.003) continue;   // a grain away from the border
+        if (std::abs(y - 0.06) < 0.003) continue;  // a grain away from the border
         EXPECT_EQ(t.phases()[c], y > 0.06 ? 3 : 0);
     }
     map.height = 100;
     map.phase.resize(60 * 100);
     rock.minerals.map = std::make_shared<PhaseMap>(map);
-    EXPECT_THROW(texture(rock), InputError);   // another shape than the specimen
+    EXPECT_THROW(texture(rock), InputError);  // another shape than the specimen
 }
 
 // Where minerals have sizes of their own the packing says which cell is of which, and the summary what they came to.
@@ -231,19 +256,19 @@ TEST(Minerals, UnlikeContactsFollowTheRule) {
     rock.minerals.pairs = {quartz, mica, both};
     EXPECT_EQ(texture(rock).between(0, 3).sigma_nt_Pa, 4e6);
     EXPECT_EQ(texture(rock).between(3, 0).Kn_Pa_m, 1e14);
-    EXPECT_EQ(texture(rock).between(2, 0).tau_Pa, 1e6);                              // given
+    EXPECT_EQ(texture(rock).between(2, 0).tau_Pa, 1e6);  // given
     EXPECT_EQ(texture(rock).between(2, 0).sigma_nt_Pa, fixtures::table7().sigma_nt_Pa);
     EXPECT_EQ(texture(rock).between(1, 1).sigma_nt_Pa, fixtures::table7().sigma_nt_Pa);
     rock.minerals.unlike = UnlikeRule::mean;
     rock.minerals.unlike_strength = 0.5;
     EXPECT_DOUBLE_EQ(texture(rock).between(0, 3).sigma_nt_Pa, 0.5 * 8e6);
     EXPECT_DOUBLE_EQ(texture(rock).between(0, 3).Kn_Pa_m, 2.0 / (1.0 / 2e14 + 1.0 / 1e14));
-    EXPECT_EQ(texture(rock).between(0, 0).sigma_nt_Pa, 12e6);                        // like: as given
+    EXPECT_EQ(texture(rock).between(0, 0).sigma_nt_Pa, 12e6);  // like: as given
 }
 
 TEST(Minerals, MeanIsThatOfHill) {
     const GrainMaterial mean = mean_grain(granite_of_four().minerals, fixtures::granite());
-    EXPECT_NEAR(mean.E_Pa / 1e9, 0.5 * (82.97 + 79.12), 0.05);   // Voigt 83.0, Reuss 79.1 GPa
+    EXPECT_NEAR(mean.E_Pa / 1e9, 0.5 * (82.97 + 79.12), 0.05);  // Voigt 83.0, Reuss 79.1 GPa
     EXPECT_NEAR(mean.density_kg_m3, 0.31 * 2650 + 0.27 * 2560 + 0.38 * 2630 + 0.04 * 3050, 1e-9);
 }
 
@@ -252,7 +277,7 @@ TEST(InitialCracks, AreAShareOfTheContacts) {
     rock.initial_cracks = {.broken = 0.2, .opening_m = 1e-6, .weakened = 0.3, .weakened_strength = 0.4};
     const TextureSummary summary = texture(rock).summary();
     const double n = summary.contacts_in_all;
-    EXPECT_NEAR(summary.broken / n, 0.2, 3.0 * std::sqrt(0.2 * 0.8 / n));       // three standard deviations
+    EXPECT_NEAR(summary.broken / n, 0.2, 3.0 * std::sqrt(0.2 * 0.8 / n));  // three standard deviations
     EXPECT_NEAR(summary.weakened / n, 0.3, 3.0 * std::sqrt(0.3 * 0.7 / n));
     const Assembly a = assemble(plate(), fixtures::model(GrainKind::flexible), fixtures::granite(), fixtures::table7(), rock);
     int open = 0, weak = 0;
@@ -301,7 +326,7 @@ TEST(Joints, DivideTheSpecimenAlongTheirTrace) {
     const TextureSummary summary = texture(rock).summary();
     const double trace = norm(Vec2{0.03, 0.05} - Vec2{0.0, 0.035}) + norm(Vec2{0.06, 0.08} - Vec2{0.03, 0.05});
     EXPECT_GT(summary.joint_lengths_m[0], trace);
-    EXPECT_LT(summary.joint_lengths_m[0], 1.6 * trace);   // a way along the edges of a honeycomb is 4/3 as long
+    EXPECT_LT(summary.joint_lengths_m[0], 1.6 * trace);  // a way along the edges of a honeycomb is 4/3 as long
 }
 
 TEST(Joints, OutsideOfTheBodyOrAroundAGrainAreRefused) {
@@ -327,7 +352,12 @@ TEST(Joints, OutsideOfTheBodyOrAroundAGrainAreRefused) {
 TEST(Joints, OfASetHaveItsSpacingAndPersistence) {
     JointSpec set;
     set.name = "bedding";
-    set.set = JointSet{.dip_rad = 0.4, .spacing_m = 0.004, .spacing_variation = 0.3, .length_m = 0.01, .length_variation = 0.2, .persistence = 0.6};
+    set.set = JointSet{.dip_rad = 0.4,
+                       .spacing_m = 0.004,
+                       .spacing_variation = 0.3,
+                       .length_m = 0.01,
+                       .length_variation = 0.2,
+                       .persistence = 0.6};
     const Box box = bounding_box(plate().mesh.nodes);
     const double reach = 0.5 * norm(box.upper - box.lower);
     double length = 0.0, inside = 0.0;
@@ -338,12 +368,14 @@ TEST(Joints, OfASetHaveItsSpacingAndPersistence) {
         const Vec2 centre = 0.5 * (box.lower + box.upper), along{std::cos(0.4), std::sin(0.4)};
         for (const std::vector<Vec2>& trace : traces_of(set, specimen)) {
             EXPECT_NEAR(cross(along, trace[1] - trace[0]), 0.0, 1e-12);
-            const double from = std::clamp(dot(trace[0] - centre, along), -reach, reach), to = std::clamp(dot(trace[1] - centre, along), -reach, reach);
+            const double from = std::clamp(dot(trace[0] - centre, along), -reach, reach),
+                         to = std::clamp(dot(trace[1] - centre, along), -reach, reach);
             if (std::abs(cross(along, trace[0] - centre)) < reach) length += to - from;
         }
         inside += 4.0 * reach * reach;
     }
-    EXPECT_NEAR(length / inside, 0.6 / 0.004, 0.05 * 0.6 / 0.004);   // length of traces per area: persistence over spacing; 40 draws
+    EXPECT_NEAR(length / inside, 0.6 / 0.004,
+                0.05 * 0.6 / 0.004);  // length of traces per area: persistence over spacing; 40 draws
 }
 
 // Crystals: each one mineral, one draw a boundary, contacts inside of a class of their own.
@@ -358,7 +390,7 @@ TEST(Crystals, HaveOneMineralAndContactsOfTheirOwnInside) {
     const std::vector<int>& crystal = specimen->crystal_of_cell;
     ASSERT_EQ(crystal.size(), specimen->cells.cells.size());
     EXPECT_EQ(*std::max_element(crystal.begin(), crystal.end()) + 1, specimen->quality.crystals);
-    EXPECT_NEAR(static_cast<double>(crystal.size()) / specimen->quality.crystals, 10.0, 2.0);   // (5.7 / 1.8)^2
+    EXPECT_NEAR(static_cast<double>(crystal.size()) / specimen->quality.crystals, 10.0, 2.0);  // (5.7 / 1.8)^2
 
     Heterogeneity rock;
     rock.minerals.phases = {{"a", 0.5, fixtures::granite()}, {"b", 0.5, fixtures::granite()}};
@@ -368,7 +400,7 @@ TEST(Crystals, HaveOneMineralAndContactsOfTheirOwnInside) {
     rock.minerals.pairs = {inside};
     rock.scatter[Scattered::strength] = {.kind = DistributionKind::weibull, .weibull_modulus = 2.0};
     const Texture t(*specimen, fixtures::granite(), fixtures::table7(), rock);
-    std::map<std::pair<int, int>, double> drawn;   // of each boundary between crystals
+    std::map<std::pair<int, int>, double> drawn;  // of each boundary between crystals
     int inner = 0, outer = 0;
     for (int c = 0; c < std::ssize(specimen->cells.cells); ++c)
         for (const int other : specimen->cells.cells[c].neighbours) {
@@ -390,7 +422,7 @@ TEST(Crystals, HaveOneMineralAndContactsOfTheirOwnInside) {
     const TextureSummary summary = t.summary();
     EXPECT_EQ(summary.inside, inner);
     EXPECT_EQ(summary.contacts_in_all, inner + outer);
-    EXPECT_GT(outer, std::ssize(drawn));   // several edges a boundary
+    EXPECT_GT(outer, std::ssize(drawn));  // several edges a boundary
 }
 
 }  // namespace

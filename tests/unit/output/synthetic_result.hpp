@@ -134,7 +134,7 @@ inline TestResult make_result(MethodId kind = methods::uniaxial_compression, std
         }
         s.cracks = cracks;
         s.crack_opening_m.assign(static_cast<std::size_t>(cracks), 1e-6);
-        for (std::size_t c = 0; c < result.grain_contacts.size(); ++c) {   // the first two are those of the cracks
+        for (std::size_t c = 0; c < result.grain_contacts.size(); ++c) {  // the first two are those of the cracks
             s.contact_damage.push_back(static_cast<int>(c) < cracks ? 1.0F : 0.01F * static_cast<float>(c));
             s.contact_normal_N.push_back(static_cast<int>(c) < cracks ? 0.0F : 10.0F * static_cast<float>(c));
             s.contact_shear_N.push_back(static_cast<int>(c) < cracks ? 0.0F : -1.0F * static_cast<float>(c));
@@ -209,7 +209,8 @@ inline Provenance make_provenance() {
             .compiler = "a compiler",
             .started = "2026-01-01T00:00:00Z",
             .command_line = "feldspar run augig.toml",
-            .threads = 2, .device = {}};
+            .threads = 2,
+            .device = {}};
 }
 
 inline PropertySummary make_properties() {

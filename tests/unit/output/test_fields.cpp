@@ -1,4 +1,6 @@
 // The files with fields, read back: HDF5 archive and VTU.
+#include "feldspar/output/test_fields.hpp"
+
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <zlib.h>
@@ -6,13 +8,12 @@
 #include <cstring>
 #include <vector>
 
+#include "../../temporary_folder.hpp"
+#include "feldspar/base/error.hpp"
 #include "feldspar/output/crack_geometry.hpp"
 #include "feldspar/output/history_columns.hpp"
-#include "feldspar/base/error.hpp"
 #include "feldspar/output/results.hpp"
-#include "feldspar/output/test_fields.hpp"
 #include "feldspar/output/vtu_grid.hpp"
-#include "../../temporary_folder.hpp"
 #include "synthetic_result.hpp"
 
 namespace feldspar {
@@ -83,7 +84,7 @@ TEST_F(Fields, ArchiveOfTheSameResultsHasTheSameBytes) {
     EXPECT_EQ(read_text(directory.path() / "uniaxial-compression-s3.h5"), before);
 }
 
-TEST_F(Fields, NothingInAnArchiveSaysWhenItWasMade) {   // a second later the bytes would be others
+TEST_F(Fields, NothingInAnArchiveSaysWhenItWasMade) {  // a second later the bytes would be others
     write_hdf5(directory, result, make_job(), make_provenance());
     const hid_t file = H5Fopen((directory.path() / "uniaxial-compression-s3.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     ASSERT_GE(file, 0);
@@ -176,17 +177,18 @@ TEST_F(Fields, ArchiveGivesBackWhatIsDrawn) {
 // The files for ParaView are the same whether they are made of the result or of its archive.
 TEST_F(Fields, ExportOfAnArchiveHasTheBytesOfTheResult) {
     write_hdf5(directory, result, make_job(), make_provenance());
-    const RunDirectory one = RunDirectory::create(scratch.path() / "one", "job"), other = RunDirectory::create(scratch.path() / "other", "job");
+    const RunDirectory one = RunDirectory::create(scratch.path() / "one", "job"),
+                       other = RunDirectory::create(scratch.path() / "other", "job");
     write_paraview(one, fields_of(result));
     write_paraview(other, read_archive(directory.path() / "uniaxial-compression-s3.h5"), 2);
     int files = 0;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(one.path())) {
-        if (!entry.is_regular_file() || entry.path().extension() == ".py") continue;   // which names its directory
+        if (!entry.is_regular_file() || entry.path().extension() == ".py") continue;  // which names its directory
         const auto twin = other.path() / std::filesystem::relative(entry.path(), one.path());
         EXPECT_EQ(read_text(entry.path()), read_text(twin)) << entry.path();
         ++files;
     }
-    EXPECT_EQ(files, 1 + 3 * 6);   // the collection; of each snapshot five blocks and their list
+    EXPECT_EQ(files, 1 + 3 * 6);  // the collection; of each snapshot five blocks and their list
 }
 
 TEST_F(Fields, WhatIsNoArchiveIsRefused) {
@@ -210,7 +212,8 @@ TEST_F(Fields, WhatIsNoArchiveIsRefused) {
         EXPECT_NE(std::string(error.what()).find("version 99"), std::string::npos) << error.what();
     }
     const std::string whole = read_text(file);
-    for (const std::size_t length : {whole.size() / 4, whole.size() / 2, whole.size() - 200}) {   // a file that was cut is refused, or read as far as it is whole
+    for (const std::size_t length : {whole.size() / 4, whole.size() / 2,
+                                     whole.size() - 200}) {  // a file that was cut is refused, or read as far as it is whole
         directory.write_text("cut.h5", whole.substr(0, length));
         try {
             (void)read_archive(directory.path() / "cut.h5");
@@ -250,7 +253,8 @@ TEST_F(Fields, VtuReadsBack) {
     // the line of the first crack lies midway between the faces of grains 0 and 1, which are 1 um apart
     const auto moved = vtu_array<float>(cracks, "displacement_m");
     const auto faces = find_crack_faces(*result.specimen, result.cracks);
-    const auto a = face_displacement(faces[0].a, result.snapshots[2].displacement_m), b = face_displacement(faces[0].b, result.snapshots[2].displacement_m);
+    const auto a = face_displacement(faces[0].a, result.snapshots[2].displacement_m),
+               b = face_displacement(faces[0].b, result.snapshots[2].displacement_m);
     EXPECT_FLOAT_EQ(moved[0], static_cast<float>(0.5 * (a[0].x + b[0].x)));
     EXPECT_FLOAT_EQ(moved[4], static_cast<float>(0.5 * (a[1].y + b[1].y)));
 }
@@ -262,7 +266,7 @@ TEST_F(Fields, ContactsThatAreNotBrokenHaveDamageAndForce) {
     EXPECT_EQ(vtu_array<float>(read_text(folder / "contacts-000.vtu"), "damage").size(), contacts);
     const std::string end = read_text(folder / "contacts-002.vtu");
     const auto damage = vtu_array<float>(end, "damage");
-    ASSERT_EQ(damage.size(), contacts - 2);   // two cracks broke one each
+    ASSERT_EQ(damage.size(), contacts - 2);  // two cracks broke one each
     for (const float one : damage) EXPECT_LT(one, 1.0F);
     EXPECT_EQ(vtu_array<float>(end, "normal_force_N").size(), damage.size());
     EXPECT_EQ(vtu_array<float>(end, "shear_force_N").size(), damage.size());
@@ -274,7 +278,8 @@ TEST_F(Fields, EdgesOfGrainsAreThoseOfTheirCells) {
     const std::string edges = read_text(directory.path() / "uniaxial-compression-s3/grain_edges-000.vtu");
     const auto ends = vtu_array<std::int32_t>(edges, "connectivity");
     ASSERT_EQ(ends.size(), 2 * 4 * result.specimen->cells.cells.size());
-    for (const std::int32_t node : ends) EXPECT_NE(node % 5, 4) << "the node in the middle";   // each grain has four corners, then that
+    for (const std::int32_t node : ends)
+        EXPECT_NE(node % 5, 4) << "the node in the middle";  // each grain has four corners, then that
 }
 
 TEST_F(Fields, CollectionNamesEveryBlockAtGrowingTimes) {
@@ -282,7 +287,8 @@ TEST_F(Fields, CollectionNamesEveryBlockAtGrowingTimes) {
     const std::string collection = read_text(directory.path() / "uniaxial-compression-s3.pvd");
     double before = -1.0;
     int entries = 0, blocks = 0;
-    for (std::size_t at = collection.find("<DataSet"); at != std::string::npos; at = collection.find("<DataSet", at + 1), ++entries) {
+    for (std::size_t at = collection.find("<DataSet"); at != std::string::npos;
+         at = collection.find("<DataSet", at + 1), ++entries) {
         const auto file = directory.path() / value_of(collection, "file", at);
         ASSERT_TRUE(std::filesystem::exists(file)) << file;
         const double time = std::stod(value_of(collection, "timestep", at));
@@ -290,7 +296,8 @@ TEST_F(Fields, CollectionNamesEveryBlockAtGrowingTimes) {
         before = time;
         const std::string list = read_text(file);
         std::vector<std::string> names;
-        for (std::size_t block = list.find("<DataSet"); block != std::string::npos; block = list.find("<DataSet", block + 1), ++blocks) {
+        for (std::size_t block = list.find("<DataSet"); block != std::string::npos;
+             block = list.find("<DataSet", block + 1), ++blocks) {
             names.push_back(value_of(list, "name", block));
             EXPECT_TRUE(std::filesystem::exists(file.parent_path() / value_of(list, "file", block))) << list;
         }
@@ -309,7 +316,9 @@ TEST_F(Fields, WhatAnEarlierExportLeftBeyondIsRemoved) {
     write_paraview(directory, fields_of(result));
     const auto folder = directory.path() / "uniaxial-compression-s3";
     EXPECT_TRUE(std::filesystem::exists(folder / "grains-001.vtu"));
-    for (const char* file : {"grains-002.vtu", "grain_edges-002.vtu", "contacts-002.vtu", "cracks-002.vtu", "events-002.vtu", "snapshot-002.vtm"}) EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
+    for (const char* file :
+         {"grains-002.vtu", "grain_edges-002.vtu", "contacts-002.vtu", "cracks-002.vtu", "events-002.vtu", "snapshot-002.vtm"})
+        EXPECT_FALSE(std::filesystem::exists(folder / file)) << file;
 }
 
 TEST_F(Fields, TimesThatDoNotGrowBecomeNumbers) {

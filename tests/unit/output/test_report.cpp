@@ -6,12 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "../../temporary_folder.hpp"
 #include "feldspar/base/printable.hpp"
 #include "feldspar/output/fragments.hpp"
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/variant_summary.hpp"
-#include "../../temporary_folder.hpp"
 #include "synthetic_result.hpp"
 
 namespace feldspar {
@@ -82,7 +82,7 @@ TEST_F(Report, MarksTheMomentsOfABrazilianTest) {
         if (mark["name"] == "first crack") {
             ASSERT_LT(c, results[2].cracks.size());
             EXPECT_NEAR(mark["strain"].get<double>(), results[2].cracks[c].axial_strain * 1e3, 1e-6);
-        } else if (mark["name"] == "strength") {   // on the curve that is drawn
+        } else if (mark["name"] == "strength") {  // on the curve that is drawn
             const auto stress = data["tests"][2]["history"]["stress"].get<std::vector<double>>();
             EXPECT_NE(std::find(stress.begin(), stress.end(), mark["stress"].get<double>()), stress.end());
         }
@@ -100,24 +100,28 @@ TEST_F(Report, CountsAcousticEventsOverStrainAndMagnitude) {
     };
     EXPECT_EQ(total("before") + total("behind"), 2);
     EXPECT_EQ(emission["magnitudes"].front()[1], 2) << "all have at least the least magnitude";
-    EXPECT_NEAR(emission["magnitudes"].back()[0].get<double>(), results[0].emission.events[0].magnitude, 0.1) << "the largest, within a step";
+    EXPECT_NEAR(emission["magnitudes"].back()[0].get<double>(), results[0].emission.events[0].magnitude, 0.1)
+        << "the largest, within a step";
     results[0].cracks.clear();
     results[0].emission = {};
     EXPECT_TRUE(json::parse(between(page(), "id=\"data\">", "</script>"))["tests"][0]["emission"].is_null());
 }
 
-// Supplied = elastic + dissipated + kinetic + what is not accounted for, as the chart draws them, whatever the loading motion holds.
+// Supplied = elastic + dissipated + kinetic + what is not accounted for, as the chart draws them, whatever the loading motion
+// holds.
 TEST_F(Report, ShowsABalanceOfEnergyThatCloses) {
-    for (HistoryRow& row : results[0].history) {   // the loading motion's energy is put in by the rate control
+    for (HistoryRow& row : results[0].history) {  // the loading motion's energy is put in by the rate control
         row.energy.kinetic = row.energy.rate_control = row.step % 100 == 0 ? 3.0 : 0.5;
         row.energy.kinetic += row.kinetic_deviation = 1e-3;
     }
     const json history = json::parse(between(page(), "id=\"data\">", "</script>"))["tests"][0]["history"];
     for (std::size_t r = 0; r < history["supplied"].size(); ++r) {
         double sum = 0.0;
-        for (const char* part : {"grains", "contacts", "fracture", "friction", "damping", "kinetic", "residual"}) sum += history[part][r].get<double>();
-        EXPECT_NEAR(history["supplied"][r].get<double>(), sum, 1e-5 * (1.0 + sum));   // six digits are written
-        EXPECT_NEAR(history["supplied"][r].get<double>(), results[0].history[r].energy.external, 1e-5 * (1.0 + sum)) << "no step of the loading motion";
+        for (const char* part : {"grains", "contacts", "fracture", "friction", "damping", "kinetic", "residual"})
+            sum += history[part][r].get<double>();
+        EXPECT_NEAR(history["supplied"][r].get<double>(), sum, 1e-5 * (1.0 + sum));  // six digits are written
+        EXPECT_NEAR(history["supplied"][r].get<double>(), results[0].history[r].energy.external, 1e-5 * (1.0 + sum))
+            << "no step of the loading motion";
         EXPECT_NEAR(history["loading_motion"][r].get<double>(), results[0].history[r].energy.rate_control, 1e-5);
     }
 }
@@ -173,7 +177,8 @@ TEST_F(Report, ShowsControlCharactersAsText) {
     results[0].evidence.verdict = "one\ntwo\x7f\xc2\x9b";
     const std::string html = page();
     EXPECT_NE(html.find("<title>gra\\x1b[31mnite\\x0d\\x07 - Feldspar"), std::string::npos);
-    for (const char* character : {"\x1b", "\r", "\a", "\x7f", "\xc2\x9b"}) EXPECT_EQ(html.find(character), std::string::npos) << printable(character);
+    for (const char* character : {"\x1b", "\r", "\a", "\x7f", "\xc2\x9b"})
+        EXPECT_EQ(html.find(character), std::string::npos) << printable(character);
     const json data = json::parse(between(html, "id=\"data\">", "</script>"));
     EXPECT_EQ(data["job"]["name"], "gra\\x1b[31mnite\\x0d\\x07");
     EXPECT_EQ(data["tests"][0]["verdict"], "one\ntwo\\x7f\\x9b");
@@ -274,18 +279,19 @@ TEST(ReportFields, AreOfTheMedianTheWeakestAndTheStrongestPacking) {
     is(0, "median", 1);
     is(1, "weakest", 2);
     is(2, "strongest", 0);
-    is(3, "", 5);   // alone
-    const auto scarce = report_fields(results, 3 * list[0].block.size());   // where there is little room, every kind has its median at least
+    is(3, "", 5);  // alone
+    const auto scarce =
+        report_fields(results, 3 * list[0].block.size());  // where there is little room, every kind has its median at least
     ASSERT_GE(scarce.size(), 2U);
     EXPECT_EQ(scarce[0].meta["role"], "median");
     EXPECT_EQ(scarce.back().meta["test"], 5U);
 }
 
 TEST(Fragments, HangTogetherWhileATenthOfTheirEdgeIsWhole) {
-    const TestResult result = make_result();   // 4 x 3 grains
+    const TestResult result = make_result();  // 4 x 3 grains
     const Specimen& specimen = *result.specimen;
     std::vector<Crack> cracks;
-    const auto cut = [&](int a, int b, double share) {   // of the edge between them
+    const auto cut = [&](int a, int b, double share) {  // of the edge between them
         Crack crack;
         crack.grain_a = b;
         crack.grain_b = a;
@@ -293,7 +299,8 @@ TEST(Fragments, HangTogetherWhileATenthOfTheirEdgeIsWhole) {
         cracks.push_back(crack);
     };
     EXPECT_EQ(fragments(specimen, cracks, 0), std::vector<int>(12, 0));
-    for (int row = 0; row < 3; ++row) cut(4 * row, 4 * row + 1, row == 1 ? 0.89 : 1.0);   // between the first column and the second
+    for (int row = 0; row < 3; ++row)
+        cut(4 * row, 4 * row + 1, row == 1 ? 0.89 : 1.0);  // between the first column and the second
     EXPECT_EQ(fragments(specimen, cracks, 3), std::vector<int>(12, 0)) << "the middle one holds";
     cut(4, 5, 0.02);
     EXPECT_EQ(fragments(specimen, cracks, 4), (std::vector<int>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}));

@@ -9,9 +9,9 @@
 #include <fstream>
 #include <set>
 
+#include "../../temporary_folder.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/output/results.hpp"
-#include "../../temporary_folder.hpp"
 
 namespace feldspar {
 namespace {

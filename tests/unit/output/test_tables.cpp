@@ -6,11 +6,11 @@
 #include <sstream>
 #include <vector>
 
+#include "../../temporary_folder.hpp"
 #include "feldspar/output/history_columns.hpp"
 #include "feldspar/output/results.hpp"
 #include "feldspar/output/user_units.hpp"
 #include "feldspar/output/variant_summary.hpp"
-#include "../../temporary_folder.hpp"
 #include "synthetic_result.hpp"
 
 namespace feldspar {
@@ -57,7 +57,9 @@ TEST_F(Tables, AVariantStaysInItsLineOfTheHistory) {
     TestResult result = make_result();
     result.variant = "rigid\n\x1b[31m1,2";
     write_history_csv(directory, result, make_provenance());
-    EXPECT_NE(read_text(directory.path() / ("history-" + test_stem(result) + ".csv")).find("\n# variant: rigid\\x0a\\x1b[31m1,2\n"), std::string::npos);
+    EXPECT_NE(
+        read_text(directory.path() / ("history-" + test_stem(result) + ".csv")).find("\n# variant: rigid\\x0a\\x1b[31m1,2\n"),
+        std::string::npos);
 }
 
 TEST_F(Tables, SummaryListsTestsThatFailed) {
@@ -65,7 +67,8 @@ TEST_F(Tables, SummaryListsTestsThatFailed) {
     TestSpec biaxial;
     biaxial.kind = methods::biaxial;
     biaxial.sigma3_Pa = 2.5e6;
-    const std::vector<FailedTest> failed{{"", biaxial, 7, "a force is not a number"}, {"rigid, brittle", TestSpec{}, 3, "it did not relax"}};
+    const std::vector<FailedTest> failed{{"", biaxial, 7, "a force is not a number"},
+                                         {"rigid, brittle", TestSpec{}, 3, "it did not relax"}};
     write_summary(directory, make_job(), std::vector{make_result()}, make_properties(), make_provenance(), false, failed);
     const json list = json::parse(read_text(directory.path() / "summary.json")).at("failed");
     EXPECT_EQ(list, json::parse(R"([
@@ -174,7 +177,8 @@ TEST_F(Tables, SummaryHasEveryPromisedName) {
                              "envelope", "job", "provenance", "complete", "signs"}) {
         EXPECT_TRUE(top.contains(name)) << name;
     }
-    for (const char* name : {"grains", "contacts", "nodes", "triangles", "merged_edges", "vertices_per_grain", "grain_sizes_mm", "asked_sizes_mm", "size_spread", "hexatic_order"}) {
+    for (const char* name : {"grains", "contacts", "nodes", "triangles", "merged_edges", "vertices_per_grain", "grain_sizes_mm",
+                             "asked_sizes_mm", "size_spread", "hexatic_order"}) {
         EXPECT_TRUE(top["specimen"].contains(name)) << name;
     }
     for (const char* name : {"kind",

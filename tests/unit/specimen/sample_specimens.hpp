@@ -93,7 +93,8 @@ inline SpecimenSpec cracked_plate() {
 /// A plate with a round hole, from which a cut and a slit go, and a square one.
 inline SpecimenSpec holed_plate() {
     SpecimenSpec spec = rectangle(0.05, 0.06);
-    spec.outline.holes = {{{0.025, 0.025}, 0.012, {}, {}}, {{}, 0.0, {{0.008, 0.044}, {0.008, 0.052}, {0.016, 0.052}, {0.016, 0.044}}, "box"}};
+    spec.outline.holes = {{{0.025, 0.025}, 0.012, {}, {}},
+                          {{}, 0.0, {{0.008, 0.044}, {0.008, 0.052}, {0.016, 0.052}, {0.016, 0.044}}, "box"}};
     spec.outline.notches = {{{0.031, 0.025}, {0.04, 0.03}, 0.0, {}}, {{0.019, 0.025}, {0.01, 0.02}, 0.001, "wing"}};
     return spec;
 }

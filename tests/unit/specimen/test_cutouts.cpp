@@ -1,4 +1,7 @@
 // Half discs, rings, holes, notches and labels by place: properties over shapes and seeds.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -6,9 +9,6 @@
 #include <map>
 #include <numbers>
 #include <set>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
@@ -87,7 +87,9 @@ TEST_P(Cutouts, APointLiesInOneCellOrInACutout) {
         for (int g = 0; g < s.quality.grains; ++g) cells += contains(corners_of_cell(s.cells, g), p) ? 1 : 0;
         EXPECT_LE(cells, 1) << p.x << ", " << p.y;
         in_rock += cells;
-        const bool cut_out = std::any_of(s.outline.cutouts.begin(), s.outline.cutouts.end(), [&](const Cutout& c) { return !c.is_cut() && contains(std::span<const Vec2>(c.vertices), p); });
+        const bool cut_out = std::any_of(s.outline.cutouts.begin(), s.outline.cutouts.end(), [&](const Cutout& c) {
+            return !c.is_cut() && contains(std::span<const Vec2>(c.vertices), p);
+        });
         if (cut_out) {
             EXPECT_EQ(cells, 0) << p.x << ", " << p.y;
         }
@@ -103,19 +105,23 @@ TEST_P(Cutouts, TheirFacesLieOnTheEdgesTheyNameAndCoverThem) {
             const auto edge = cutout_edge(cell.outline_edges[k]);
             if (!edge) continue;
             length[cell.outline_edges[k]] += norm(to(cell, k) - from(cell, k));
-            for (const Vec2 p : {from(cell, k), to(cell, k)}) EXPECT_NEAR(distance_to_segment(p, (*edge)[0], (*edge)[1]), 0.0, 1e-14);
+            for (const Vec2 p : {from(cell, k), to(cell, k)})
+                EXPECT_NEAR(distance_to_segment(p, (*edge)[0], (*edge)[1]), 0.0, 1e-14);
         }
     }
     for (const Cutout& cutout : s.outline.cutouts) {
         if (cutout.slit || cutout.is_cut()) continue;
         for (std::size_t k = 0; k < cutout.vertices.size(); ++k) {
-            double open = 0.0;   // where a notch begins
+            double open = 0.0;  // where a notch begins
             const Vec2 a = cutout.vertices[k], b = cutout.vertices[(k + 1) % cutout.vertices.size()];
             for (const Cutout& notch : s.outline.cutouts) {
                 if (!notch.slit) continue;
-                for (int i = 0; i < 1000; ++i) open += contains(std::span<const Vec2>(notch.vertices), a + ((i + 0.5) / 1000) * (b - a)) ? norm(b - a) / 1000 : 0.0;
+                for (int i = 0; i < 1000; ++i)
+                    open += contains(std::span<const Vec2>(notch.vertices), a + ((i + 0.5) / 1000) * (b - a)) ? norm(b - a) / 1000
+                                                                                                              : 0.0;
             }
-            EXPECT_NEAR(length[cutout.first_edge + static_cast<int>(k)], norm(b - a) - open, 2e-3 * norm(b - a)) << cutout.name << ", edge " << k;
+            EXPECT_NEAR(length[cutout.first_edge + static_cast<int>(k)], norm(b - a) - open, 2e-3 * norm(b - a))
+                << cutout.name << ", edge " << k;
         }
     }
     for (std::size_t n = 0; n < spec().outline.notches.size(); ++n) {
@@ -123,7 +129,8 @@ TEST_P(Cutouts, TheirFacesLieOnTheEdgesTheyNameAndCoverThem) {
         const Cutout& cutout = s.outline.cutouts[s.outline.cutouts.size() - spec().outline.notches.size() + n];
         const int left = cutout.is_cut() ? cutout.first_edge : cutout.first_edge + 2, right = cutout.first_edge;
         const double along = norm(notch.to_m - notch.from_m);
-        EXPECT_NEAR(length[left], along, 0.15e-3 + (cutout.is_cut() ? 0.0 : 0.3 * notch.width_m)) << "but for the slope of the boundary where it begins";
+        EXPECT_NEAR(length[left], along, 0.15e-3 + (cutout.is_cut() ? 0.0 : 0.3 * notch.width_m))
+            << "but for the slope of the boundary where it begins";
         EXPECT_NEAR(length[cutout.is_cut() ? left + 1 : right], along, 0.15e-3 + 0.3 * notch.width_m);
         for (int e = 0; e < 2; ++e) {
             if (cutout.slit && cutout.tips[e]) {
@@ -137,7 +144,7 @@ TEST_P(Cutouts, NothingJoinsTheFacesOfANotch) {
     for (const Cutout& cutout : s.outline.cutouts) {
         if (!cutout.is_cut()) continue;
         const Vec2 a = cutout.vertices[0], ab = cutout.vertices[1] - a;
-        std::set<int> left, right, at_tip;   // a cell at a tip may have taken in a piece from ahead of it
+        std::set<int> left, right, at_tip;  // a cell at a tip may have taken in a piece from ahead of it
         for (int g = 0; g < s.quality.grains; ++g) {
             for (const int edge : s.cells.cells[g].outline_edges) {
                 if (edge == cutout.first_edge) left.insert(g);
@@ -152,8 +159,10 @@ TEST_P(Cutouts, NothingJoinsTheFacesOfANotch) {
         for (const int g : left) {
             EXPECT_FALSE(right.contains(g));
             if (at_tip.contains(g)) continue;
-            for (const Vec2 p : corners_of_cell(s.cells, g)) EXPECT_GT(cross(ab, p - a) / norm(ab), -1e-12) << "wholly on its side";
-            for (const int other : s.cells.cells[g].neighbours) EXPECT_FALSE(right.contains(other)) << "cells " << g << " and " << other;
+            for (const Vec2 p : corners_of_cell(s.cells, g))
+                EXPECT_GT(cross(ab, p - a) / norm(ab), -1e-12) << "wholly on its side";
+            for (const int other : s.cells.cells[g].neighbours)
+                EXPECT_FALSE(right.contains(other)) << "cells " << g << " and " << other;
         }
         for (const int g : right) {
             if (at_tip.contains(g)) continue;
@@ -171,7 +180,8 @@ TEST_P(Cutouts, LeaveNoSlivers) {
     EXPECT_GT(s.quality.smallest_triangle_height_m, 0.004 * d);
     EXPECT_GT(s.quality.smallest_edge_m, 0.05 * d);
     const double mean = total_area(s) / s.quality.grains;
-    for (int g = 0; g < s.quality.grains; ++g) EXPECT_GT(signed_area(corners_of_cell(s.cells, g)), least_piece * mean) << "cell " << g;
+    for (int g = 0; g < s.quality.grains; ++g)
+        EXPECT_GT(signed_area(corners_of_cell(s.cells, g)), least_piece * mean) << "cell " << g;
 }
 
 TEST_P(Cutouts, EveryGrainHasItsDisc) {
@@ -181,17 +191,23 @@ TEST_P(Cutouts, EveryGrainHasItsDisc) {
     EXPECT_TRUE(std::is_sorted(s.cells.disc_of_cell.begin(), s.cells.disc_of_cell.end()));
     EXPECT_EQ(s.quality.pieces, static_cast<int>(s.packing.centres.size()) - static_cast<int>(s.packed.centres.size()));
     for (int g = 0; g < s.quality.grains; ++g) {
-        if (s.cells.reshaped[g]) EXPECT_LE(std::numbers::pi * s.packing.radii_m[g] * s.packing.radii_m[g], 1.05 * signed_area(corners_of_cell(s.cells, g)));
-        else EXPECT_EQ(s.packing.radii_m[g], s.packed.radii_m[s.cells.disc_of_cell[g]]);
+        if (s.cells.reshaped[g])
+            EXPECT_LE(std::numbers::pi * s.packing.radii_m[g] * s.packing.radii_m[g],
+                      1.05 * signed_area(corners_of_cell(s.cells, g)));
+        else
+            EXPECT_EQ(s.packing.radii_m[g], s.packed.radii_m[s.cells.disc_of_cell[g]]);
     }
 }
 
-const auto shapes = testing::Values(Case{"half_disc", half_disc()}, Case{"half_disc_cut", half_disc(0.06, 0.0)}, Case{"ring", ring()}, Case{"beam", notched_beam()},
-                                    Case{"beam_cut", notched_beam(0.0)}, Case{"beam_wide", notched_beam(0.005)}, Case{"cracked_plate", cracked_plate()},
-                                    Case{"holed_plate", holed_plate()}, Case{"notched_disc", notched_disc()}, Case{"notched_ell", notched_ell()});
+const auto shapes =
+    testing::Values(Case{"half_disc", half_disc()}, Case{"half_disc_cut", half_disc(0.06, 0.0)}, Case{"ring", ring()},
+                    Case{"beam", notched_beam()}, Case{"beam_cut", notched_beam(0.0)}, Case{"beam_wide", notched_beam(0.005)},
+                    Case{"cracked_plate", cracked_plate()}, Case{"holed_plate", holed_plate()},
+                    Case{"notched_disc", notched_disc()}, Case{"notched_ell", notched_ell()});
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Cutouts, testing::Combine(shapes, testing::Range(1, 4)),
-                         [](const auto& parameter) { return fmt::format("{}_{}", std::get<0>(parameter.param).name, std::get<1>(parameter.param)); });
+INSTANTIATE_TEST_SUITE_P(Shapes, Cutouts, testing::Combine(shapes, testing::Range(1, 4)), [](const auto& parameter) {
+    return fmt::format("{}_{}", std::get<0>(parameter.param).name, std::get<1>(parameter.param));
+});
 
 class FilledCutouts : public testing::TestWithParam<Case> {};
 
@@ -200,7 +216,8 @@ TEST_P(FilledCutouts, HaveParticlesInEveryGrain) {
     spec.particles_per_grain = 26.0;
     const Specimen s = make_specimen(spec, 1);
     ASSERT_EQ(s.filling.particle_begin.size(), s.cells.cells.size() + 1);
-    for (std::size_t g = 0; g < s.cells.cells.size(); ++g) EXPECT_GE(s.filling.particle_begin[g + 1] - s.filling.particle_begin[g], 3);
+    for (std::size_t g = 0; g < s.cells.cells.size(); ++g)
+        EXPECT_GE(s.filling.particle_begin[g + 1] - s.filling.particle_begin[g], 3);
     for (const AcrossContact& c : s.filling.across) EXPECT_EQ(s.cells.cells[c.cell_a].neighbours[c.edge_a], c.cell_b);
     for (const OutlineShare& share : s.filling.outline) EXPECT_LT(s.cells.cells[share.cell].neighbours[share.edge], 0);
 }
@@ -274,14 +291,16 @@ TEST(Notches, OpenEndsGoNoFartherThanTheHoleTheyBeginIn) {
     const Specimen s = make_specimen(spec, 1);
     EXPECT_NO_THROW(check_conforming(s.cells));
     for (const Cell& cell : s.cells.cells) {
-        for (const int v : cell.vertices) EXPECT_FALSE(s.cells.vertices[v].x == 0.0 && s.cells.vertices[v].y > 0.0) << "nothing is cut beyond the hole";
+        for (const int v : cell.vertices)
+            EXPECT_FALSE(s.cells.vertices[v].x == 0.0 && s.cells.vertices[v].y > 0.0) << "nothing is cut beyond the hole";
     }
     EXPECT_EQ(s.outline.cutouts[1].tips, (std::array{false, false})) << "from outside to the hole: a ring that is open";
     EXPECT_EQ(s.outline.cutouts[2].tips, (std::array{false, true}));
 }
 
 TEST(Cutting, DoesNotDependOnThreads) {
-    const Specimen one = make_specimen(holed_plate(), 2, {.threads = 1, .progress = {}}), three = make_specimen(holed_plate(), 2, {.threads = 3, .progress = {}});
+    const Specimen one = make_specimen(holed_plate(), 2, {.threads = 1, .progress = {}}),
+                   three = make_specimen(holed_plate(), 2, {.threads = 3, .progress = {}});
     EXPECT_EQ(one.mesh.nodes, three.mesh.nodes);
     EXPECT_EQ(one.mesh.triangles, three.mesh.triangles);
 }
@@ -302,7 +321,8 @@ TEST(Cutting, AlongEdgesAndThroughVerticesOfCells) {
     EXPECT_EQ(t.cells.size(), 100U) << "no cell is cut";
     const auto free_edges = [](const Tessellation& cells) {
         int count = 0;
-        for (const Cell& cell : cells.cells) count += static_cast<int>(std::count(cell.neighbours.begin(), cell.neighbours.end(), -1));
+        for (const Cell& cell : cells.cells)
+            count += static_cast<int>(std::count(cell.neighbours.begin(), cell.neighbours.end(), -1));
         return count;
     };
     EXPECT_EQ(free_edges(t), 40 + 6);
@@ -332,7 +352,8 @@ TEST(CutoutPackings, ComeBackAndFitTheirHoles) {
         EXPECT_EQ(loaded.packed.centres, made.packed.centres);
     }
     save_packing(make_specimen(rectangle(0.06, 0.03), 1), file);
-    EXPECT_EQ(load(notched_beam()).packed.centres, load(rectangle(0.06, 0.03)).packing.centres) << "a whole beam's packing is sawn";
+    EXPECT_EQ(load(notched_beam()).packed.centres, load(rectangle(0.06, 0.03)).packing.centres)
+        << "a whole beam's packing is sawn";
     EXPECT_THROW(load(notched_beam(0.005)), InputError) << "made without the wide notch";
     save_packing(make_specimen(notched_beam(0.005), 1), file);
     EXPECT_THROW(load(rectangle(0.06, 0.03)), InputError) << "made around a notch";
@@ -363,7 +384,9 @@ TEST(Cutouts, ImpossibleOnesAreRefused) {
         spec.outline.holes = {{{0.03, 0.03}, 0.01, {}, {}}, std::move(hole)};
         return complaint(spec);
     };
-    const auto expect = [](const std::string& message, const char* words) { EXPECT_NE(message.find(words), std::string::npos) << message; };
+    const auto expect = [](const std::string& message, const char* words) {
+        EXPECT_NE(message.find(words), std::string::npos) << message;
+    };
     EXPECT_EQ(with_hole({{0.01, 0.01}, 0.01, {}, {}}), "");
     expect(with_hole({{0.01, 0.01}, 0.003, {}, {}}), "smaller than a grain of 4 mm");
     expect(with_hole({{0.004, 0.02}, 0.01, {}, {}}), "touches or crosses the boundary");
@@ -411,7 +434,8 @@ TEST(PlaceLabels, AreGivenToEdgesOfCells) {
         for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
             if (cell.outline_edges[k] < 0) continue;
             const std::string& label = s.outline.edge_labels.at(static_cast<std::size_t>(cell.outline_edges[k]));
-            const Vec2 a = s.cells.vertices[cell.vertices[k]], b = s.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]], middle = 0.5 * (a + b);
+            const Vec2 a = s.cells.vertices[cell.vertices[k]],
+                       b = s.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]], middle = 0.5 * (a + b);
             length[label] += norm(b - a);
             if (label == "load") {
                 EXPECT_LE(norm(middle - Vec2{0.03, 0.03}), 0.003);
@@ -431,7 +455,8 @@ TEST(PlaceLabels, AreGivenToEdgesOfCells) {
     EXPECT_FALSE(length.contains("left"));
     EXPECT_GT(length["load"], 0.002);
     EXPECT_GT(length["support"], 0.002) << "the later label overrides";
-    EXPECT_NEAR(length["base"] + length["support"] + (length["left-end"] - 0.03), 0.059, 1e-12) << "all of the bottom but the notch";
+    EXPECT_NEAR(length["base"] + length["support"] + (length["left-end"] - 0.03), 0.059, 1e-12)
+        << "all of the bottom but the notch";
     spec.outline.labels.push_back({"nowhere", PlaceKind::disc, {0.03, 0.015}, {}, 0.001});
     const std::string message = complaint(spec);
     EXPECT_NE(message.find("the label \"nowhere\" catches no edge"), std::string::npos) << message;
@@ -447,7 +472,8 @@ TEST(OutlineSpec, IsScaledWithAllThatIsInIt) {
     EXPECT_EQ(scaled(spec, 2.0).notches[1].width_m, 0.002);
 }
 
-// A cut whose faces stay in contact: cells meet on its line exactly, the area is whole, and each of its edges is between a cell to the left and one to the right.
+// A cut whose faces stay in contact: cells meet on its line exactly, the area is whole, and each of its edges is between a cell
+// to the left and one to the right.
 TEST(JoinedCuts, DivideCellsOnAStraightLineAndLeaveThemNeighbours) {
     for (const bool through : {true, false}) {
         SpecimenSpec spec;
@@ -455,7 +481,8 @@ TEST(JoinedCuts, DivideCellsOnAStraightLineAndLeaveThemNeighbours) {
         spec.outline.height_m = 0.06;
         spec.grain_sizes.minimum_m = 0.002;
         spec.grain_sizes.maximum_m = 0.004;
-        const Vec2 from = through ? Vec2{-0.005, 0.015} : Vec2{0.008, 0.022}, to = through ? Vec2{0.045, 0.045} : Vec2{0.032, 0.036};
+        const Vec2 from = through ? Vec2{-0.005, 0.015} : Vec2{0.008, 0.022},
+                   to = through ? Vec2{0.045, 0.045} : Vec2{0.032, 0.036};
         spec.outline.notches = {{from, to, 0.0, "fault", true}};
         for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
             const Specimen s = make_specimen(spec, seed);
@@ -477,7 +504,8 @@ TEST(JoinedCuts, DivideCellsOnAStraightLineAndLeaveThemNeighbours) {
                     EXPECT_NEAR(cross(along, a - from), 0.0, 1e-12);
                     EXPECT_NEAR(cross(along, b - from), 0.0, 1e-12);
                     length += 0.5 * norm(b - a);
-                    const double here = cross(along, centroid(corners) - from), there = cross(along, centroid(corners_of_cell(s.cells, cell.neighbours[k])) - from);
+                    const double here = cross(along, centroid(corners) - from),
+                                 there = cross(along, centroid(corners_of_cell(s.cells, cell.neighbours[k])) - from);
                     EXPECT_LT(here * there, 0.0);
                 }
             }
@@ -487,12 +515,13 @@ TEST(JoinedCuts, DivideCellsOnAStraightLineAndLeaveThemNeighbours) {
     }
 }
 
-// Cuts that cross, and cuts that end on another: the body is filled, cells name each other, and each edge on a line belongs to the cut of that line.
+// Cuts that cross, and cuts that end on another: the body is filled, cells name each other, and each edge on a line belongs to
+// the cut of that line.
 struct Lines {
     const char* name;
     std::vector<NotchSpec> cuts;
     int crossings;
-    std::vector<double> lengths_m;   // of each cut in the rock
+    std::vector<double> lengths_m;  // of each cut in the rock
 };
 
 class JoinedCutsThatMeet : public testing::TestWithParam<Lines> {};
@@ -501,12 +530,25 @@ NotchSpec joined(Vec2 from, Vec2 to, const char* label) { return {from, to, 0.0,
 
 INSTANTIATE_TEST_SUITE_P(
     Lines, JoinedCutsThatMeet,
-    testing::Values(Lines{"TwoThatCross", {joined({-0.005, 0.015}, {0.045, 0.045}, "a"), joined({-0.005, 0.05}, {0.045, 0.02}, "b")}, 1, {0.04 * std::hypot(1.0, 0.6), 0.04 * std::hypot(1.0, 0.6)}},
-                    Lines{"OneEndsOnAnother", {joined({0.012, 0.03}, {0.045, 0.045}, "stem"), joined({0.010, -0.001}, {0.015, 0.061}, "bar")}, 1, {}},
-                    Lines{"TheSameTheOtherWayRound", {joined({0.010, -0.001}, {0.015, 0.061}, "bar"), joined({0.045, 0.045}, {0.0125, 0.031}, "stem")}, 1, {}},
-                    Lines{"OneAcrossTheTip", {joined({0.02, -0.001}, {0.02, 0.04}, "a"), joined({-0.001, 0.02}, {0.03, 0.03}, "b")}, 1, {0.04, std::hypot(0.03, 0.03 * 10.0 / 31.0)}},
+    testing::Values(Lines{"TwoThatCross",
+                          {joined({-0.005, 0.015}, {0.045, 0.045}, "a"), joined({-0.005, 0.05}, {0.045, 0.02}, "b")},
+                          1,
+                          {0.04 * std::hypot(1.0, 0.6), 0.04 * std::hypot(1.0, 0.6)}},
+                    Lines{"OneEndsOnAnother",
+                          {joined({0.012, 0.03}, {0.045, 0.045}, "stem"), joined({0.010, -0.001}, {0.015, 0.061}, "bar")},
+                          1,
+                          {}},
+                    Lines{"TheSameTheOtherWayRound",
+                          {joined({0.010, -0.001}, {0.015, 0.061}, "bar"), joined({0.045, 0.045}, {0.0125, 0.031}, "stem")},
+                          1,
+                          {}},
+                    Lines{"OneAcrossTheTip",
+                          {joined({0.02, -0.001}, {0.02, 0.04}, "a"), joined({-0.001, 0.02}, {0.03, 0.03}, "b")},
+                          1,
+                          {0.04, std::hypot(0.03, 0.03 * 10.0 / 31.0)}},
                     Lines{"TwoSets",
-                          {joined({-0.002, 0.005}, {0.042, 0.025}, "a"), joined({-0.002, 0.018}, {0.042, 0.038}, "a"), joined({-0.002, 0.031}, {0.042, 0.051}, "a"), joined({0.002, -0.002}, {0.012, 0.062}, "b"),
+                          {joined({-0.002, 0.005}, {0.042, 0.025}, "a"), joined({-0.002, 0.018}, {0.042, 0.038}, "a"),
+                           joined({-0.002, 0.031}, {0.042, 0.051}, "a"), joined({0.002, -0.002}, {0.012, 0.062}, "b"),
                            joined({0.015, -0.002}, {0.025, 0.062}, "b"), joined({0.028, -0.002}, {0.038, 0.062}, "b")},
                           9,
                           {}}),
@@ -527,7 +569,7 @@ TEST_P(JoinedCutsThatMeet, FillTheBodyAndKeepTheirLaws) {
         for (int c = 0; c < std::ssize(s.cells.cells); ++c) {
             const Cell& cell = s.cells.cells[c];
             const std::vector<Vec2> corners = corners_of_cell(s.cells, c);
-            EXPECT_GT(signed_area(corners), 0.2e-6) << seed;   // no sliver is left: grains have 3 to 12 mm2
+            EXPECT_GT(signed_area(corners), 0.2e-6) << seed;  // no sliver is left: grains have 3 to 12 mm2
             for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
                 EXPECT_FALSE(cell.outline_edges[k] >= 4) << "an edge of a cut is left open";
                 if (cell.neighbours[k] < 0) continue;
@@ -535,7 +577,8 @@ TEST_P(JoinedCutsThatMeet, FillTheBodyAndKeepTheirLaws) {
                 const auto on = [&](const Cutout& cut) {
                     const Vec2 from = cut.vertices[0], along = (1.0 / norm(cut.vertices[1] - from)) * (cut.vertices[1] - from);
                     const double s0 = dot(a - from, along), s1 = dot(b - from, along), reach = norm(cut.vertices[1] - from);
-                    return std::abs(cross(along, a - from)) < 1e-9 && std::abs(cross(along, b - from)) < 1e-9 && std::min(s0, s1) > -1e-9 && std::max(s0, s1) < reach + 1e-9;
+                    return std::abs(cross(along, a - from)) < 1e-9 && std::abs(cross(along, b - from)) < 1e-9 &&
+                           std::min(s0, s1) > -1e-9 && std::max(s0, s1) < reach + 1e-9;
                 };
                 for (int n = 0; n < std::ssize(s.outline.cutouts); ++n)
                     if (on(s.outline.cutouts[n])) {
@@ -544,19 +587,22 @@ TEST_P(JoinedCutsThatMeet, FillTheBodyAndKeepTheirLaws) {
                     }
                 if (cell.seams[k] < 0) continue;
                 const Cutout& cut = s.outline.cutouts[cell.seams[k]];
-                if (!on(cut)) {   // two cells that meet on the line and beyond its tip have one contact law: that of the line
+                if (!on(cut)) {  // two cells that meet on the line and beyond its tip have one contact law: that of the line
                     EXPECT_TRUE(cut.tips[0] || cut.tips[1]);
                     bool elsewhere = false;
-                    for (std::size_t m = 0; m < cell.vertices.size(); ++m) elsewhere = elsewhere || (m != k && cell.neighbours[m] == cell.neighbours[k]);
+                    for (std::size_t m = 0; m < cell.vertices.size(); ++m)
+                        elsewhere = elsewhere || (m != k && cell.neighbours[m] == cell.neighbours[k]);
                     EXPECT_TRUE(elsewhere) << seed << ": an edge that is not on the line has its law";
                     continue;
                 }
                 const Vec2 along = cut.vertices[1] - cut.vertices[0];
-                const double here = cross(along, centroid(corners) - cut.vertices[0]), there = cross(along, centroid(corners_of_cell(s.cells, cell.neighbours[k])) - cut.vertices[0]);
+                const double here = cross(along, centroid(corners) - cut.vertices[0]),
+                             there = cross(along, centroid(corners_of_cell(s.cells, cell.neighbours[k])) - cut.vertices[0]);
                 EXPECT_LT(here * there, 0.0) << seed;
             }
         }
-        for (std::size_t n = 0; n < GetParam().lengths_m.size(); ++n) EXPECT_NEAR(length[n], GetParam().lengths_m[n], 1e-9) << seed;
+        for (std::size_t n = 0; n < GetParam().lengths_m.size(); ++n)
+            EXPECT_NEAR(length[n], GetParam().lengths_m[n], 1e-9) << seed;
     }
 }
 
@@ -568,11 +614,24 @@ TEST(JoinedCuts, ThatLeaveNoRoomForGrainsWhereTheyMeetAreRefused) {
         spec.outline.notches = std::move(cuts);
         return complaint(spec);
     };
-    EXPECT_NE(with({joined({-0.005, 0.025}, {0.045, 0.03}, "a"), joined({-0.005, 0.03}, {0.045, 0.025}, "b")}).find("cross at 11.4 degrees"), std::string::npos);
-    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), joined({0.02, -0.001}, {0.02, 0.021}, "b")}).find("before one of them ends"), std::string::npos);
-    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), joined({0.02, -0.001}, {0.02, 0.061}, "b"), joined({0.005, 0.005}, {0.0355, 0.035}, "c")}).find("from where others do"), std::string::npos);
-    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), {{0.02, -0.001}, {0.02, 0.03}, 0.0, "b", false}}).find("touch, cross"), std::string::npos) << "only faces that stay in contact cross";
-    EXPECT_NE(with({joined({0.008, 0.02}, {0.03, 0.02}, "a"), joined({0.03, 0.012}, {0.03, 0.04}, "b"), joined({0.036, 0.04}, {0.012, 0.04}, "c"), joined({0.012, 0.048}, {0.012, 0.02}, "d")}).find("in a ring"), std::string::npos);
+    EXPECT_NE(with({joined({-0.005, 0.025}, {0.045, 0.03}, "a"), joined({-0.005, 0.03}, {0.045, 0.025}, "b")})
+                  .find("cross at 11.4 degrees"),
+              std::string::npos);
+    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), joined({0.02, -0.001}, {0.02, 0.021}, "b")})
+                  .find("before one of them ends"),
+              std::string::npos);
+    EXPECT_NE(with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), joined({0.02, -0.001}, {0.02, 0.061}, "b"),
+                    joined({0.005, 0.005}, {0.0355, 0.035}, "c")})
+                  .find("from where others do"),
+              std::string::npos);
+    EXPECT_NE(
+        with({joined({-0.005, 0.02}, {0.045, 0.02}, "a"), {{0.02, -0.001}, {0.02, 0.03}, 0.0, "b", false}}).find("touch, cross"),
+        std::string::npos)
+        << "only faces that stay in contact cross";
+    EXPECT_NE(with({joined({0.008, 0.02}, {0.03, 0.02}, "a"), joined({0.03, 0.012}, {0.03, 0.04}, "b"),
+                    joined({0.036, 0.04}, {0.012, 0.04}, "c"), joined({0.012, 0.048}, {0.012, 0.02}, "d")})
+                  .find("in a ring"),
+              std::string::npos);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // Small discs inside the grains: counts, places, contacts inside and across, and shares of the edges.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <numbers>
 #include <numeric>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -225,12 +225,14 @@ INSTANTIATE_TEST_SUITE_P(Seeds, PublishedFilling, testing::Values(1, 2, 3));
 class FillingOf : public testing::TestWithParam<double> {};
 
 TEST_P(FillingOf, IsSoundInEveryOutline) {
-    for (const SpecimenSpec& outline : {rectangle(0.03, 0.03), disc(0.03), flattened_disc(0.03, 30.0), ell(), slit(), triangle(), split_sides()}) {
+    for (const SpecimenSpec& outline :
+         {rectangle(0.03, 0.03), disc(0.03), flattened_disc(0.03, 30.0), ell(), slit(), triangle(), split_sides()}) {
         const Specimen s = make_specimen(filled(outline, GetParam()), 2);
         expect_sound(s.cells, s.filling);
         // Coarse fillings have whole discs too many or too few, so that a larger share of the grains is tight.
         expect_small_overlaps(s.filling, 0.02);
-        EXPECT_NEAR(s.quality.inner_particles, GetParam() * s.quality.grains, std::max(1.0, 0.01 * GetParam() * s.quality.grains));
+        EXPECT_NEAR(s.quality.inner_particles, GetParam() * s.quality.grains,
+                    std::max(1.0, 0.01 * GetParam() * s.quality.grains));
     }
 }
 
@@ -286,7 +288,8 @@ TEST(Filling, SameBitsForAnyNumberOfThreads) {
     for (const int threads : {2, 3}) {
         Team team(threads);
         std::vector<double> shares;
-        const Filling together = fill_grains(s.cells, 26.0, 7, {.team = &team, .tell = [&](double share) { shares.push_back(share); }});
+        const Filling together =
+            fill_grains(s.cells, 26.0, 7, {.team = &team, .tell = [&](double share) { shares.push_back(share); }});
         EXPECT_EQ(together.centres, alone.centres);
         EXPECT_EQ(together.radii_m, alone.radii_m);
         EXPECT_EQ(together.particle_begin, alone.particle_begin);
@@ -368,12 +371,12 @@ TEST(Filling, RowsTouchTheirEdge) {
 
 TEST(Filling, FillsSingleCellsOfAnyShape) {
     const std::vector<std::vector<Vec2>> shapes = {
-        {{0, 0}, {1, 0}, {0.5, 0.866}},                          // triangle
-        {{0, 0}, {3, 0}, {0.1, 0.5}},                            // with a narrow corner
-        {{0, 0}, {5, 0}, {5, 1}, {0, 1}},                        // strip, narrower than two discs of seven
-        {{0, 0}, {1, 0}, {1.01, 0.01}, {1, 1}, {0, 1}},          // with an edge too short for a disc
-        {{0, 0}, {0.5, 0}, {1, 0}, {1, 1}, {0, 1}},              // with a straight corner
-        {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},        // bends around a corner
+        {{0, 0}, {1, 0}, {0.5, 0.866}},                    // triangle
+        {{0, 0}, {3, 0}, {0.1, 0.5}},                      // with a narrow corner
+        {{0, 0}, {5, 0}, {5, 1}, {0, 1}},                  // strip, narrower than two discs of seven
+        {{0, 0}, {1, 0}, {1.01, 0.01}, {1, 1}, {0, 1}},    // with an edge too short for a disc
+        {{0, 0}, {0.5, 0}, {1, 0}, {1, 1}, {0, 1}},        // with a straight corner
+        {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},  // bends around a corner
     };
     for (const auto& shape : shapes) {
         for (const double number : {7.0, 26.0, 100.0}) {

@@ -1,9 +1,9 @@
 // FIRE on energies whose minimum is known.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/specimen/fire.hpp"

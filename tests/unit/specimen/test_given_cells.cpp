@@ -1,4 +1,6 @@
 // Cells of other programs: read, welded, fitted to an outline, cut, written, and read back with the same bits.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,8 +12,6 @@
 #include <sstream>
 #include <string>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -53,7 +53,9 @@ SpecimenSpec of_cells(const GivenCellsSpec& cells) {
     return spec;
 }
 
-bool same_bits(const std::vector<Vec2>& a, const std::vector<Vec2>& b) { return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec2)) == 0; }
+bool same_bits(const std::vector<Vec2>& a, const std::vector<Vec2>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec2)) == 0;
+}
 
 std::vector<std::string> labels_of(const Specimen& specimen) {
     std::vector<std::string> labels;
@@ -68,7 +70,8 @@ void expect_same_mesh(const Specimen& read, const Specimen& made) {
     EXPECT_EQ(read.mesh.triangles, made.mesh.triangles);
     EXPECT_EQ(read.mesh.edge_triangle, made.mesh.edge_triangle);
     EXPECT_EQ(labels_of(read), labels_of(made));
-    for (std::size_t g = 0; g < made.cells.cells.size(); ++g) EXPECT_EQ(read.cells.cells[g].neighbours, made.cells.cells[g].neighbours) << g;
+    for (std::size_t g = 0; g < made.cells.cells.size(); ++g)
+        EXPECT_EQ(read.cells.cells[g].neighbours, made.cells.cells[g].neighbours) << g;
 }
 
 /// The whole of what a specimen must be.
@@ -83,21 +86,26 @@ void expect_sound(const Specimen& specimen) {
 
 TEST(CellsOfAFile, ComeBackWithTheSameBits) {
     for (const SpecimenSpec& spec : {rectangle(0.03, 0.04), disc(0.03), ell(), triangle(), split_sides()})
-        for (const auto& [format, file] : {std::pair{CellFormat::tess, "cells.tess"}, {CellFormat::msh, "cells.msh"}, {CellFormat::csv, "cells.csv"}}) {
+        for (const auto& [format, file] :
+             {std::pair{CellFormat::tess, "cells.tess"}, {CellFormat::msh, "cells.msh"}, {CellFormat::csv, "cells.csv"}}) {
             SCOPED_TRACE(std::string(file) + " of shape " + std::to_string(static_cast<int>(spec.outline.shape)));
             const Specimen made = make_specimen(spec, 3);
             SpecimenSpec again = spec;
             again.given_cells = given(cells_as_text(made, format), file);
-            again.merge_length_m = 0.0;   // what is left of short edges could not be merged, or would be merged once more
-            const Specimen read = make_specimen(again, 99);   // the seed plays no part
+            again.merge_length_m = 0.0;  // what is left of short edges could not be merged, or would be merged once more
+            const Specimen read = make_specimen(again, 99);  // the seed plays no part
             expect_sound(read);
             expect_same_mesh(read, made);
-            if (format == CellFormat::tess) { EXPECT_TRUE(same_bits(read.cells.vertices, made.cells.vertices)); }
+            if (format == CellFormat::tess) {
+                EXPECT_TRUE(same_bits(read.cells.vertices, made.cells.vertices));
+            }
             EXPECT_EQ(read.quality.moved, 0);
             EXPECT_EQ(read.quality.inserted, 0);
             // the outline, too, is found in the cells
             const OutlineSpec found = outline_of_cells(*again.given_cells.cells, 1e-3);
-            const bool split = spec.outline.vertices_m.size() == 6 && spec.outline.vertices_m[1].y == spec.outline.vertices_m[2].y;   // a rectangle but for corners on straight sides
+            const bool split =
+                spec.outline.vertices_m.size() == 6 &&
+                spec.outline.vertices_m[1].y == spec.outline.vertices_m[2].y;  // a rectangle but for corners on straight sides
             if (split) {
                 EXPECT_EQ(found.shape, Shape::rectangle);
                 continue;
@@ -126,26 +134,28 @@ TEST(CellsOfAFile, AreTheSameInEveryFormat) {
     const Specimen msh = make_specimen(of_cells(given(data("honeycomb.msh"), "honeycomb.msh", 1e-3)), 1);
     expect_sound(csv);
     expect_sound(msh);
-    EXPECT_GT(csv.quality.welded, 50);   // each polygon has corners of its own
+    EXPECT_GT(csv.quality.welded, 50);  // each polygon has corners of its own
     EXPECT_EQ(msh.quality.welded, 0);
     for (const Specimen* other : {&csv, &msh}) {
         ASSERT_EQ(other->quality.grains, 21);
         EXPECT_EQ(other->quality.contacts, tess.quality.contacts);
         for (int g = 0; g < 21; ++g) {
             const double area = signed_area(corners_of_cell(tess.cells, g));
-            EXPECT_NEAR(signed_area(corners_of_cell(other->cells, g)), area, 1e-12 * area) << g;   // to the bits of the mesh's middle nodes
+            EXPECT_NEAR(signed_area(corners_of_cell(other->cells, g)), area, 1e-12 * area)
+                << g;  // to the bits of the mesh's middle nodes
         }
     }
 }
 
 // A wall of bricks, each a rectangle of four corners: where two meet on the long side of a third, it gets a corner.
 TEST(CellsOfAFile, GetTheCornersOfNeighboursThatLieOnTheirEdges) {
-    const std::string wall = "grain,x_mm,y_mm\n"
-                             "a,0,0\na,2,0\na,2,1\na,0,1\nb,2,0\nb,4,0\nb,4,1\nb,2,1\n"
-                             "c,0,1\nc,1,1\nc,1,2\nc,0,2\nd,1,1\nd,3.0000001,1\nd,3,2\nd,1,2\ne,3,1\ne,4,1\ne,4,2\ne,3,2\n";
+    const std::string wall =
+        "grain,x_mm,y_mm\n"
+        "a,0,0\na,2,0\na,2,1\na,0,1\nb,2,0\nb,4,0\nb,4,1\nb,2,1\n"
+        "c,0,1\nc,1,1\nc,1,2\nc,0,2\nd,1,1\nd,3.0000001,1\nd,3,2\nd,1,2\ne,3,1\ne,4,1\ne,4,2\ne,3,2\n";
     const Specimen specimen = make_specimen(of_cells(given(wall, "wall.csv", 1e-3)), 1);
     expect_sound(specimen);
-    EXPECT_EQ(specimen.quality.inserted, 3);   // 1, 2 and 3 along the joint, into the sides of a, d and b
+    EXPECT_EQ(specimen.quality.inserted, 3);  // 1, 2 and 3 along the joint, into the sides of a, d and b
     EXPECT_EQ(specimen.quality.contacts, 1 + 2 + 4);
     EXPECT_EQ(specimen.quality.concave, 0);
     ASSERT_FALSE(specimen.quality.warnings.empty());
@@ -156,10 +166,11 @@ TEST(CellsOfAFile, MayMissTheOutlineByTheToleranceAndAreMovedOntoIt) {
     std::istringstream rows(cells_as_text(made, CellFormat::csv));
     std::string rounded = "grain,x_mm,y_mm\n", row;
     std::getline(rows, row);
-    while (std::getline(rows, row)) {   // three digits behind the point, in mm, and somewhere else
+    while (std::getline(rows, row)) {  // three digits behind the point, in mm, and somewhere else
         const std::size_t first = row.find(','), second = row.find(',', first + 1);
         char text[100];
-        std::snprintf(text, sizeof text, "%s,%.3f,%.3f\n", row.substr(0, first).c_str(), 1e3 * std::stod(row.substr(first + 1)) + 100.0, 1e3 * std::stod(row.substr(second + 1)) - 7.0);
+        std::snprintf(text, sizeof text, "%s,%.3f,%.3f\n", row.substr(0, first).c_str(),
+                      1e3 * std::stod(row.substr(first + 1)) + 100.0, 1e3 * std::stod(row.substr(second + 1)) - 7.0);
         rounded += text;
     }
     SpecimenSpec spec = rectangle(0.03, 0.04);
@@ -167,13 +178,17 @@ TEST(CellsOfAFile, MayMissTheOutlineByTheToleranceAndAreMovedOntoIt) {
     const Specimen read = make_specimen(spec, 1);
     expect_sound(read);
     EXPECT_EQ(read.quality.grains, made.quality.grains);
-    EXPECT_NEAR(read.quality.contacts, made.quality.contacts, 0.02 * made.quality.contacts);   // edges that were hardly longer than the merge length are merged now
+    EXPECT_NEAR(read.quality.contacts, made.quality.contacts,
+                0.02 * made.quality.contacts);  // edges that were hardly longer than the merge length are merged now
     bool told = false;
-    for (const std::string& warning : read.quality.warnings) told = told || warning.find("moved by (-100, 7) mm") != std::string::npos;
+    for (const std::string& warning : read.quality.warnings)
+        told = told || warning.find("moved by (-100, 7) mm") != std::string::npos;
     EXPECT_TRUE(told);
     for (const Cell& cell : read.cells.cells)
         for (std::size_t k = 0; k < cell.vertices.size(); ++k)
-            if (cell.outline_edges[k] == 2) { EXPECT_EQ(read.cells.vertices[cell.vertices[k]].y, 0.04); }   // exactly on the top
+            if (cell.outline_edges[k] == 2) {
+                EXPECT_EQ(read.cells.vertices[cell.vertices[k]].y, 0.04);
+            }  // exactly on the top
 }
 
 TEST(CellsOfAFile, TakeHolesCrystalsAndInnerParticles) {
@@ -195,7 +210,7 @@ TEST(CellsOfAFile, TakeHolesCrystalsAndInnerParticles) {
     EXPECT_GT(filled.quality.inner_particles, 15 * filled.quality.grains);
     EXPECT_GT(filled.quality.crystals, 5);
     EXPECT_LT(filled.quality.crystals, filled.quality.grains / 2);
-    const std::string text = cells_as_text(filled, CellFormat::tess);   // crystals are written as groups
+    const std::string text = cells_as_text(filled, CellFormat::tess);  // crystals are written as groups
     EXPECT_NE(text.find("*group"), std::string::npos);
 }
 
@@ -203,7 +218,7 @@ TEST(CellsOfAFile, TakeHolesCrystalsAndInnerParticles) {
 TEST(CellsOfAFile, AreCutToAnOutline) {
     const Specimen made = make_specimen(rectangle(0.04, 0.06), 3);
     for (const double flat_deg : {0.0, 20.0})
-        for (const double diameter : {0.03, 0.04}) {   // the larger one touches the sides of the rectangle
+        for (const double diameter : {0.03, 0.04}) {  // the larger one touches the sides of the rectangle
             SCOPED_TRACE(std::to_string(diameter) + " m, " + std::to_string(flat_deg) + " degrees");
             SpecimenSpec spec = flattened_disc(diameter, flat_deg);
             spec.given_cells = given(cells_as_text(made, CellFormat::tess), "cells.tess");
@@ -218,13 +233,17 @@ TEST(CellsOfAFile, AreCutToAnOutline) {
                 least = std::min(least, own);
             }
             EXPECT_LT(area, outline.area_m2);
-            EXPECT_GT(area, 0.985 * outline.area_m2);   // chords as long as a grain take 1 % off a disc of ten grains
-            EXPECT_GT(least, 0.05 * area / cut.quality.grains);   // pieces too small for a grain went to neighbours
+            EXPECT_GT(area, 0.985 * outline.area_m2);            // chords as long as a grain take 1 % off a disc of ten grains
+            EXPECT_GT(least, 0.05 * area / cut.quality.grains);  // pieces too small for a grain went to neighbours
             for (const Cell& cell : cut.cells.cells)
                 for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
                     if (cell.outline_edges[k] < 0) continue;
                     const Vec2 at = cut.cells.vertices[cell.vertices[k]];
-                    if (cell.outline_edges[k] == 0) { EXPECT_NEAR(norm(at), outline.radius_m, 2e-3 * cut.quality.mean_diameter_m); } else { EXPECT_NEAR(std::abs(at.y), outline.flat_height_m, 1e-12); }
+                    if (cell.outline_edges[k] == 0) {
+                        EXPECT_NEAR(norm(at), outline.radius_m, 2e-3 * cut.quality.mean_diameter_m);
+                    } else {
+                        EXPECT_NEAR(std::abs(at.y), outline.flat_height_m, 1e-12);
+                    }
                 }
         }
     SpecimenSpec spec = rectangle(0.02, 0.03);
@@ -310,7 +329,9 @@ TEST(CellsOfAFile, AreWrittenAsTheFormatsSay) {
                 EXPECT_TRUE(named.insert(e).second);
             }
         }
-        if (made.outline.cutouts.empty()) { EXPECT_EQ(named, boundary); }   // else the edges of holes are in no domain edge
+        if (made.outline.cutouts.empty()) {
+            EXPECT_EQ(named, boundary);
+        }  // else the edges of holes are in no domain edge
         EXPECT_TRUE(find("***end"));
 
         // .msh: every element names nodes that are there; the triangles fill the cells
@@ -381,7 +402,8 @@ std::string edited(std::string text, const std::string& from, const std::string&
 }
 
 TEST(CellsOfAFile, AreRefusedWithTheLineAndTheReason) {
-    const std::string tess = data("honeycomb.tess"), msh = data("honeycomb.msh"), head = "grain,x,y\n", square = "a,0,0\na,1,0\na,1,1\na,0,1\n";
+    const std::string tess = data("honeycomb.tess"), msh = data("honeycomb.msh"), head = "grain,x,y\n",
+                      square = "a,0,0\na,1,0\na,1,1\na,0,1\n";
     const std::vector<BadFile> files{
         {"empty", "", "a.tess", 0, {"is empty"}},
         {"another kind", tess, "a.vtk", 0, {".tess", ".msh", ".csv"}},
@@ -392,12 +414,36 @@ TEST(CellsOfAFile, AreRefusedWithTheLineAndTheReason) {
         {"truncated", tess.substr(0, tess.find("**face")), "a.tess", -1, {"ends too early"}},
         {"no end", edited(tess, "***end", ""), "a.tess", -1, {"ends too early", "***end"}},
         {"unknown section", edited(tess, " **domain", " **region"), "a.tess", -1, {"**region", "**domain"}},
-        {"missing section", edited(edited(tess, " **edge\n", " **scale\n"), "  *edge\n", "  *edges\n"), "a.tess", 0, {"**edge is missing"}},
-        {"more cells than faces", edited(tess, " **cell\n  21\n  *id\n   101", " **cell\n  22\n  *id\n   100 101"), "a.tess", -1, {"21 faces for 22 cells"}},
-        {"a vertex that is not there", edited(tess, "   1 5 1 2 3 4 5\n", "   1 5 1 2 3 4 77\n"), "a.tess", -1, {"vertex 77", "1 to 44"}},
-        {"an edge that is not there", edited(tess, "     5 1 2 3 4 5\n", "     5 1 2 3 4 99\n"), "a.tess", -1, {"edge 99", "1 to 64"}},
-        {"an edge of another face", edited(tess, "     5 1 2 3 4 5\n", "     5 1 2 3 4 60\n"), "a.tess", -1, {"edge 60 of face 1"}},
-        {"two corners", edited(tess, "   1 5 1 2 3 4 5\n     5 1 2 3 4 5\n", "   1 2 1 2\n     2 1 2\n"), "a.tess", -1, {"2 vertices", "three"}},
+        {"missing section",
+         edited(edited(tess, " **edge\n", " **scale\n"), "  *edge\n", "  *edges\n"),
+         "a.tess",
+         0,
+         {"**edge is missing"}},
+        {"more cells than faces",
+         edited(tess, " **cell\n  21\n  *id\n   101", " **cell\n  22\n  *id\n   100 101"),
+         "a.tess",
+         -1,
+         {"21 faces for 22 cells"}},
+        {"a vertex that is not there",
+         edited(tess, "   1 5 1 2 3 4 5\n", "   1 5 1 2 3 4 77\n"),
+         "a.tess",
+         -1,
+         {"vertex 77", "1 to 44"}},
+        {"an edge that is not there",
+         edited(tess, "     5 1 2 3 4 5\n", "     5 1 2 3 4 99\n"),
+         "a.tess",
+         -1,
+         {"edge 99", "1 to 64"}},
+        {"an edge of another face",
+         edited(tess, "     5 1 2 3 4 5\n", "     5 1 2 3 4 60\n"),
+         "a.tess",
+         -1,
+         {"edge 60 of face 1"}},
+        {"two corners",
+         edited(tess, "   1 5 1 2 3 4 5\n     5 1 2 3 4 5\n", "   1 2 1 2\n     2 1 2\n"),
+         "a.tess",
+         -1,
+         {"2 vertices", "three"}},
         {"not a number", edited(tess, "2.0 1.7", "2.0 1.7x"), "a.tess", -1, {"'1.7x' is not a number"}},
         {"not finite", edited(tess, "2.0 1.7", "2.0 nan"), "a.tess", -1, {"'nan'"}},
         {"infinite", edited(tess, "2.0 1.7", "2.0 1e999"), "a.tess", -1, {"'1e999'"}},
@@ -406,7 +452,11 @@ TEST(CellsOfAFile, AreRefusedWithTheLineAndTheReason) {
         {"a huge count", edited(tess, " **vertex\n  44", " **vertex\n  44000000000"), "a.tess", -1, {"44000000000"}},
         {"a large count", edited(tess, " **vertex\n  44", " **vertex\n  40000000"), "a.tess", -1, {"not a whole number"}},
         {"a negative count", edited(tess, " **face\n  21", " **face\n  -1"), "a.tess", -1, {"-1"}},
-        {"a vertex inside a neighbour", edited(tess, "  15  2.0 4.3", "  15  2.0 1.3"), "a.tess", -1, {"cell 105 crosses or touches itself"}},
+        {"a vertex inside a neighbour",
+         edited(tess, "  15  2.0 4.3", "  15  2.0 1.3"),
+         "a.tess",
+         -1,
+         {"cell 105 crosses or touches itself"}},
         {"binary mesh", "$MeshFormat\n4.1 1 8\n", "a.msh", 2, {"binary"}},
         {"another version", edited(msh, "2.2", "4.0"), "a.msh", 2, {"4.0", "4.1 or 2.2"}},
         {"a solid", edited(msh, "3 2 2 101 1 1 46 45\n", "3 4 2 101 1 1 46 45 2\n"), "a.msh", -1, {"solid"}},
@@ -423,11 +473,24 @@ TEST(CellsOfAFile, AreRefusedWithTheLineAndTheReason) {
         {"two corners in rows", head + square + "b,1,0\nb,2,0\n", "a.csv", 6, {"cell b has 2 different corners"}},
         {"on a line", head + "a,0,0\na,1,0\na,2,0\n", "a.csv", 2, {"no area"}},
         {"crossing itself", head + "a,0,0\na,1,1\na,1,0\na,0,1.5\n", "a.csv", 2, {"crosses or touches itself"}},
-        {"overlap", head + square + "b,0.8,0\nb,2,0\nb,2,1\nb,0.8,1\n", "a.csv", 6, {"cells a and b overlap by 0.2", "around (0.9, 0.5)"}},
+        {"overlap",
+         head + square + "b,0.8,0\nb,2,0\nb,2,1\nb,0.8,1\n",
+         "a.csv",
+         6,
+         {"cells a and b overlap by 0.2", "around (0.9, 0.5)"}},
         {"apart", head + square + "b,1.2,0\nb,2,0\nb,2,1\nb,1.2,1\n", "a.csv", 0, {"2 parts", "(0.5, 0.5)"}},
-        {"a gap", head + "a,0,0\na,3,0\na,3,1\na,0,1\nb,0,1\nb,1,1\nb,1,2\nb,0,2\nc,2,1\nc,3,1\nc,3,2\nc,2,2\nd,0,2\nd,3,2\nd,3,3\nd,0,3\n", "a.csv", -1, {"a gap of 1 ", "around (1.5, 1.5)"}},
+        {"a gap",
+         head +
+             "a,0,0\na,3,0\na,3,1\na,0,1\nb,0,1\nb,1,1\nb,1,2\nb,0,2\nc,2,1\nc,3,1\nc,3,2\nc,2,2\nd,0,2\nd,3,2\nd,3,3\nd,0,3\n",
+         "a.csv",
+         -1,
+         {"a gap of 1 ", "around (1.5, 1.5)"}},
         {"by a point", head + square + "b,1,1\nb,2,1\nb,2,2\nb,1,2\n", "a.csv", -1, {"point"}},
-        {"turns in", head + "a,0,0\na,5,0\na,5,5\na,4,5\na,4,1\na,1,1\na,1,5\na,0,5\n", "a.csv", 2, {"no point of it sees", "turns in by 90 degrees"}},
+        {"turns in",
+         head + "a,0,0\na,5,0\na,5,5\na,4,5\na,4,1\na,1,1\na,1,5\na,0,5\n",
+         "a.csv",
+         2,
+         {"no point of it sees", "turns in by 90 degrees"}},
     };
     for (const BadFile& bad : files) {
         SCOPED_TRACE(bad.what);
@@ -436,8 +499,13 @@ TEST(CellsOfAFile, AreRefusedWithTheLineAndTheReason) {
             make_specimen(of_cells(cells), 1);
             FAIL() << "was taken";
         } catch (const InputError& error) {
-            if (bad.line >= 0) { EXPECT_EQ(error.place().line, bad.line) << error.what(); } else { EXPECT_GE(error.place().line, 0); }
-            for (const std::string& word : bad.words) EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << word << "\n" << error.what();
+            if (bad.line >= 0) {
+                EXPECT_EQ(error.place().line, bad.line) << error.what();
+            } else {
+                EXPECT_GE(error.place().line, 0);
+            }
+            for (const std::string& word : bad.words)
+                EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << word << "\n" << error.what();
         }
     }
 }
@@ -469,11 +537,21 @@ TEST(CellsOfAFile, OfAnyBytesAreRefusedOrSound) {
             for (int c = 0; c < changes; ++c) {
                 const std::size_t at = random() % text.size();
                 switch (random() % 5) {
-                    case 0: text[at] = static_cast<char>(random() % 256); break;
-                    case 1: text[at] = static_cast<char>('0' + random() % 10); break;
-                    case 2: text.erase(at, 1 + random() % 8); break;
-                    case 3: text.insert(at, text.substr(random() % text.size(), random() % 12)); break;
-                    default: text[at] = " \n-.,e*$"[random() % 8]; break;
+                    case 0:
+                        text[at] = static_cast<char>(random() % 256);
+                        break;
+                    case 1:
+                        text[at] = static_cast<char>('0' + random() % 10);
+                        break;
+                    case 2:
+                        text.erase(at, 1 + random() % 8);
+                        break;
+                    case 3:
+                        text.insert(at, text.substr(random() % text.size(), random() % 12));
+                        break;
+                    default:
+                        text[at] = " \n-.,e*$"[random() % 8];
+                        break;
                 }
                 if (text.empty()) text = " ";
             }
@@ -492,7 +570,7 @@ TEST(CellsOfAFile, OfAnyBytesAreRefusedOrSound) {
         }
     }
     EXPECT_GT(refused, 400);
-    EXPECT_GT(taken, 50);   // changes of what is not read, or of digits within the tolerance
+    EXPECT_GT(taken, 50);  // changes of what is not read, or of digits within the tolerance
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Samples of each distribution against its closed-form moments, and the sieve curve against the areas that come out.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
@@ -131,7 +131,6 @@ TEST(GrainSizes, ImpossibleDistributionsAreRefused) {
     curve.sieve.resize(1);
     refused(curve);
 }
-
 
 TEST(GrainSizes, ALongTailOfASieveCurveHoldsNoGrains) {
     EXPECT_EQ(largest_of_sieve_m({{0.001, 0.0}, {0.002, 1.0}, {0.05, 1.0}}), 0.002);

@@ -1,9 +1,9 @@
 // Whole specimens: the counts of the published ones, determinism, the report, and what is refused.
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstring>
 #include <numbers>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
@@ -120,7 +120,7 @@ TEST(MakeSpecimen, ImpossibleSpecsAreRefused) {
 }
 
 TEST(MakeSpecimen, SameBitsForAnyNumberOfThreads) {
-    SpecimenSpec spec = rectangle(0.15, 0.3);   // enough grains that the packing is shared out
+    SpecimenSpec spec = rectangle(0.15, 0.3);  // enough grains that the packing is shared out
     const Specimen alone = make_specimen(spec, 1), together = make_specimen(spec, 1, {.threads = 3, .progress = {}});
     EXPECT_TRUE(same_bits(alone.packing.centres, together.packing.centres));
     EXPECT_EQ(alone.packing.residual, together.packing.residual);
@@ -146,7 +146,6 @@ TEST(MakeSpecimen, CanBeEndedFromOutside) {
     EXPECT_THROW(make_specimen(rectangle(0.03, 0.03), 1, {.threads = 2, .progress = stop}), Interrupted);
 }
 
-
 TEST(MakeSpecimen, TellsTheSizesOfTheCellsBesideThoseAskedFor) {
     SpecimenSpec spec = rectangle();
     spec.porosity = 0.2;
@@ -155,8 +154,9 @@ TEST(MakeSpecimen, TellsTheSizesOfTheCellsBesideThoseAskedFor) {
     EXPECT_NEAR(q.disc_sizes.mean_m, 0.003, 3e-5);
     EXPECT_GE(q.disc_sizes.minimum_m, 0.002);
     EXPECT_LE(q.disc_sizes.maximum_m, 0.004);
-    EXPECT_NEAR(q.disc_sizes.D50_m, 0.0033, 5e-5);   // half of the area: d^3 = (2^3 + 4^3) / 2, d = 3.30 mm
-    // the cells fill what the discs leave: by area 1 / (1 - porosity), but E[d]^2 counts where E[d^2] fills (1.037); the rest is scatter
+    EXPECT_NEAR(q.disc_sizes.D50_m, 0.0033, 5e-5);  // half of the area: d^3 = (2^3 + 4^3) / 2, d = 3.30 mm
+    // the cells fill what the discs leave: by area 1 / (1 - porosity), but E[d]^2 counts where E[d^2] fills (1.037); the rest is
+    // scatter
     EXPECT_NEAR(q.cell_sizes.mean_m / q.disc_sizes.mean_m, 1.10, 0.01);
     EXPECT_GT(q.cell_sizes.D50_m, 1.05 * q.disc_sizes.D50_m);
 }
@@ -169,10 +169,12 @@ TEST(MakeSpecimen, WarnsOfGrainsOfOneSize) {
         return make_specimen(spec, 1).quality;
     };
     const auto warned = [](const SpecimenQuality& q) {
-        return std::any_of(q.warnings.begin(), q.warnings.end(), [](const std::string& w) { return w.find("crystallise") != std::string::npos; });
+        return std::any_of(q.warnings.begin(), q.warnings.end(),
+                           [](const std::string& w) { return w.find("crystallise") != std::string::npos; });
     };
     const SpecimenQuality equal = crystal(0.0), narrow = crystal(0.05), usual = crystal(0.192);
-    EXPECT_GT(equal.hexatic_order, 0.85);   // honeycomb patches; measured 0.91 to 0.95 on larger specimens (docs/theory/specimen.md)
+    EXPECT_GT(equal.hexatic_order,
+              0.85);  // honeycomb patches; measured 0.91 to 0.95 on larger specimens (docs/theory/specimen.md)
     EXPECT_GT(narrow.hexatic_order, 0.75);
     EXPECT_LT(usual.hexatic_order, 0.6);
     EXPECT_TRUE(warned(equal));
@@ -181,7 +183,7 @@ TEST(MakeSpecimen, WarnsOfGrainsOfOneSize) {
 }
 
 TEST(MakeSpecimen, GrainsThatDoNotPackAreAMistakeWithARemedy) {
-    SpecimenSpec spec = rectangle(0.05, 0.10);   // 0.4 to 8 mm by number, and hardly a pore: a small disc is squeezed out
+    SpecimenSpec spec = rectangle(0.05, 0.10);  // 0.4 to 8 mm by number, and hardly a pore: a small disc is squeezed out
     spec.grain_sizes.minimum_m = 0.0004;
     spec.grain_sizes.maximum_m = 0.008;
     spec.porosity = 0.02;
@@ -189,7 +191,8 @@ TEST(MakeSpecimen, GrainsThatDoNotPackAreAMistakeWithARemedy) {
         make_specimen(spec, 1);
         FAIL() << "it packs now: good, but then this test needs another specimen";
     } catch (const InputError& problem) {
-        for (const char* part : {"specimen.grains.diameter", "do not pack", "sizes closer together", "porosity above 0.02", "raise the smallest diameter"})
+        for (const char* part : {"specimen.grains.diameter", "do not pack", "sizes closer together", "porosity above 0.02",
+                                 "raise the smallest diameter"})
             EXPECT_NE(std::string(problem.what()).find(part), std::string::npos) << part << " in " << problem.what();
     }
 }
@@ -226,7 +229,7 @@ TEST(SizesByMineral, FillTheirShares) {
             int grains = 0;
             for (std::size_t p = 0; p < fills.size(); ++p) {
                 const PhaseSizes& wanted = spec.phase_sizes[p];
-                EXPECT_NEAR(fills[p].area_share, wanted.share, 0.01) << wanted.name;   // of the specimen's area: see the theory
+                EXPECT_NEAR(fills[p].area_share, wanted.share, 0.01) << wanted.name;  // of the specimen's area: see the theory
                 EXPECT_GE(fills[p].discs.minimum_m, smallest_of(wanted.sizes) * (1.0 - 1e-12));
                 EXPECT_LE(fills[p].discs.maximum_m, largest_of(wanted.sizes) * (1.0 + 1e-12));
                 EXPECT_NEAR(fills[p].discs.mean_m / diameter_moments(wanted.sizes).mean_m, 1.0, 0.02) << wanted.name;
@@ -244,12 +247,14 @@ TEST(SizesByMineral, StayWithTheirDiscsWhereGrainsAreCut) {
     const Specimen s = make_specimen(spec, 1);
     ASSERT_EQ(s.packing.phases.size(), s.cells.cells.size());
     ASSERT_EQ(s.packed.phases.size(), s.packed.centres.size());
-    for (std::size_t c = 0; c < s.cells.cells.size(); ++c) EXPECT_EQ(s.packing.phases[c], s.packed.phases[static_cast<std::size_t>(s.cells.disc_of_cell[c])]);
+    for (std::size_t c = 0; c < s.cells.cells.size(); ++c)
+        EXPECT_EQ(s.packing.phases[c], s.packed.phases[static_cast<std::size_t>(s.cells.disc_of_cell[c])]);
 }
 
 TEST(SizesByMineral, AreOfTheSameDiscsAsTheirMixture) {
     const SpecimenSpec spec = granite_by_size();
-    const std::vector<int> counts = grains_of_phases(spec.phase_sizes, 1.0, spec.porosity);   // a square metre: whole numbers do not matter
+    const std::vector<int> counts =
+        grains_of_phases(spec.phase_sizes, 1.0, spec.porosity);  // a square metre: whole numbers do not matter
     double number = 0.0, squares = 0.0, all = 0.0;
     for (std::size_t p = 0; p < counts.size(); ++p) {
         number += counts[p] * diameter_moments(spec.phase_sizes[p].sizes).mean_m;

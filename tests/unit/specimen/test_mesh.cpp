@@ -1,11 +1,11 @@
 // Triangles inside the grains: counts, areas, topology, and one triangle for each outer edge.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <set>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
@@ -156,7 +156,8 @@ TEST(FixedTopology, CentreOfACellThatBendsSeesAllOfIt) {
         area += area_of(mesh, t);
     }
     EXPECT_NEAR(area, signed_area(bent.vertices), 1e-14);
-    const Tessellation zigzag = one_cell({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}});  // a U sees itself from nowhere
+    const Tessellation zigzag =
+        one_cell({{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}});  // a U sees itself from nowhere
     EXPECT_THROW(mesh_grains(zigzag, 0), InputError);
 }
 
@@ -169,8 +170,12 @@ TEST(FineMesh, ComesNearTheNumberAskedFor) {
 
 TEST(FineMesh, IsTheFixedOneWhereAVertexLiesInAStraightSide) {
     // the grain ahead of a notch whose end is the fifth vertex
-    const GrainMesh mesh = mesh_grains(one_cell({{0.0082476775103451014, 0.020973099798594099}, {0.0086720805297596619, 0.018303988357690783}, {0.011009132445100749, 0.018130005928428481},
-                                                 {0.011464111623434373, 0.018568696851776572}, {0.0088338053366169324, 0.02080921856686473}, {0.0084120875993093248, 0.021168442035557719}}),
+    const GrainMesh mesh = mesh_grains(one_cell({{0.0082476775103451014, 0.020973099798594099},
+                                                 {0.0086720805297596619, 0.018303988357690783},
+                                                 {0.011009132445100749, 0.018130005928428481},
+                                                 {0.011464111623434373, 0.018568696851776572},
+                                                 {0.0088338053366169324, 0.02080921856686473},
+                                                 {0.0084120875993093248, 0.021168442035557719}}),
                                        30);
     for (const auto& t : mesh.triangles) EXPECT_GT(area_of(mesh, t), 1e-9 * 5e-6);
 }

@@ -1,10 +1,10 @@
 // From the user's outline to one ready for use.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -84,15 +84,19 @@ TEST(Outline, RoundEdgesAreDividedAndKeepTheirLabel) {
                 ++on_right;
                 EXPECT_NEAR(norm(o.vertices[k] - Vec2{0.08 - rise + R, 0.08}), R, 1e-12);
             }
-            EXPECT_EQ(on_right, static_cast<std::size_t>(std::max(2L, std::lround(arc_edges(R, grain) * half / std::numbers::pi))));
-            const double fine = 2.0 * half / static_cast<double>(on_right);   // a polygon inside the circle has less of the segment, of the second order
+            EXPECT_EQ(on_right,
+                      static_cast<std::size_t>(std::max(2L, std::lround(arc_edges(R, grain) * half / std::numbers::pi))));
+            const double fine =
+                2.0 * half /
+                static_cast<double>(on_right);  // a polygon inside the circle has less of the segment, of the second order
             EXPECT_NEAR(o.area_m2, 0.08 * chord - 2.0 * segment, 1.2 * 2.0 * segment * fine * fine);
             EXPECT_GT(signed_area(o.vertices), 0.0);
         }
     }
-    OutlineSpec bulging = dog_bone();   // more than half a circle: through a point that is farther out than the chord is long
+    OutlineSpec bulging = dog_bone();  // more than half a circle: through a point that is farther out than the chord is long
     bulging.arcs = {{1, {0.28, 0.08}}};
-    const double r = (0.08 * 0.08 + 0.2 * 0.2) / 0.4, cut = std::asin(0.08 / r), beyond = r * r * (std::numbers::pi - cut + std::sin(cut) * std::cos(cut));
+    const double r = (0.08 * 0.08 + 0.2 * 0.2) / 0.4, cut = std::asin(0.08 / r),
+                 beyond = r * r * (std::numbers::pi - cut + std::sin(cut) * std::cos(cut));
     EXPECT_NEAR(make_outline(bulging, {0.0003, 0.0003}).area_m2 / (0.08 * chord + beyond), 1.0, 1e-3);
 }
 
@@ -126,7 +130,6 @@ TEST(Outline, ImpossibleOutlinesAreRefused) {
     EXPECT_THROW(make_outline(labels), InputError);
 }
 
-
 OutlineSpec labelled(std::vector<Vec2> vertices, std::vector<std::string> labels) {
     OutlineSpec spec;
     spec.shape = Shape::polygon;
@@ -135,13 +138,17 @@ OutlineSpec labelled(std::vector<Vec2> vertices, std::vector<std::string> labels
     return spec;
 }
 
-const std::vector<Vec2> upright = {{0, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}}, upright_clockwise = {{0, 0}, {0, 0.04}, {0.02, 0.04}, {0.02, 0}};
+const std::vector<Vec2> upright = {{0, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}},
+                        upright_clockwise = {{0, 0}, {0, 0.04}, {0.02, 0.04}, {0.02, 0}};
 
 TEST(Outline, EndsOnTheirOwnSidesAreFineInEitherOrientation) {
     EXPECT_FALSE(end_fault(labelled(upright, {"bottom", "right", "top", "left"})));
     EXPECT_FALSE(end_fault(labelled(upright_clockwise, {"left", "top", "right", "bottom"})));
-    EXPECT_FALSE(end_fault(labelled({{0, 0}, {0.02, 0.003}, {0.02, 0.04}, {0, 0.038}}, {"bottom", "right", "top", "left"}))) << "8.5 degrees";
-    EXPECT_FALSE(end_fault(labelled({{0, 0}, {0.01, 0}, {0.02, 0}, {0.02, 0.04}, {0.01, 0.04}, {0, 0.04}}, {"bottom", "b", "right", "c", "top", "left"}))) << "half of each side";
+    EXPECT_FALSE(end_fault(labelled({{0, 0}, {0.02, 0.003}, {0.02, 0.04}, {0, 0.038}}, {"bottom", "right", "top", "left"})))
+        << "8.5 degrees";
+    EXPECT_FALSE(end_fault(labelled({{0, 0}, {0.01, 0}, {0.02, 0}, {0.02, 0.04}, {0.01, 0.04}, {0, 0.04}},
+                                    {"bottom", "b", "right", "c", "top", "left"})))
+        << "half of each side";
     EXPECT_FALSE(end_fault(labelled(upright, {"a", "b", "c", "d"}))) << "a specimen that no platen touches";
 }
 
@@ -152,14 +159,22 @@ TEST(Outline, EndsOnTheWrongSidesAreRefused) {
         return fault ? fmt::format("{}: {}", fault->edge, fault->problem) : std::string();
     };
     EXPECT_EQ(problem(labelled(upright, {"top", "right", "bottom", "left"})), "0: the label \"top\" lies below \"bottom\"");
-    EXPECT_EQ(problem(labelled(upright_clockwise, {"left", "bottom", "right", "top"})), "3: the label \"top\" lies below \"bottom\"");
+    EXPECT_EQ(problem(labelled(upright_clockwise, {"left", "bottom", "right", "top"})),
+              "3: the label \"top\" lies below \"bottom\"");
     EXPECT_EQ(problem(labelled(upright, {"left", "top", "right", "bottom"})).substr(0, 25), "1: the edge labelled \"top");
-    EXPECT_NE(problem(labelled(upright, {"left", "top", "right", "bottom"})).find("90 degrees from horizontal"), std::string::npos);
-    EXPECT_NE(problem(labelled({{0, 0}, {0.02, 0.004}, {0.02, 0.04}, {0, 0.04}}, {"bottom", "right", "top", "left"})).find("11 degrees"), std::string::npos);
+    EXPECT_NE(problem(labelled(upright, {"left", "top", "right", "bottom"})).find("90 degrees from horizontal"),
+              std::string::npos);
+    EXPECT_NE(problem(labelled({{0, 0}, {0.02, 0.004}, {0.02, 0.04}, {0, 0.04}}, {"bottom", "right", "top", "left"}))
+                  .find("11 degrees"),
+              std::string::npos);
     // both on the lower side
-    EXPECT_EQ(problem(labelled({{0, 0}, {0.01, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}}, {"bottom", "top", "right", "c", "left"})).substr(0, 25), "1: the edge labelled \"top");
+    EXPECT_EQ(problem(labelled({{0, 0}, {0.01, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}}, {"bottom", "top", "right", "c", "left"}))
+                  .substr(0, 25),
+              "1: the edge labelled \"top");
     // a step: the lower shoulder is called top, the rock above it bottom
-    EXPECT_NE(problem(labelled({{0, 0}, {0.02, 0}, {0.02, 0.02}, {0.01, 0.02}, {0.01, 0.04}, {0, 0.04}}, {"top", "a", "bottom", "b", "c", "d"})), "");
+    EXPECT_NE(problem(labelled({{0, 0}, {0.02, 0}, {0.02, 0.02}, {0.01, 0.02}, {0.01, 0.04}, {0, 0.04}},
+                               {"top", "a", "bottom", "b", "c", "d"})),
+              "");
 }
 
 TEST(Outline, SectionsAreMeasuredAcrossTheLoad) {
@@ -167,21 +182,36 @@ TEST(Outline, SectionsAreMeasuredAcrossTheLoad) {
     EXPECT_DOUBLE_EQ(straight.narrowest, 0.08);
     EXPECT_DOUBLE_EQ(straight.widest, 0.08);
     // a bone of 20 mm with a waist of 8 mm from 16 to 34 mm of its 50
-    const Outline bone = make_outline(labelled({{0, 0}, {0.020, 0}, {0.020, 0.008}, {0.014, 0.016}, {0.014, 0.034}, {0.020, 0.042}, {0.020, 0.050}, {0, 0.050}, {0, 0.042},
-                                                {0.006, 0.034}, {0.006, 0.016}, {0, 0.008}},
+    const Outline bone = make_outline(labelled({{0, 0},
+                                                {0.020, 0},
+                                                {0.020, 0.008},
+                                                {0.014, 0.016},
+                                                {0.014, 0.034},
+                                                {0.020, 0.042},
+                                                {0.020, 0.050},
+                                                {0, 0.050},
+                                                {0, 0.042},
+                                                {0.006, 0.034},
+                                                {0.006, 0.016},
+                                                {0, 0.008}},
                                                {"bottom", "a", "b", "c", "d", "e", "top", "f", "g", "h", "i", "j"}));
     const SectionWidths waist = section_widths(bone);
     EXPECT_NEAR(waist.narrowest, 0.008, 1e-15);
     EXPECT_NEAR(waist.widest, 0.020, 1e-15);
     EXPECT_NEAR(waist.gauge_narrowest, 0.008, 1e-15);
-    EXPECT_NEAR(waist.gauge_widest, 0.008 + 2.0 * 0.0035 * 6.0 / 8.0, 1e-15);   // at a quarter of the height, 3.5 mm below the waist
-    const SectionWidths tapered = section_widths(make_outline(labelled({{0, 0}, {0.02, 0}, {0.01, 0.04}, {0.005, 0.04}}, {"bottom", "right", "top", "left"})));
+    EXPECT_NEAR(waist.gauge_widest, 0.008 + 2.0 * 0.0035 * 6.0 / 8.0,
+                1e-15);  // at a quarter of the height, 3.5 mm below the waist
+    const SectionWidths tapered = section_widths(
+        make_outline(labelled({{0, 0}, {0.02, 0}, {0.01, 0.04}, {0.005, 0.04}}, {"bottom", "right", "top", "left"})));
     EXPECT_NEAR(tapered.narrowest, 0.005, 1e-15);
     EXPECT_NEAR(tapered.widest, 0.020, 1e-15);
     // two legs of 5 mm count together; where an arm hangs down beside them, it does too
-    EXPECT_NEAR(section_widths(make_outline(labelled({{0, 0}, {0.005, 0}, {0.005, 0.02}, {0.015, 0.02}, {0.015, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}},
-                                                     {"bottom", "a", "b", "c", "bottom", "d", "top", "e"})))
-                    .narrowest, 0.010, 1e-15);
+    EXPECT_NEAR(
+        section_widths(make_outline(labelled(
+                           {{0, 0}, {0.005, 0}, {0.005, 0.02}, {0.015, 0.02}, {0.015, 0}, {0.02, 0}, {0.02, 0.04}, {0, 0.04}},
+                           {"bottom", "a", "b", "c", "bottom", "d", "top", "e"})))
+            .narrowest,
+        0.010, 1e-15);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // The relaxed packing: criterion, balance of forces, everybody inside.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -154,16 +154,21 @@ TEST(Packing, GrainsThatFindNoRoomAreRefused) {
     EXPECT_THROW(make_specimen(polygon({{0, 0}, {0.1, 0.1}, {0.1, 0.1007}}), 1), InputError);  // a needle along a diagonal
 }
 
-
-SpecimenSpec wide_sieve() {   // 0.5 to 16 mm
+SpecimenSpec wide_sieve() {  // 0.5 to 16 mm
     SpecimenSpec spec = rectangle(0.05, 0.10);
-    spec.grain_sizes = {.kind = GrainSizeKind::sieve, .sieve = {{0.0005, 0.0}, {0.0016, 0.1}, {0.003, 0.3}, {0.008, 0.7}, {0.016, 1.0}}};
+    spec.grain_sizes = {.kind = GrainSizeKind::sieve,
+                        .sieve = {{0.0005, 0.0}, {0.0016, 0.1}, {0.003, 0.3}, {0.008, 0.7}, {0.016, 1.0}}};
     return spec;
 }
 
 SpecimenSpec wide_log_normal(double deviation) {
     SpecimenSpec spec = disc(0.05);
-    spec.grain_sizes = {.kind = GrainSizeKind::log_normal, .minimum_m = 0.0003, .maximum_m = 0.012, .median_m = 0.002, .log_standard_deviation = deviation, .sieve = {}};
+    spec.grain_sizes = {.kind = GrainSizeKind::log_normal,
+                        .minimum_m = 0.0003,
+                        .maximum_m = 0.012,
+                        .median_m = 0.002,
+                        .log_standard_deviation = deviation,
+                        .sieve = {}};
     return spec;
 }
 
@@ -171,7 +176,9 @@ TEST(Packing, WideDistributionsPack) {
     for (const SpecimenSpec& spec : {wide_sieve(), wide_log_normal(0.65), wide_log_normal(0.8), wide_log_normal(1.0)}) {
         for (std::uint64_t seed = 1; seed <= 3; ++seed) {
             const Specimen s = make_specimen(spec, seed);
-            EXPECT_TRUE(s.packing.residual <= RelaxationCriterion{}.residual || s.packing.overlap_mean <= RelaxationCriterion{}.loose_overlap) << seed;
+            EXPECT_TRUE(s.packing.residual <= RelaxationCriterion{}.residual ||
+                        s.packing.overlap_mean <= RelaxationCriterion{}.loose_overlap)
+                << seed;
             for (const Vec2 c : s.packing.centres) EXPECT_TRUE(contains(s.outline, c));
             EXPECT_LT(s.packing.overlap_mean, 0.08);
             EXPECT_LT(s.quality.area_error, 1e-9);

@@ -1,10 +1,10 @@
 // A packing on disk: the same bits back, and every kind of damage found with its line.
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/specimen/grain_sizes.hpp"
@@ -59,7 +59,9 @@ TEST_F(PackingFile, ComesBackWithTheSameBits) {
         from_file.packing_file = file_;
         const Specimen loaded = make_specimen(from_file, 99);  // the seed plays no part
         ASSERT_EQ(loaded.packing.centres.size(), made.packing.centres.size());
-        EXPECT_EQ(std::memcmp(loaded.packing.centres.data(), made.packing.centres.data(), made.packing.centres.size() * sizeof(Vec2)), 0);
+        EXPECT_EQ(
+            std::memcmp(loaded.packing.centres.data(), made.packing.centres.data(), made.packing.centres.size() * sizeof(Vec2)),
+            0);
         EXPECT_EQ(loaded.packing.radii_m, made.packing.radii_m);
         EXPECT_EQ(loaded.packing.residual, made.packing.residual);
         EXPECT_EQ(loaded.packing.overlap_mean, made.packing.overlap_mean);
@@ -80,10 +82,9 @@ TEST_F(PackingFile, DamageIsFoundInItsLine) {
     };
     // 1 title, 2 seed, 3 polygon 4, 4-7 vertices, 8 relaxation, 9 discs n, 10 ... discs, end
     const std::vector<std::pair<int, std::string>> damages = {
-        {1, "something else"},     {2, "sead 1"},           {3, "polygon four"},      {5, "0.02 x"},
-        {6, "0.02 0.03"},          {8, "relaxation 1 2 3"}, {9, "discs -1"},          {9, "discs 2.5"},
-        {12, "0.01 0.01"},         {12, "0.01 nan 0.001"},  {12, "0.01 0.01 0.001 1"}, {12, "0.05 0.01 0.001"},
-        {12, "0.01 0.01 -0.001"},  {12, ""}};
+        {1, "something else"},     {2, "sead 1"},           {3, "polygon four"},      {5, "0.02 x"},     {6, "0.02 0.03"},
+        {8, "relaxation 1 2 3"},   {9, "discs -1"},         {9, "discs 2.5"},         {12, "0.01 0.01"}, {12, "0.01 nan 0.001"},
+        {12, "0.01 0.01 0.001 1"}, {12, "0.05 0.01 0.001"}, {12, "0.01 0.01 -0.001"}, {12, ""}};
     for (const auto& [line, replacement] : damages) {
         write(with_line(line, replacement));
         EXPECT_EQ(line_of_error(made.outline), line) << replacement;
@@ -133,12 +134,12 @@ TEST_F(PackingFile, KeepsTheMineralsOfItsGrains) {
     const Specimen loaded = make_specimen(from_file, 99);
     EXPECT_EQ(loaded.packing.phases, made.packing.phases);
     EXPECT_EQ(loaded.packing.radii_m, made.packing.radii_m);
-    std::swap(from_file.phase_sizes[0], from_file.phase_sizes[1]);   // the names count, not the numbers
+    std::swap(from_file.phase_sizes[0], from_file.phase_sizes[1]);  // the names count, not the numbers
     const Specimen swapped = make_specimen(from_file, 1);
     for (std::size_t i = 0; i < made.packing.phases.size(); ++i) ASSERT_EQ(swapped.packing.phases[i], 1 - made.packing.phases[i]);
     from_file.phase_sizes[0].name = "biotite";
     EXPECT_THROW(make_specimen(from_file, 1), InputError) << "another rock";
-    from_file.phase_sizes.clear();   // minerals without sizes are drawn anew, which is told
+    from_file.phase_sizes.clear();  // minerals without sizes are drawn anew, which is told
     const Specimen without = make_specimen(from_file, 1);
     EXPECT_TRUE(without.packing.phases.empty());
     ASSERT_FALSE(without.quality.warnings.empty());

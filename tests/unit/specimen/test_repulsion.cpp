@@ -1,9 +1,9 @@
 // Forces between overlapping discs against all pairs, one by one.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/rng.hpp"
 #include "feldspar/specimen/repulsion.hpp"
@@ -14,7 +14,7 @@ namespace {
 struct Cloud {
     std::vector<Vec2> centres;
     std::vector<double> radii;
-    std::vector<DiscPair> pairs;   // all of them, by the first disc, then by the second
+    std::vector<DiscPair> pairs;  // all of them, by the first disc, then by the second
 
     explicit Cloud(int count) {
         RandomStream random(1, "cloud");
@@ -40,12 +40,12 @@ TEST(Repulsion, PushesByTheOverlapAlongTheLineOfCentres) {
     EXPECT_EQ(forces[2], Vec2{});
     EXPECT_TRUE(distant.empty());
     std::fill(forces.begin(), forces.end(), Vec2{});
-    push_apart(pairs, centres, radii, 0.5, forces, 0, distant);   // half the radii: none overlap
+    push_apart(pairs, centres, radii, 0.5, forces, 0, distant);  // half the radii: none overlap
     EXPECT_EQ(forces, std::vector<Vec2>(3));
 }
 
 TEST(Repulsion, SameBitsAsPairByPair) {
-    const Cloud cloud(60);   // 1770 pairs: several chunks
+    const Cloud cloud(60);  // 1770 pairs: several chunks
     std::vector<Vec2> expected(cloud.centres.size()), forces(cloud.centres.size());
     for (const auto [a, b] : cloud.pairs) {
         const Vec2 apart = cloud.centres[a] - cloud.centres[b];

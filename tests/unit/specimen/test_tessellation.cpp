@@ -1,10 +1,10 @@
 // The Laguerre cells: a partition of the outline on one vertex graph, and the right one.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
-
-#include <gtest/gtest.h>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/rng.hpp"
@@ -53,7 +53,8 @@ TEST_P(Cells, ShareTheirEdgesExactly) {
         ASSERT_EQ(cell.neighbours.size(), n);
         ASSERT_EQ(cell.outline_edges.size(), n);
         for (std::size_t k = 0; k < n; ++k) {
-            EXPECT_TRUE(owner.emplace(std::pair(cell.vertices[k], cell.vertices[(k + 1) % n]), i).second) << "an edge named twice";
+            EXPECT_TRUE(owner.emplace(std::pair(cell.vertices[k], cell.vertices[(k + 1) % n]), i).second)
+                << "an edge named twice";
             EXPECT_NE(cell.neighbours[k] < 0, cell.outline_edges[k] < 0) << "either a neighbour or an outline edge";
         }
     }
@@ -70,7 +71,9 @@ TEST_P(Cells, FillTheOutline) {
     if (s.outline.is_disc) {
         std::vector<Vec2> rim;  // the vertices on the circle, by angle: the polygon of the chords
         for (const Vec2 v : s.cells.vertices) {
-            if (std::abs(norm(v) - s.outline.radius_m) < 1e-12 || (s.outline.flattened() && std::abs(v.y) == s.outline.flat_height_m)) rim.push_back(v);
+            if (std::abs(norm(v) - s.outline.radius_m) < 1e-12 ||
+                (s.outline.flattened() && std::abs(v.y) == s.outline.flat_height_m))
+                rim.push_back(v);
         }
         std::sort(rim.begin(), rim.end(), [](Vec2 a, Vec2 b) { return std::atan2(a.y, a.x) < std::atan2(b.y, b.x); });
         EXPECT_NEAR(total_area(s.cells) / signed_area(rim), 1.0, 1e-12);
@@ -98,13 +101,15 @@ TEST_P(Cells, OutlineEdgesLieOnTheOutlineTheyName) {
         for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
             const int edge = cell.outline_edges[k];
             if (edge < 0) continue;
-            const Vec2 a = s.cells.vertices[cell.vertices[k]], b = s.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]];
+            const Vec2 a = s.cells.vertices[cell.vertices[k]],
+                       b = s.cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]];
             length[edge] += norm(b - a);
             for (const Vec2 p : {a, b}) {
                 const double off = s.outline.is_disc && edge != circle_edge ? std::abs(p.y) - s.outline.flat_height_m
-                                   : s.outline.is_disc ? norm(p) - s.outline.radius_m
-                                                     : distance_to_segment(p, s.outline.vertices[edge],
-                                                                           s.outline.vertices[(edge + 1) % s.outline.vertices.size()]);
+                                   : s.outline.is_disc
+                                       ? norm(p) - s.outline.radius_m
+                                       : distance_to_segment(p, s.outline.vertices[edge],
+                                                             s.outline.vertices[(edge + 1) % s.outline.vertices.size()]);
                 EXPECT_NEAR(off, 0.0, 1e-15);
                 if (s.outline.is_disc) continue;
                 const Vec2 from = s.outline.vertices[edge], to = s.outline.vertices[(edge + 1) % s.outline.vertices.size()];
@@ -145,9 +150,11 @@ TEST_P(Cells, ShortestEdgeIsTheLast) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Outlines, Cells,
-                         testing::Values(Case{"rectangle", rectangle(0.04, 0.06)}, Case{"disc", disc(0.05)}, Case{"flattened_disc", flattened_disc(0.05)},
+                         testing::Values(Case{"rectangle", rectangle(0.04, 0.06)}, Case{"disc", disc(0.05)},
+                                         Case{"flattened_disc", flattened_disc(0.05)},
                                          Case{"wide_flats", flattened_disc(0.05, 40.0)}, Case{"triangle", triangle()},
-                                         Case{"round_sides", round_sides()}, Case{"ell", ell()}, Case{"slit", slit()}, Case{"split_sides", split_sides()}),
+                                         Case{"round_sides", round_sides()}, Case{"ell", ell()}, Case{"slit", slit()},
+                                         Case{"split_sides", split_sides()}),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
 /// Without merging, a point lies in the cell of the disc to which its power is least.

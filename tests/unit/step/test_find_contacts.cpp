@@ -10,7 +10,9 @@ using namespace feldspar;
 
 namespace {
 
-Assembly bar() { return assemble(*fixtures::two_grain_bar(0.01), fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table7()); }
+Assembly bar() {
+    return assemble(*fixtures::two_grain_bar(0.01), fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table7());
+}
 
 void break_all(Assembly& assembly) {
     for (std::size_t p = 0; p < assembly.points.size(); ++p) {
@@ -41,7 +43,7 @@ TEST(FindContacts, BrokenOnesAreDroppedWhenOpenAndBeginAgainWithAnOverlap) {
     break_all(assembly);
     lift_upper(assembly, 0.01);
     for (Contact& contact : assembly.contacts)
-        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {   // as a step would leave it: open
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {  // as a step would leave it: open
             BondState bond = assembly.bond(p);
             bond.un_m = 0.01;
             bond.Fn_N = bond.Fs_N = 0.0;

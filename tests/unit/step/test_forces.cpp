@@ -33,28 +33,32 @@ Sums sums(const Assembly& assembly) {
 TEST(Forces, OfFlexibleGrainsCancelOverTheBody) {
     const TestSetup s = fixtures::setup(fixtures::make(fixtures::rectangle(0.02, 0.03)), methods::uniaxial_compression);
     Experiment e(s, kOneThread);
-    for (int n = 0; n < e.assembly.nodes.count(); ++n) {   // strains of about 1e-5, uneven
+    for (int n = 0; n < e.assembly.nodes.count(); ++n) {  // strains of about 1e-5, uneven
         const Vec2 x = e.assembly.nodes.reference[n];
-        e.assembly.nodes.displacement[n] = 1e-5 * Vec2{0.003 * std::sin(700.0 * x.y) + 0.3 * x.x, 0.002 * std::cos(900.0 * x.x) - x.y};
+        e.assembly.nodes.displacement[n] =
+            1e-5 * Vec2{0.003 * std::sin(700.0 * x.y) + 0.3 * x.x, 0.002 * std::cos(900.0 * x.x) - x.y};
     }
     evaluate_forces(e.assembly, e.team, Strength::unlimited);
     const Sums s1 = sums(e.assembly);
     ASSERT_GT(s1.absolute_N, 0.0);
-    EXPECT_LT(std::abs(s1.force.x) + std::abs(s1.force.y), 1e-9 * s1.absolute_N);   // rounding of some thousand sums
+    EXPECT_LT(std::abs(s1.force.x) + std::abs(s1.force.y), 1e-9 * s1.absolute_N);  // rounding of some thousand sums
 }
 
 TEST(Forces, VanishInATranslation) {
     for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
-        const TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.03), methods::uniaxial_compression, fixtures::model(grains));
+        const TestSetup s =
+            fixtures::setup(fixtures::rectangle(0.02, 0.03), methods::uniaxial_compression, fixtures::model(grains));
         Experiment e(s, kOneThread);
         for (const Body& body : e.assembly.bodies) {
-            if (body.kind == BodyKind::rigid) e.assembly.nodes.displacement[body.centre_node] = {1e-5, -2e-5};
+            if (body.kind == BodyKind::rigid)
+                e.assembly.nodes.displacement[body.centre_node] = {1e-5, -2e-5};
             else
                 for (const int n : body.nodes()) e.assembly.nodes.displacement[n] = {1e-5, -2e-5};
         }
         evaluate_forces(e.assembly, e.team, Strength::real);
         // against the force of one contact of a square millimetre at such an opening
-        EXPECT_LT(sums(e.assembly).absolute_N, 1e-6 * s.contact.Kn_Pa_m * 2e-5 * 1e-6 * static_cast<double>(e.assembly.contacts.size()));
+        EXPECT_LT(sums(e.assembly).absolute_N,
+                  1e-6 * s.contact.Kn_Pa_m * 2e-5 * 1e-6 * static_cast<double>(e.assembly.contacts.size()));
     }
 }
 

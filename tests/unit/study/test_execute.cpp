@@ -3,17 +3,19 @@
 
 #include <map>
 
+#include "../../small_study.hpp"
 #include "feldspar/study/execute.hpp"
 #include "feldspar/study/point_results.hpp"
 #include "feldspar/study/study_table.hpp"
-#include "../../small_study.hpp"
 
 namespace feldspar {
 namespace {
 
 class ExecuteStudy : public ::testing::Test {
 protected:
-    Study read(const std::string& text) const { return parse_study("job = \"job.toml\"\ntests = [\"direct-tension\"]\n" + text, folder_ / "study.toml"); }
+    Study read(const std::string& text) const {
+        return parse_study("job = \"job.toml\"\ntests = [\"direct-tension\"]\n" + text, folder_ / "study.toml");
+    }
 
     Execution run(const Study& study, Ledger& ledger, int threads = 1) {
         ExecuteControl control;
@@ -44,7 +46,8 @@ TEST_F(ExecuteStudy, DoesEveryRunOnceAndLeavesItsFiles) {
     for (const auto& one : study.runs) {
         EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / "run.json"));
         EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / "job.toml"));
-        EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) / ("history-direct-tension-s" + std::to_string(one.seed()) + ".csv")));
+        EXPECT_TRUE(std::filesystem::exists(ledger.run_directory(one.id) /
+                                            ("history-direct-tension-s" + std::to_string(one.seed()) + ".csv")));
     }
     const Execution second = run(study, ledger);
     EXPECT_EQ(second.done, 0);
@@ -59,7 +62,9 @@ TEST_F(ExecuteStudy, DoesEveryRunOnceAndLeavesItsFiles) {
 }
 
 TEST_F(ExecuteStudy, TablesShowControlCharactersEscaped) {
-    Study study = read("title = \"two\\nlines\"\nseeds = [1]\n[[axis]]\nname = \"m\\u001bu\"\n[[axis.value]]\nlabel = \"a\\u001b[31m, \\\"b\\\"\"\n");
+    Study study = read(
+        "title = \"two\\nlines\"\nseeds = [1]\n[[axis]]\nname = \"m\\u001bu\"\n[[axis.value]]\nlabel = \"a\\u001b[31m, "
+        "\\\"b\\\"\"\n");
     Ledger ledger(place_, Ledger::Access::write);
     ledger.record(failed_record(study.runs[0], "a\rforce\nis not a number", Failure::numerical, collect_provenance("test", 1)));
     const auto points = point_results(study, ledger);
@@ -70,7 +75,8 @@ TEST_F(ExecuteStudy, TablesShowControlCharactersEscaped) {
         EXPECT_NE(text.find("\n\"a\\x1b[31m, \"\"b\"\"\","), std::string::npos) << text;
         EXPECT_EQ(text.find_first_of("\x1b\r"), std::string::npos) << text;
     }
-    EXPECT_NE(of_runs.find(",\"a\\x0dforce\nis not a number\","), std::string::npos) << of_runs;   // a line end may stand between quotes
+    EXPECT_NE(of_runs.find(",\"a\\x0dforce\nis not a number\","), std::string::npos)
+        << of_runs;  // a line end may stand between quotes
     EXPECT_NE(study_text(study, points).find("a\\x1b[31m"), std::string::npos);
     EXPECT_EQ(study_text(study, points).find('\x1b'), std::string::npos);
 }
@@ -81,9 +87,11 @@ TEST(CsvCell, IsQuotedWhereItMustBe) {
     EXPECT_EQ(csv_cell("\"a\""), "\"\"\"a\"\"\"");
     EXPECT_EQ(csv_cell("a\nb"), "\"a\nb\"");
     EXPECT_EQ(csv_cell("a\x1b\a"), "a\\x1b\\x07");
-    for (const std::string formula : {"=1+1", "=cmd|' /C calc'!A0", "+A1", "-A1", "-1+2", "-1/A1", "@SUM(A1)", "\t=1", "+", "-5 MPa+A1", "=HYPERLINK(1)"})
-        EXPECT_EQ(csv_cell(formula), "'" + formula);   // a spreadsheet takes none of them for a formula
-    for (const std::string plain : {"-5", "+10 %", "-5 MPa", "-1e-3 m/s", "-0.5 µm", "-5MPa", "a = b", "1-2"}) EXPECT_EQ(csv_cell(plain), plain);
+    for (const std::string formula :
+         {"=1+1", "=cmd|' /C calc'!A0", "+A1", "-A1", "-1+2", "-1/A1", "@SUM(A1)", "\t=1", "+", "-5 MPa+A1", "=HYPERLINK(1)"})
+        EXPECT_EQ(csv_cell(formula), "'" + formula);  // a spreadsheet takes none of them for a formula
+    for (const std::string plain : {"-5", "+10 %", "-5 MPa", "-1e-3 m/s", "-0.5 µm", "-5MPa", "a = b", "1-2"})
+        EXPECT_EQ(csv_cell(plain), plain);
     EXPECT_EQ(csv_cell("=\"a\",b"), "\"'=\"\"a\"\",b\"");
 }
 
@@ -97,9 +105,11 @@ TEST_F(ExecuteStudy, GivesTheSameBitsSideBySide) {
 }
 
 TEST_F(ExecuteStudy, PointsThatAreTheSameShareTheirRuns) {
-    const Study study = read("[[axis]]\nname = \"mu\"\n[[axis.value]]\nlabel = \"a\"\n[[axis.value]]\nlabel = \"b\"\nset = { material.contact.mu = 0.40 }\n");
+    const Study study = read(
+        "[[axis]]\nname = \"mu\"\n[[axis.value]]\nlabel = \"a\"\n[[axis.value]]\nlabel = \"b\"\nset = { material.contact.mu = "
+        "0.40 }\n");
     Ledger ledger(place_, Ledger::Access::write);
-    EXPECT_EQ(run(study, ledger).done, 2);   // Table 7 has mu = 0.4
+    EXPECT_EQ(run(study, ledger).done, 2);  // Table 7 has mu = 0.4
     EXPECT_EQ(point_results(study, ledger)[1].missing, 0);
 }
 
@@ -117,7 +127,7 @@ TEST_F(ExecuteStudy, AFailureIsRecordedAndDoesNotStopTheOthers) {
 
     Ledger later(place_, Ledger::Access::write);
     ended_.clear();
-    const Execution again = run(study, later);   // it would fail again
+    const Execution again = run(study, later);  // it would fail again
     EXPECT_EQ(again.found_failed, 1);
     EXPECT_EQ(again.found_done, 1);
     EXPECT_EQ(again.failed + again.done, 0);
@@ -125,7 +135,7 @@ TEST_F(ExecuteStudy, AFailureIsRecordedAndDoesNotStopTheOthers) {
     EXPECT_EQ(later.find(study.runs[0].id)->reason, record->reason);
     retry_failed_ = true;
     EXPECT_EQ(run(study, later).failed, 1);
-    EXPECT_EQ(run(study, later).found_failed, 1);   // but not twice on one ledger
+    EXPECT_EQ(run(study, later).found_failed, 1);  // but not twice on one ledger
 }
 
 TEST_F(ExecuteStudy, WhatIsSettledIsCountedOnceForEveryRun) {
@@ -133,8 +143,10 @@ TEST_F(ExecuteStudy, WhatIsSettledIsCountedOnceForEveryRun) {
     const Provenance here = collect_provenance("test", 1);
     Provenance other = here;
     other.commit += "-other";
-    std::vector<RunRecord> records{failed_record(study.runs[0], "a force is not a number", Failure::numerical, here), failed_record(study.runs[1], "no memory", Failure::other, here),
-                                   failed_record(study.runs[2], "a force is not a number", Failure::numerical, other), failed_record(study.runs[3], "", Failure::input, here)};
+    std::vector<RunRecord> records{failed_record(study.runs[0], "a force is not a number", Failure::numerical, here),
+                                   failed_record(study.runs[1], "no memory", Failure::other, here),
+                                   failed_record(study.runs[2], "a force is not a number", Failure::numerical, other),
+                                   failed_record(study.runs[3], "", Failure::input, here)};
     records[3].state = RunState::done;
     const std::set<std::string> first{study.runs[0].id}, last{study.runs[3].id};
     EXPECT_EQ(settled_runs(records, &here).failed, first);
@@ -156,7 +168,8 @@ TEST_F(ExecuteStudy, WhatIsSettledIsCountedOnceForEveryRun) {
 TEST_F(ExecuteStudy, AFailureThatAnElementHasLeftIsTakenForWhatItIs) {
     const Study study = read("seeds = [1]\n");
     Ledger ledger(place_, Ledger::Access::write);
-    const RunRecord left = failed_record(study.runs[0], "a force is not a number", Failure::numerical, collect_provenance("test", 1));
+    const RunRecord left =
+        failed_record(study.runs[0], "a force is not a number", Failure::numerical, collect_provenance("test", 1));
     std::filesystem::create_directories(ledger.run_directory(study.runs[0].id));
     folder_.write("results/runs/" + study.runs[0].id + "/run.json", to_json(left));
     EXPECT_EQ(run(study, ledger).found_failed, 1);
@@ -175,7 +188,7 @@ TEST_F(ExecuteStudy, AnInterruptedStudyGoesOn) {
     control.ended = [&](const feldspar::Run&, const RunRecord&) { stop_ = true; };
     const Execution first = execute(study.runs, ledger, control);
     EXPECT_GE(first.done, 1);
-    EXPECT_GE(first.left, 2);   // the second run had begun
+    EXPECT_GE(first.left, 2);  // the second run had begun
     EXPECT_EQ(first.done + first.left, 4);
     stop_ = false;
     const Execution second = run(study, ledger);

@@ -8,9 +8,9 @@
 #include <limits>
 #include <thread>
 
+#include "../../small_study.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/ledger.hpp"
-#include "../../small_study.hpp"
 
 namespace feldspar {
 namespace {
@@ -18,7 +18,9 @@ namespace {
 class LedgerOfAStudy : public ::testing::Test {
 protected:
     StudyFolder folder_;
-    Study study_ = parse_study("job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.5]\n", folder_ / "study.toml");
+    Study study_ =
+        parse_study("job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.5]\n",
+                    folder_ / "study.toml");
     std::filesystem::path place_ = folder_ / "results";
 
     RunRecord done(const feldspar::Run& run, double strength_Pa) const {
@@ -70,7 +72,7 @@ TEST_F(LedgerOfAStudy, ARecordIsTheSameAsAFile) {
 
 TEST_F(LedgerOfAStudy, ARunIsTakenOnceAndNeverReplaced) {
     Ledger ledger(place_, Ledger::Access::write);
-    Ledger other(place_, Ledger::Access::write);   // of the same process: alive
+    Ledger other(place_, Ledger::Access::write);  // of the same process: alive
     EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
     EXPECT_EQ(other.claim(study_.runs[0]), Ledger::Claim::others);
     ledger.release(study_.runs[0].id);
@@ -106,13 +108,13 @@ TEST_F(LedgerOfAStudy, AFailureForGoodIsKeptForTheProgramThatHadIt) {
             Ledger ledger(place_, Ledger::Access::write);
             ASSERT_EQ(ledger.claim(run, &program), Ledger::Claim::ours);
             ledger.record(failed_record(run, "a force is not a number", failure, program));
-            EXPECT_EQ(ledger.claim(run), Ledger::Claim::failed);   // what has failed here is not tried again here
+            EXPECT_EQ(ledger.claim(run), Ledger::Claim::failed);  // what has failed here is not tried again here
         }
         for (const Provenance* other : std::initializer_list<const Provenance*>{&later, &patched, nullptr}) {
             Ledger ledger(place_, Ledger::Access::write);
             EXPECT_EQ(ledger.claim(run, &program), Ledger::Claim::failed);
             EXPECT_EQ(ledger.find(run.id)->reason, "a force is not a number");
-            ASSERT_EQ(ledger.claim(run, other), Ledger::Claim::ours);   // another program's failure, or all may be tried again
+            ASSERT_EQ(ledger.claim(run, other), Ledger::Claim::ours);  // another program's failure, or all may be tried again
             ledger.record(failed_record(run, "a force is not a number", failure, program));
         }
     }
@@ -136,7 +138,7 @@ TEST_F(LedgerOfAStudy, WhatADeadProcessHadIsFree) {
     const pid_t child = fork();
     if (child == 0) {
         Ledger ledger(place_, Ledger::Access::write);
-        _exit(ledger.claim(study_.runs[0]) == Ledger::Claim::ours ? 0 : 1);   // without a word
+        _exit(ledger.claim(study_.runs[0]) == Ledger::Claim::ours ? 0 : 1);  // without a word
     }
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
@@ -154,9 +156,9 @@ TEST_F(LedgerOfAStudy, WhatASilentMachineHadIsFreeAfterAWhile) {
     EXPECT_FALSE(ledger.holds(study_.runs[0].id));
     EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);
     std::this_thread::sleep_for(std::chrono::milliseconds(150));
-    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);   // heard of a moment ago
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);  // heard of a moment ago
     raw().exec("UPDATE run SET heard = heard - 3600");
-    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);   // is watched first
+    EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);  // is watched first
     std::this_thread::sleep_for(std::chrono::milliseconds(150));
     EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
 }
@@ -176,7 +178,7 @@ TEST_F(LedgerOfAStudy, AClockThatJumpsTakesNoRunAway) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::others);
         std::this_thread::sleep_for(std::chrono::milliseconds(350));
-        EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);   // silent at last
+        EXPECT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);  // silent at last
         ledger.release(study_.runs[0].id);
     }
 }
@@ -198,12 +200,13 @@ TEST_F(LedgerOfAStudy, ANumberThatChangedOnTheDiskIsNotBelieved) {
     ASSERT_EQ(ledger.claim(study_.runs[0]), Ledger::Claim::ours);
     ledger.record(done(study_.runs[0], 4e6));
     EXPECT_TRUE(ledger.find(study_.runs[0].id));
-    for (const char* change : {"UPDATE run SET strength_Pa = 4000000.5", "UPDATE run SET strength_Pa = 4e6, verdict = 'good'", "UPDATE run SET verdict = NULL, job = ''"}) {
+    for (const char* change : {"UPDATE run SET strength_Pa = 4000000.5", "UPDATE run SET strength_Pa = 4e6, verdict = 'good'",
+                               "UPDATE run SET verdict = NULL, job = ''"}) {
         raw().exec(change);
         EXPECT_THROW((void)ledger.find(study_.runs[0].id), OutputError);
         EXPECT_THROW((void)ledger.claim(study_.runs[0]), OutputError);
     }
-    raw().exec("UPDATE run SET checksum = NULL");   // as an earlier version writes it
+    raw().exec("UPDATE run SET checksum = NULL");  // as an earlier version writes it
     EXPECT_TRUE(ledger.find(study_.runs[0].id));
 }
 
@@ -229,7 +232,7 @@ TEST_F(LedgerOfAStudy, LearnsColumnsThatAnEarlierVersionDidNotKnow) {
 }
 
 TEST_F(LedgerOfAStudy, RefusesWhatItCannotRead) {
-    EXPECT_THROW(Ledger(place_, Ledger::Access::read), InputError);   // nothing there
+    EXPECT_THROW(Ledger(place_, Ledger::Access::read), InputError);  // nothing there
     std::filesystem::create_directories(place_);
     folder_.write("results/ledger.sqlite", std::string(4096, 'x'));
     EXPECT_THROW(Ledger(place_, Ledger::Access::write), InputError);

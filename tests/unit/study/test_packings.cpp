@@ -9,10 +9,10 @@
 #include <thread>
 #include <vector>
 
+#include "../../small_study.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job.hpp"
 #include "feldspar/study/packings.hpp"
-#include "../../small_study.hpp"
 
 namespace feldspar {
 namespace {
@@ -35,18 +35,28 @@ TEST(IdentityOfASpecimen, FollowsFromEverythingThatDefinesIt) {
         [](SpecimenSpec& s) { s.outline.height_m = 0.02000000000000001; },
         [](SpecimenSpec& s) { s.outline.diameter_m = 0.02; },
         [](SpecimenSpec& s) { s.outline.flat_angle_rad = 0.3; },
-        [](SpecimenSpec& s) { s.outline.vertices_m = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}; },
-        [](SpecimenSpec& s) { s.outline.vertices_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}; },
+        [](SpecimenSpec& s) {
+            s.outline.vertices_m = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+        },
+        [](SpecimenSpec& s) {
+            s.outline.vertices_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}};
+        },
         [](SpecimenSpec& s) { s.outline.edge_labels = {"top"}; },
-        [](SpecimenSpec& s) { s.outline.edge_labels = {"to", "p"}; },
+        [](SpecimenSpec& s) {
+            s.outline.edge_labels = {"to", "p"};
+        },
         [](SpecimenSpec& s) { s.thickness_m = 0.1; },
         [](SpecimenSpec& s) { s.grain_sizes.kind = GrainSizeKind::log_normal; },
         [](SpecimenSpec& s) { s.grain_sizes.minimum_m = 0.0021; },
         [](SpecimenSpec& s) { s.grain_sizes.maximum_m = 0.0041; },
         [](SpecimenSpec& s) { s.grain_sizes.median_m = 0.003; },
         [](SpecimenSpec& s) { s.grain_sizes.log_standard_deviation = 0.2; },
-        [](SpecimenSpec& s) { s.grain_sizes.sieve = {{0.002, 0.0}, {0.004, 1.0}}; },
-        [](SpecimenSpec& s) { s.grain_sizes.sieve = {{0.002, 0.0}, {0.003, 1.0}}; },
+        [](SpecimenSpec& s) {
+            s.grain_sizes.sieve = {{0.002, 0.0}, {0.004, 1.0}};
+        },
+        [](SpecimenSpec& s) {
+            s.grain_sizes.sieve = {{0.002, 0.0}, {0.003, 1.0}};
+        },
         [](SpecimenSpec& s) { s.porosity = 0.11; },
         [](SpecimenSpec& s) { s.merge_length_m = 0.0; },
         [](SpecimenSpec& s) { s.merge_length_m = 0.0001; },
@@ -74,7 +84,7 @@ TEST(PackingsOfRuns, EachIsMadeOnceForAllWhoAsk) {
     Packings packings(4, nullptr);
     std::atomic<int> made{0};
     const auto tell = [&](const SpecimenProgress& progress) {
-        if (progress.stage == "mesh") ++made;   // told at least at the beginning of every stage
+        if (progress.stage == "mesh") ++made;  // told at least at the beginning of every stage
     };
     std::vector<std::shared_ptr<const Specimen>> got(8);
     {
@@ -98,14 +108,14 @@ TEST(PackingsOfRuns, KeepsThoseUsedLast) {
     const auto first = packings.get(small_rectangle(), 1, 1);
     const auto second = packings.get(small_rectangle(), 2, 1);
     EXPECT_EQ(packings.get(small_rectangle(), 1, 1), first);
-    (void)packings.get(small_rectangle(), 3, 1);   // the second was used longest ago
+    (void)packings.get(small_rectangle(), 3, 1);  // the second was used longest ago
     EXPECT_EQ(packings.get(small_rectangle(), 1, 1), first);
     EXPECT_NE(packings.get(small_rectangle(), 2, 1), second);
 }
 
 TEST(PackingsOfRuns, WhoeverAsksHearsOfTheMistake) {
     SpecimenSpec impossible = small_rectangle();
-    impossible.grain_sizes.minimum_m = impossible.grain_sizes.maximum_m = 1.0;   // grains larger than the specimen
+    impossible.grain_sizes.minimum_m = impossible.grain_sizes.maximum_m = 1.0;  // grains larger than the specimen
     Packings packings(2, nullptr);
     for (int time = 0; time < 2; ++time) EXPECT_THROW((void)packings.get(impossible, 1, 1), InputError);
     const std::atomic<bool> stop{true};

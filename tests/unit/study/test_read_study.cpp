@@ -4,13 +4,13 @@
 #include <cmath>
 #include <set>
 
+#include "../../small_study.hpp"
+#include "../../switched_on.hpp"
+#include "../job/broken_lines.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/job/mistakes.hpp"
 #include "feldspar/study/study.hpp"
-#include "../../small_study.hpp"
-#include "../job/broken_lines.hpp"
-#include "../../switched_on.hpp"
 
 namespace feldspar {
 namespace {
@@ -38,9 +38,13 @@ protected:
         }
         return {};
     }
-    static std::string edited(std::string text, const std::string& from, const std::string& to) { return text.replace(text.find(from), from.size(), to); }
+    static std::string edited(std::string text, const std::string& from, const std::string& to) {
+        return text.replace(text.find(from), from.size(), to);
+    }
 
-    static const ContactMaterial& contact(const Study& study, std::size_t point) { return study.points[point].job.variants.front().contact; }
+    static const ContactMaterial& contact(const Study& study, std::size_t point) {
+        return study.points[point].job.variants.front().contact;
+    }
 
     StudyFolder folder_;
 };
@@ -50,7 +54,7 @@ TEST_F(ReadStudy, WithoutAxesIsTheJobItself) {
     EXPECT_EQ(study.name, "study");
     EXPECT_EQ(study.results, std::filesystem::path("results/study"));
     ASSERT_EQ(study.points.size(), 1u);
-    ASSERT_EQ(study.runs.size(), 4u);   // packing by packing
+    ASSERT_EQ(study.runs.size(), 4u);  // packing by packing
     EXPECT_EQ(study.runs[0].seed(), 1u);
     EXPECT_EQ(study.runs[0].test().kind, methods::uniaxial_compression);
     EXPECT_EQ(study.runs[1].test().kind, methods::direct_tension);
@@ -132,7 +136,7 @@ set = { specimen.grains.diameter = { distribution = "sieve", curve = [["1 mm", 0
     EXPECT_DOUBLE_EQ(job.specimen.grain_sizes.maximum_m, 0.002);
     EXPECT_DOUBLE_EQ(job.variants.front().numerics.accuracy, 0.02);
     EXPECT_DOUBLE_EQ(job.tests[0].stop_fraction, 0.9);
-    EXPECT_DOUBLE_EQ(job.tests[1].stop_fraction, 0.7);   // keys for one kind go before those for all
+    EXPECT_DOUBLE_EQ(job.tests[1].stop_fraction, 0.7);  // keys for one kind go before those for all
     EXPECT_EQ(study.points[1].job.specimen.grain_sizes.kind, GrainSizeKind::sieve);
 }
 
@@ -193,13 +197,13 @@ TEST_F(ReadStudy, ARunIsKnownByWhatChangesItsResult) {
     const auto with = [&](const std::string& text) { return read("seeds = [1]\n" + text).runs.front().id; };
     EXPECT_EQ(with("name = \"other\"\nkeep = \"all\"\n"), id);
     EXPECT_EQ(with("[set]\ntest.snapshots = 2\n"), id);
-    EXPECT_EQ(with("[set]\nmaterial.contact.sigma_nt = \"8500 kPa\"\n"), id);   // what the preset says, in other words
-    EXPECT_EQ(with("[set]\nmodel.plane = \"stress\"\n"), id);                   // a default
+    EXPECT_EQ(with("[set]\nmaterial.contact.sigma_nt = \"8500 kPa\"\n"), id);  // what the preset says, in other words
+    EXPECT_EQ(with("[set]\nmodel.plane = \"stress\"\n"), id);                  // a default
     EXPECT_NE(with("[set]\nmaterial.contact.mu = 0.41\n"), id);
     EXPECT_NE(with("[set]\nnumerics.accuracy = \"4 %\"\n"), id);
     EXPECT_NE(with("[set]\nspecimen.width = \"13 mm\"\n"), id);
     EXPECT_NE(read("seeds = [2]\n").runs.front().id, id);
-    EXPECT_NE(read("seeds = [1]\n").runs.back().id, id);   // another test
+    EXPECT_NE(read("seeds = [1]\n").runs.back().id, id);  // another test
 }
 
 TEST_F(ReadStudy, TheResolvedJobOfARunMakesTheSameRun) {
@@ -223,17 +227,24 @@ TEST_F(ReadStudy, MistakesAreSaidWithPlaceAndSuggestion) {
 
     EXPECT_NE(mistake("axes = 1\n").suggestion().find("axis"), std::string::npos);
     EXPECT_NE(mistake("[set]\nlaboratory.UCS = \"1 MPa\"\n").allowed().find("material"), std::string::npos);
-    EXPECT_NE(mistake("[set]\ntest.brazilian.plate_mu = 0.1\n").allowed().find("direct-tension"), std::string::npos);   // the job has no such test
+    EXPECT_NE(mistake("[set]\ntest.brazilian.plate_mu = 0.1\n").allowed().find("direct-tension"),
+              std::string::npos);  // the job has no such test
     EXPECT_EQ(mistake("[set]\ntest.direct-tension = 1\n").place().key, "test.direct-tension");
     EXPECT_EQ(mistake("tests = [\"brazilian\"]\n").place().line, 2);
     EXPECT_EQ(mistake("seeds = [1, 1]\n").place().line, 2);
     EXPECT_EQ(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\nvalues = []\n").place().key, "axis[1].values");
-    EXPECT_NE(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\nvalues = [1, 1]\n").problem().find("twice"), std::string::npos);
+    EXPECT_NE(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\nvalues = [1, 1]\n").problem().find("twice"),
+              std::string::npos);
     EXPECT_NE(mistake("[[axis]]\nname = \"a\"\nkey = \"mu\"\nvalues = [1]\n").allowed().find("dotted"), std::string::npos);
-    EXPECT_EQ(mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\ntimes = \"material.contact.nothing\"\nvalues = [1]\n").place().key,
-              "material.contact.nothing");
+    EXPECT_EQ(
+        mistake("[[axis]]\nname = \"a\"\nkey = \"material.contact.mu\"\ntimes = \"material.contact.nothing\"\nvalues = [1]\n")
+            .place()
+            .key,
+        "material.contact.nothing");
     EXPECT_NE(mistake("results = \"../away\"\n").allowed().find("letters"), std::string::npos);
-    EXPECT_NE(mistake("[[axis]]\nname = \"a\"\n[[axis.value]]\nlabel = \"x\"\nseeds = [9]\n").problem().find("nothing is left to run"), std::string::npos);
+    EXPECT_NE(
+        mistake("[[axis]]\nname = \"a\"\n[[axis.value]]\nlabel = \"x\"\nseeds = [9]\n").problem().find("nothing is left to run"),
+        std::string::npos);
 }
 
 const std::string whole_study = R"(name = "trial"
@@ -283,7 +294,9 @@ TEST_F(ReadStudy, FiveMistakesAreToldInTheOrderOfLinesEachAsIfAlone) {
     for (std::size_t i = 0; i < told.size(); ++i) {
         // with broken axes there are no points, so the point that shows a mistake in [set] is not named
         const std::string message = told[i].what();
-        EXPECT_EQ(message.substr(0, message.find('\n')), wanted[i].substr(0, std::min(wanted[i].find('\n'), wanted[i].find(", with mu")))) << i;
+        EXPECT_EQ(message.substr(0, message.find('\n')),
+                  wanted[i].substr(0, std::min(wanted[i].find('\n'), wanted[i].find(", with mu"))))
+            << i;
         if (i > 0) {
             EXPECT_GT(told[i].place().line, told[i - 1].place().line);
         }
@@ -292,7 +305,8 @@ TEST_F(ReadStudy, FiveMistakesAreToldInTheOrderOfLinesEachAsIfAlone) {
 
 TEST_F(ReadStudy, MistakesOfTheJobComeBehindThoseOfTheStudy) {
     folder_.write("job.toml", edited(edited(small_job, "12 mm", "12 mn"), "5 %", "50 %"));
-    const std::vector<InputError> told = mistakes("keep = \"some\"\ntests = [\"direct\"]\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = []\n");
+    const std::vector<InputError> told =
+        mistakes("keep = \"some\"\ntests = [\"direct\"]\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = []\n");
     ASSERT_EQ(told.size(), 5u);
     for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(told[i].place().file, (folder_ / (i < 3 ? "study.toml" : "job.toml")).string());
 }
@@ -306,9 +320,10 @@ TEST_F(ReadStudy, OneBrokenLineIsOneMistake) {
 }
 
 TEST_F(ReadStudy, AMistakeInAllPointsIsToldOnce) {
-    const std::vector<InputError> found = mistakes("[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.1, -0.2, 0.3, -0.4]\n"
-                                                   "[[axis]]\nname = \"width\"\nkey = \"specimen.width\"\nvalues = [\"12 mm\", \"13 mn\"]\n");
-    ASSERT_EQ(found.size(), 3u);   // two values of mu and one width, whatever the other axis has
+    const std::vector<InputError> found = mistakes(
+        "[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.1, -0.2, 0.3, -0.4]\n"
+        "[[axis]]\nname = \"width\"\nkey = \"specimen.width\"\nvalues = [\"12 mm\", \"13 mn\"]\n");
+    ASSERT_EQ(found.size(), 3u);  // two values of mu and one width, whatever the other axis has
     EXPECT_NE(found.front().problem().find("with mu = -0.2, width = 12 mm"), std::string::npos);
 }
 
@@ -326,9 +341,10 @@ TEST(ReadStudyFile, WithoutItsJobSaysWhereItLooked) {
 TEST(ExamplesOfStudies, Read) {
     struct Example {
         const char* name;
-        std::size_t runs;   // as its first lines say
+        std::size_t runs;  // as its first lines say
     };
-    for (const auto& [name, runs] : {Example{"studies/brazilian/plates.toml", 80}, Example{"studies/softening/border.toml", 120}, Example{"studies/twins/hidden.toml", 120}, Example{"studies/twins/hidden-inner.toml", 20}})
+    for (const auto& [name, runs] : {Example{"studies/brazilian/plates.toml", 80}, Example{"studies/softening/border.toml", 120},
+                                     Example{"studies/twins/hidden.toml", 120}, Example{"studies/twins/hidden-inner.toml", 20}})
         EXPECT_EQ(read_study(std::filesystem::path(FELDSPAR_SOURCE_DIR) / name).runs.size(), runs) << name;
 }
 

@@ -1,5 +1,5 @@
-// A job run through: what is in its directory, what the listener is told, and what becomes of failures and interruptions. The program
-// itself is held to the same by tests/robustness.
+// A job run through: what is in its directory, what the listener is told, and what becomes of failures and interruptions. The
+// program itself is held to the same by tests/robustness.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "../../small_study.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/job/job.hpp"
 #include "feldspar/live/live_stream.hpp"
 #include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/run_job.hpp"
 #include "feldspar/study/study.hpp"
-#include "../../small_study.hpp"
 
 namespace feldspar {
 namespace {
@@ -35,10 +35,13 @@ public:
         if (stop_at_result != nullptr) *stop_at_result = true;
     }
     void clear() override {}
-    void broken_off(std::size_t tests, const fs::path& directory) override { broken = std::to_string(tests) + " in " + directory.filename().string(); }
+    void broken_off(std::size_t tests, const fs::path& directory) override {
+        broken = std::to_string(tests) + " in " + directory.filename().string();
+    }
 
     bool told(const std::string& part) const {
-        return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(part) != std::string::npos; });
+        return std::any_of(notes.begin(), notes.end(),
+                           [&](const std::string& note) { return note.find(part) != std::string::npos; });
     }
 
     std::vector<std::string> notes, results;
@@ -83,14 +86,16 @@ TEST_F(RunJob, LeavesEveryTestsFilesAndResultsInTheJobsOrder) {
         const std::string stem = test_stem(outcome.results[i]);
         for (const std::string& file : {"history-" + stem + ".csv", stem + ".h5"}) EXPECT_TRUE(there(file)) << file;
     }
-    for (const char* file : {"job.toml", "job-resolved.toml", "packing-s1.txt", "packing-s2.txt", "summary.json", "report.html"}) EXPECT_TRUE(there(file)) << file;
+    for (const char* file : {"job.toml", "job-resolved.toml", "packing-s1.txt", "packing-s2.txt", "summary.json", "report.html"})
+        EXPECT_TRUE(there(file)) << file;
     EXPECT_EQ(outcome.properties.values.at("UCS_Pa").seeds, (std::vector<std::uint64_t>{1, 2}));
 
     EXPECT_EQ(listener_.notes.front(), "making 2 packings");
     EXPECT_TRUE(listener_.told("results go to "));
     EXPECT_EQ(listener_.results.size(), 4u);
     EXPECT_EQ(listener_.over.size(), 4u);
-    EXPECT_NE(std::find(listener_.results.begin(), listener_.results.end(), "4/4 direct-tension, seed 2"), listener_.results.end());
+    EXPECT_NE(std::find(listener_.results.begin(), listener_.results.end(), "4/4 direct-tension, seed 2"),
+              listener_.results.end());
     EXPECT_TRUE(listener_.broken.empty());
 }
 
@@ -100,7 +105,9 @@ TEST_F(RunJob, KeepsWhatIsAskedFor) {
     listener_.expected_count = 1;
     const std::string stem = test_stem(run(job_, 1, Keep::numbers).results.front());
     for (const char* file : {"job.toml", "job-resolved.toml", "summary.json", "report.html"}) EXPECT_TRUE(there(file)) << file;
-    for (const std::string& file : {"history-" + stem + ".csv", "events-" + stem + ".csv", stem + ".h5", std::string("packing-s1.txt")}) EXPECT_FALSE(there(file)) << file;
+    for (const std::string& file :
+         {"history-" + stem + ".csv", "events-" + stem + ".csv", stem + ".h5", std::string("packing-s1.txt")})
+        EXPECT_FALSE(there(file)) << file;
     fs::remove_all(folder_ / "results");
     (void)run(job_, 1, Keep::histories);
     EXPECT_TRUE(there("history-" + stem + ".csv"));
@@ -126,7 +133,7 @@ TEST_F(RunJob, ASinglePackingTellsHowFarItIs) {
 }
 
 TEST_F(RunJob, AFailureIsListedAndTheOthersGoOn) {
-    job_.tests[0].kind = methods::biaxial;   // crushed before it is sheared
+    job_.tests[0].kind = methods::biaxial;  // crushed before it is sheared
     job_.tests[0].sigma3_Pa = 5e9;
     const JobOutcome outcome = run(job_);
     EXPECT_EQ(outcome.results.size(), 2u);
@@ -141,7 +148,7 @@ TEST_F(RunJob, AFailureIsListedAndTheOthersGoOn) {
 TEST_F(RunJob, ABoardHearsOfEveryTestAndReport) {
     LiveBoard board("granite", stop_);
     live_ = &board;
-    job_.tests[1].kind = methods::biaxial;   // crushed before it is sheared
+    job_.tests[1].kind = methods::biaxial;  // crushed before it is sheared
     job_.tests[1].sigma3_Pa = 5e9;
     (void)run(job_, 2);
     LiveStream page(board);
@@ -163,12 +170,12 @@ TEST_F(RunJob, AnInterruptionKeepsWhatHasEnded) {
     const JobOutcome outcome = run(job_);
     EXPECT_TRUE(outcome.interrupted);
     EXPECT_GE(outcome.results.size(), 1u);
-    EXPECT_LE(outcome.results.size(), 2u);   // the second had begun
+    EXPECT_LE(outcome.results.size(), 2u);  // the second had begun
     EXPECT_TRUE(there("summary.json"));
 }
 
 TEST_F(RunJob, WhatIsWrongShowsBeforeThereIsADirectory) {
-    job_.variants.front().numerics.mass_factor = 1e-3;   // unstable
+    job_.variants.front().numerics.mass_factor = 1e-3;  // unstable
     EXPECT_THROW((void)run(job_), InputError);
     EXPECT_FALSE(fs::exists(folder_ / "results"));
     stop_ = true;
@@ -192,7 +199,7 @@ TEST_F(RunJob, ADirectoryThatVanishesEndsAll) {
     control.listener = &vanishing;
     EXPECT_THROW((void)run_job(job_, control), OutputError);
     EXPECT_EQ(vanishing.broken, "1 in results");
-    EXPECT_TRUE(stop_);   // what ran was asked to end
+    EXPECT_TRUE(stop_);  // what ran was asked to end
 }
 
 /// small_job on cells of a file, one test.
@@ -204,7 +211,8 @@ std::string job_on(const std::string& file, const std::string& more) {
         text.replace(at, from.size(), to);
     };
     replace("shape = \"rectangle\"\nwidth = \"12 mm\"\nheight = \"24 mm\"", "shape = \"from-file\"");
-    replace("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }", "file = \"" + file + "\"\n" + more);
+    replace("diameter = { distribution = \"uniform\", minimum = \"2 mm\", maximum = \"4 mm\" }",
+            "file = \"" + file + "\"\n" + more);
     replace("[[test]]\nkind = \"direct-tension\"\n", "");
     replace("seeds = [1, 2]", "seeds = [1]");
     return text;
@@ -216,9 +224,11 @@ TEST_F(RunJob, OnCellsOfAFileBreaksThemByTheSameBitsInEveryFormat) {
     const Specimen made = make_specimen(packed, 1);
     std::string first;
     std::set<std::string> ids;
-    for (const auto& [format, file] : {std::pair{CellFormat::tess, "cells.tess"}, {CellFormat::msh, "cells.msh"}, {CellFormat::csv, "cells.csv"}}) {
+    for (const auto& [format, file] :
+         {std::pair{CellFormat::tess, "cells.tess"}, {CellFormat::msh, "cells.msh"}, {CellFormat::csv, "cells.csv"}}) {
         folder_.write(file, cells_as_text(made, format));
-        folder_.write("on-cells.toml", job_on(file, std::string(format == CellFormat::csv ? "" : "unit = \"m\"\n") + "merge_length = \"none\""));
+        folder_.write("on-cells.toml",
+                      job_on(file, std::string(format == CellFormat::csv ? "" : "unit = \"m\"\n") + "merge_length = \"none\""));
         const Job job = read_job(folder_ / "on-cells.toml");
         ids.insert(study_of(job, "study", "results").runs.front().id);
         run(job);
@@ -257,8 +267,12 @@ TEST_F(RunJob, OnAHandWrittenTessellationBreaks) {
     }
     const auto median = [](const std::string& text) { return std::stod(text.substr(text.find("\"median\"") + 9)); };
     EXPECT_GT(median(files[0]), 20.0);
-    EXPECT_LT(median(files[0]), 600.0);   // a regular honeycomb, pressed along a third of its edges, is much stronger than a rock of the same contacts
-    EXPECT_NEAR(median(files[1]), median(files[0]), 0.05 * median(files[0]));   // corners begin elsewhere where edges are equally long: other bits, the same rock to the accuracy of 5 %
+    EXPECT_LT(
+        median(files[0]),
+        600.0);  // a regular honeycomb, pressed along a third of its edges, is much stronger than a rock of the same contacts
+    EXPECT_NEAR(median(files[1]), median(files[0]),
+                0.05 * median(files[0]));  // corners begin elsewhere where edges are equally long: other bits, the same rock to
+                                           // the accuracy of 5 %
     EXPECT_NEAR(median(files[2]), median(files[0]), 0.05 * median(files[0]));
 }
 

@@ -18,7 +18,7 @@
 namespace feldspar {
 namespace {
 
-constexpr int small = 100, large = 30000;   // bodies: many small tests go together, a large one runs alone
+constexpr int small = 100, large = 30000;  // bodies: many small tests go together, a large one runs alone
 
 /// A result that says whose it is.
 TestResult result_of(std::size_t run) {
@@ -107,7 +107,9 @@ using Numbers = std::vector<std::size_t>;
 
 class ScheduleOfRuns : public ::testing::Test {
 protected:
-    std::size_t run(std::size_t count, int threads, int at_once = 0) { return run_in_order(count, Sharing(at_once, threads), stop_, sink_); }
+    std::size_t run(std::size_t count, int threads, int at_once = 0) {
+        return run_in_order(count, Sharing(at_once, threads), stop_, sink_);
+    }
 
     /// A run that ends when it is asked to stop.
     RunningTests::Work until_stopped(std::size_t number) {
@@ -145,7 +147,7 @@ TEST_F(ScheduleOfRuns, AResultIsTakenWhenTheNextRunHasBegun) {
     EXPECT_EQ(run(3, 1), 0u);
     EXPECT_LT(sink_.place("begin", 1), sink_.place("finished", 0));
     EXPECT_LT(sink_.place("begin", 2), sink_.place("finished", 1));
-    EXPECT_LT(sink_.place("finished", 0), sink_.place("begin", 2));   // but before the one after that
+    EXPECT_LT(sink_.place("finished", 0), sink_.place("begin", 2));  // but before the one after that
 }
 
 TEST_F(ScheduleOfRuns, AFailureIsToldAndTheOthersGoOn) {
@@ -160,7 +162,8 @@ TEST_F(ScheduleOfRuns, AFailureIsToldAndTheOthersGoOn) {
 }
 
 TEST_F(ScheduleOfRuns, ResultsAndFailuresComeInTheOrderInWhichRunsEnd) {
-    for (std::size_t i = 0; i < 30; i += 3) sink_.work[i] = [](const RunControl&) -> TestResult { throw NumericalError("a force is not a number"); };
+    for (std::size_t i = 0; i < 30; i += 3)
+        sink_.work[i] = [](const RunControl&) -> TestResult { throw NumericalError("a force is not a number"); };
     EXPECT_EQ(run(30, 3), 0u);
     EXPECT_EQ(sink_.who("ended"), sink_.taken());
     EXPECT_EQ(sink_.taken().size(), 30u);
@@ -228,7 +231,7 @@ TEST_F(ScheduleOfRuns, ThreadsAreSharedOutAndFreeOnesHandedOn) {
     };
     sink_.work[1] = [&](const RunControl& control) {
         second = control.threads;
-        EXPECT_TRUE(comes_true([&] { return *control.more_threads == 4; }));   // when the other has ended
+        EXPECT_TRUE(comes_true([&] { return *control.more_threads == 4; }));  // when the other has ended
         return result_of(1);
     };
     EXPECT_EQ(run(2, 4), 0u);

@@ -1,4 +1,5 @@
-// What goes to a Slurm cluster: groups, estimates, the plan on disk and its scripts. (In a fixture, Run alone is a function of GoogleTest.)
+// What goes to a Slurm cluster: groups, estimates, the plan on disk and its scripts. (In a fixture, Run alone is a function of
+// GoogleTest.)
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -102,7 +103,7 @@ TEST_F(SlurmPlanTest, TimesOfLikeRunsReplaceTheDefaults) {
 
 TEST_F(SlurmPlanTest, IsOnDiskWithEverythingThatAnElementNeeds) {
     SlurmOptions options;
-    options.group_minutes = 1e-6;   // every run by itself
+    options.group_minutes = 1e-6;  // every run by itself
     options.cpus = 2;
     const SlurmPlan plan = write_plan(study_.results, study_, runs_, TimeEstimate{}, options, "/opt/feldspar");
     EXPECT_EQ(plan.groups.size(), study_.runs.size());
@@ -117,7 +118,7 @@ TEST_F(SlurmPlanTest, IsOnDiskWithEverythingThatAnElementNeeds) {
     EXPECT_EQ(read.keep, Keep::histories);
     EXPECT_TRUE(read.array_job.empty());
 
-    for (const feldspar::Run& run : study_.runs) {   // the same run comes back from its file
+    for (const feldspar::Run& run : study_.runs) {  // the same run comes back from its file
         const Job job = read_job(plan.job_file(run.id));
         EXPECT_EQ(make_run(job, job.variants.front(), job.tests.front(), job.seeds.front()).id, run.id);
     }
@@ -143,10 +144,10 @@ TEST_F(SlurmPlanTest, ScriptsSayWhatTheUserAsked) {
     options.sbatch = "--mem=2G --constraint=\"avx512\"";
     const SlurmPlan plan = write_plan(study_.results, study_, runs_, TimeEstimate{}, options, "/opt/it's here/feldspar");
     const std::string array = read_text(plan.directory / "array.sh"), gather = read_text(plan.directory / "gather.sh");
-    for (const char* line :
-         {"#SBATCH --partition=short\n", "#SBATCH --account=rock\n", "#SBATCH --time=0:30:00\n", "#SBATCH --mem=2G --constraint=\"avx512\"\n",
-          "#SBATCH --array=0-5%8\n", "#SBATCH --cpus-per-task=4\n", "#SBATCH --job-name=feldspar-small-study\n", "#SBATCH --requeue\n",
-          "exec '/opt/it'\\''s here/feldspar' study element . \"$SLURM_ARRAY_TASK_ID\"\n"})
+    for (const char* line : {"#SBATCH --partition=short\n", "#SBATCH --account=rock\n", "#SBATCH --time=0:30:00\n",
+                             "#SBATCH --mem=2G --constraint=\"avx512\"\n", "#SBATCH --array=0-5%8\n",
+                             "#SBATCH --cpus-per-task=4\n", "#SBATCH --job-name=feldspar-small-study\n", "#SBATCH --requeue\n",
+                             "exec '/opt/it'\\''s here/feldspar' study element . \"$SLURM_ARRAY_TASK_ID\"\n"})
         EXPECT_NE(array.find(line), std::string::npos) << line << array;
     for (const char* line : {"#SBATCH --partition=short\n", "#SBATCH --cpus-per-task=1\n", "study gather ../..\n"})
         EXPECT_NE(gather.find(line), std::string::npos) << line << gather;

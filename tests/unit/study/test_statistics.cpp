@@ -16,7 +16,7 @@ TEST(Statistics, IntervalOfAMeanFollowsStudent) {
     EXPECT_EQ(interval.count, 5);
     EXPECT_DOUBLE_EQ(interval.mean, 10.0);
     EXPECT_NEAR(interval.standard_deviation, 1.0, 1e-14);
-    EXPECT_NEAR(interval.half_width(), 2.7764451 / std::sqrt(5.0), 1e-7);   // seven digits of the table
+    EXPECT_NEAR(interval.half_width(), 2.7764451 / std::sqrt(5.0), 1e-7);  // seven digits of the table
     EXPECT_NEAR(interval.low, 10.0 - interval.half_width(), 1e-14);
 }
 
