@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -16,7 +17,7 @@
 
 namespace feldspar {
 
-/// How a statement is decided. Every rule makes one number a packing, and judges the 95 % interval of their mean.
+/// How a statement is decided. Every rule makes one number a packing, and judges the 95 % interval of their mean (decide.hpp).
 enum class Rule {
     greater,            ///< first minus second, same packing: above 0
     rises_with,         ///< each step along an axis, and its ends: above 0
@@ -70,6 +71,7 @@ struct Statement {
     Selection third;                      ///< between, closer
     Selection where;                      ///< only these labels of the axes
     Bound bound;                          ///< negligible, matters, linear_with, within
+    Bound no_difference;                  ///< a smaller one is none; not-a-number: none is looked for
     double number = std::numeric_limits<double>::quiet_NaN();  ///< above, below, within; SI
     int packings = 5;                                          ///< at least so many
     bool has_second = false;                                   ///< `second` was given
@@ -125,7 +127,7 @@ void add_results(StudiesByName& studies);
 /// Adds the ledger's numbers of uniaxial, direct tension and Brazilian runs to a point's properties.
 void add_run_numbers(PointResults& point, std::span<const RunRecord> records);
 
-enum class Verdict { reproduced, contradicted, in_part, undecided, not_run, not_evaluated };
+enum class Verdict { reproduced, contradicted, no_difference, in_part, undecided, not_run, not_evaluated };
 
 const char* name(Verdict verdict);
 
@@ -135,6 +137,8 @@ struct Comparison {
     std::string unit;       ///< of the interval: "MPa", "%", "deg" or nothing
     MeanInterval interval;  ///< in that unit; its count is the number of packings
     Verdict verdict = Verdict::undecided;
+    double nothing = std::numeric_limits<double>::quiet_NaN();  ///< below which a difference is none, in the interval's unit
+    std::optional<int> packings_to_decide{};                    ///< of one that is undecided (decide.hpp)
 };
 
 struct StatementResult {
@@ -159,9 +163,9 @@ struct ClaimResult {
 /// Decides a claim that check_claims() has let pass.
 ClaimResult evaluate(const Claim& claim, const StudiesByName& studies);
 
-/// One verdict for several: in part, if some are reproduced and some contradicted; contradicted, if some are and none is
-/// reproduced. If none is contradicted: not run, if any is; reproduced, only if all are; not evaluated, if all are; else
-/// undecided.
+/// One verdict for several: in part, if some are reproduced and others contradicted or without a difference; contradicted, if
+/// some are and none is reproduced. Otherwise: not run, if any is; reproduced, no difference, not evaluated, only if all are;
+/// else undecided.
 Verdict together(std::span<const Verdict> verdicts);
 
 /// A line for each comparison.

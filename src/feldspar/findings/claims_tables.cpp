@@ -8,12 +8,13 @@
 
 #include "feldspar/base/counted.hpp"
 #include "feldspar/findings/claims.hpp"
+#include "feldspar/findings/decide.hpp"
 #include "feldspar/study/study_table.hpp"
 
 namespace feldspar {
 namespace {
 
-constexpr Verdict all_verdicts[] = {Verdict::reproduced, Verdict::contradicted, Verdict::in_part,
+constexpr Verdict all_verdicts[] = {Verdict::reproduced, Verdict::contradicted, Verdict::no_difference, Verdict::in_part,
                                     Verdict::undecided,  Verdict::not_run,      Verdict::not_evaluated};
 
 /// "11 of 12 reproduced, 1 undecided"
@@ -59,7 +60,18 @@ std::string rule_text(const Statement& statement) {
     if (std::isfinite(statement.bound.size))
         text += statement.bound.relative ? fmt::format(", bound {:g} %", 100.0 * statement.bound.size)
                                          : fmt::format(", bound {:g}", statement.bound.size);
+    const Bound& none = statement.no_difference;
+    if (std::isfinite(none.size))
+        text +=
+            none.relative ? fmt::format(", none below {:g} %", 100.0 * none.size) : fmt::format(", none below {:g}", none.size);
     return text;
+}
+
+/// "about 34 packings would decide it", of what is undecided; else nothing.
+std::string still_needed(const Comparison& c) {
+    if (c.verdict != Verdict::undecided || c.interval.count < 2) return "";
+    if (c.packings_to_decide) return fmt::format("about {} packings would decide it", *c.packings_to_decide);
+    return fmt::format("more than {} packings would be needed", most_packings);
 }
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-"; }
@@ -79,7 +91,7 @@ std::string csv_number(double value) { return std::isfinite(value) ? fmt::format
 std::string claims_csv(std::span<const ClaimResult> results) {
     std::string text =
         "claim,figure,claim_verdict,statement,study,votes,statement_verdict,runs,missing,failed,rule,compared,mean,low,high,unit,"
-        "packings,verdict\n";
+        "packings,verdict,packings_to_decide\n";
     for (const ClaimResult& claim : results)
         for (const StatementResult& s : claim.statements) {
             const std::string head =
@@ -87,11 +99,12 @@ std::string claims_csv(std::span<const ClaimResult> results) {
                             name(claim.verdict), csv_cell(s.statement.says), csv_cell(s.study), s.votes ? "yes" : "no",
                             name(s.verdict), s.runs, s.missing, s.failed);
             if (!s.statement.not_evaluated.empty())
-                text += fmt::format("{},,{},,,,,,{}\n", head, csv_cell(s.statement.not_evaluated), name(s.verdict));
+                text += fmt::format("{},,{},,,,,,{},\n", head, csv_cell(s.statement.not_evaluated), name(s.verdict));
             for (const Comparison& c : s.comparisons)
-                text += fmt::format("{},{},{},{},{},{},{},{},{}\n", head, csv_cell(rule_text(s.statement)), csv_cell(c.what),
+                text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", head, csv_cell(rule_text(s.statement)), csv_cell(c.what),
                                     csv_number(c.interval.mean), csv_number(c.interval.low), csv_number(c.interval.high), c.unit,
-                                    c.interval.count, name(c.verdict));
+                                    c.interval.count, name(c.verdict),
+                                    c.packings_to_decide ? fmt::format("{}", *c.packings_to_decide) : "");
         }
     return text;
 }
@@ -110,8 +123,12 @@ std::string claims_text(std::span<const ClaimResult> results) {
             const std::string lack = lacking(s);
             text += fmt::format("    {}{}: {} ({}){}; {}\n", s.study, s.votes ? "" : " (no vote)", name(s.verdict), tally(s),
                                 lack.empty() ? "" : ", " + lack, rule_text(s.statement));
-            for (const Comparison& c : s.comparisons)
-                if (c.interval.count > 0) text += fmt::format("      {:14} {}: {}\n", name(c.verdict), c.what, interval_text(c));
+            for (const Comparison& c : s.comparisons) {
+                if (c.interval.count == 0) continue;
+                const std::string more = still_needed(c);
+                text += fmt::format("      {:14} {}: {}{}\n", name(c.verdict), c.what, interval_text(c),
+                                    more.empty() ? "" : "; " + more);
+            }
         }
         text += "\n";
     }
@@ -145,9 +162,10 @@ std::string claims_markdown(const ClaimList& list, std::span<const ClaimResult> 
                 s.statement.says, name(s.verdict), tally(s), lack.empty() ? "" : ", " + lack, s.study,
                 s.votes ? "" : " (shown beside, without a vote)", rule_text(s.statement));
             for (const Comparison& c : s.comparisons)
-                text += fmt::format("| {} | {}{} | {} to {} | {} | {} |\n", c.what, number(c.interval.mean),
-                                    c.unit.empty() ? "" : " " + c.unit, number(c.interval.low), number(c.interval.high),
-                                    c.interval.count, name(c.verdict));
+                text += fmt::format(
+                    "| {} | {}{} | {} to {} | {} | {} |\n", c.what, number(c.interval.mean), c.unit.empty() ? "" : " " + c.unit,
+                    number(c.interval.low), number(c.interval.high), c.interval.count,
+                    still_needed(c).empty() ? name(c.verdict) : fmt::format("{}; {}", name(c.verdict), still_needed(c)));
         }
     }
     return text;

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "feldspar/findings/claims.hpp"
+#include "feldspar/findings/decide.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -16,27 +17,6 @@ namespace {
 
 using BySeed = std::map<std::uint64_t, double>;
 using Labels = std::vector<std::string>;  // of a point, one for each axis
-
-/// What an interval is held against.
-struct Target {
-    enum class Kind { above, below, inside, outside } kind = Kind::above;
-    double limit = 0.0;  ///< inside and outside: -limit ... limit
-
-    Verdict operator()(const MeanInterval& interval) const {
-        if (!std::isfinite(interval.low) || !std::isfinite(interval.high)) return Verdict::undecided;
-        const bool in = interval.low > -limit && interval.high < limit;
-        const bool out = interval.low > limit || interval.high < -limit;
-        const bool yes = kind == Kind::above    ? interval.low > limit
-                         : kind == Kind::below  ? interval.high < limit
-                         : kind == Kind::inside ? in
-                                                : out;
-        const bool no = kind == Kind::above    ? interval.high < limit
-                        : kind == Kind::below  ? interval.low > limit
-                        : kind == Kind::inside ? out
-                                               : in;
-        return yes ? Verdict::reproduced : no ? Verdict::contradicted : Verdict::undecided;
-    }
-};
 
 /// The unit in which a quantity is shown, and the factor from SI.
 struct Shown {
@@ -52,6 +32,8 @@ Shown shown_as(const Quantity& quantity) {
 }
 
 const Shown percent{"%", 100.0};
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 BySeed paired_by(const BySeed& first, const BySeed& second, const std::function<double(double, double)>& f) {
     BySeed result;
@@ -83,6 +65,8 @@ BySeed scaled(const BySeed& by_seed, double factor) {
     return result;
 }
 
+double middle(const BySeed& first, const BySeed& second) { return 0.5 * (mean_of(first) + mean_of(second)); }
+
 double sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
 
 /// One statement on one study.
@@ -97,6 +81,7 @@ public:
 
     StatementResult run() {
         for (const Labels& base : combinations()) compare(base);
+        decide_all();
         for (const std::size_t point : seen_) count_runs(point, result_.runs, result_.missing, result_.failed);
         std::vector<Verdict> verdicts;
         for (const Comparison& comparison : result_.comparisons) verdicts.push_back(comparison.verdict);
@@ -218,18 +203,48 @@ private:
         }
     }
 
-    /// Judges one number a packing. The points that it came from are those read since the last call.
-    void judge(const std::string& what, const BySeed& by_seed, const Shown& shown, Target target) {
+    /// Takes one number a packing to be judged. The points that it came from are those read since the last call.
+    /// @param size_of_value  the value of which a bound is a share
+    void judge(const std::string& what, const BySeed& by_seed, const Shown& shown, Target target, double size_of_value = nan) {
         Comparison comparison{what, shown.unit, mean_interval(values_of(scaled(by_seed, shown.factor))), Verdict::undecided};
         target.limit *= shown.factor;
+        const Bound& none = statement_.no_difference;
+        comparison.nothing = shown.factor * none.size * (none.relative ? std::abs(size_of_value) : 1.0);
         int runs = 0, missing = 0, failed = 0;
         for (const std::size_t point : here_) count_runs(point, runs, missing, failed);
         here_.clear();
-        if (comparison.interval.count >= statement_.packings)
-            comparison.verdict = target(comparison.interval);
-        else if (missing > 0)
-            comparison.verdict = Verdict::not_run;
+        if (comparison.interval.count < statement_.packings && missing > 0) comparison.verdict = Verdict::not_run;
         result_.comparisons.push_back(std::move(comparison));
+        targets_.push_back(target);
+    }
+
+    /// All comparisons must agree for a statement to be reproduced, so each is found by itself. One alone may contradict it: what
+    /// contradicts must hold together with all others.
+    void decide_all() {
+        std::vector<std::size_t> enough;
+        std::vector<double> chances;
+        for (std::size_t c = 0; c < targets_.size(); ++c) {
+            if (result_.comparisons[c].interval.count < statement_.packings) continue;
+            enough.push_back(c);
+            chances.push_back(chance_of_no(result_.comparisons[c].interval, targets_[c]));
+        }
+        const std::vector<bool> hold = hold_together(chances, 0.025);
+        for (std::size_t k = 0; k < enough.size(); ++k) {
+            Comparison& comparison = result_.comparisons[enough[k]];
+            if (decide(comparison.interval, targets_[enough[k]]) == Finding::yes)
+                comparison.verdict = Verdict::reproduced;
+            else if (hold[k])
+                comparison.verdict = Verdict::contradicted;
+            else if (is_nothing(comparison.interval, comparison.nothing))
+                comparison.verdict = Verdict::no_difference;
+        }
+        for (std::size_t c = 0; c < targets_.size(); ++c) {
+            Comparison& comparison = result_.comparisons[c];
+            if (comparison.verdict != Verdict::undecided) continue;
+            comparison.packings_to_decide = packings_to_decide(comparison.interval, targets_[c], comparison.nothing);
+            if (comparison.packings_to_decide)
+                comparison.packings_to_decide = std::max(*comparison.packings_to_decide, statement_.packings);
+        }
     }
 
     /// The free labels and what is compared there, in words.
@@ -291,7 +306,7 @@ private:
         const BySeed first = values(with(base, statement_.first.selection), quantity),
                      second = values(with(base, statement_.second.selection), quantity);
         judge(words(base, words(statement_.first.selection) + " less " + words(statement_.second.selection)),
-              difference(first, second), shown_as(quantity), {});
+              difference(first, second), shown_as(quantity), {}, middle(first, second));
     }
 
     void compare_steps(const Labels& base) {
@@ -319,7 +334,7 @@ private:
         const Rule rule = statement_.rule;
         if (rule == Rule::rises_with || rule == Rule::falls_with)
             return judge(what, difference(after, before), shown_as(side.quantity),
-                         {rule == Rule::rises_with ? above : below, 0.0});
+                         {rule == Rule::rises_with ? above : below, 0.0}, middle(before, after));
         const Target target{rule == Rule::negligible ? inside : outside, statement_.bound.size};
         if (statement_.bound.relative)
             judge(what, relative_change(before, after), percent, target);
@@ -344,7 +359,7 @@ private:
         const double s1 = sign(mean_of(first)), s2 = sign(mean_of(second));
         const BySeed surplus = paired_by(first, second, [=](double a, double b) { return s1 * a - s2 * b; });
         const std::string what = words(statement_.first, from, to) + " against " + words(statement_.second, than_from, than_to);
-        judge(words(base, what), surplus, percent, {});
+        judge(words(base, what), surplus, percent, {}, 1.0);
     }
 
     void compare_line(const Labels& base) {
@@ -383,10 +398,10 @@ private:
         const auto less = [](const std::string& a, const std::string& b) { return a + " less " + b; };
         const std::set<std::size_t> here = here_;
         judge(words(base, up > 0.0 ? less(first, second) : less(second, first)), scaled(difference(v.first, v.second), up),
-              shown_as(quantity), {});
+              shown_as(quantity), {}, middle(v.first, v.second));
         here_ = here;
         judge(words(base, up > 0.0 ? less(third, first) : less(first, third)), scaled(difference(v.third, v.first), up),
-              shown_as(quantity), {});
+              shown_as(quantity), {}, middle(v.third, v.first));
     }
 
     void compare_distances(const Labels& base) {
@@ -397,7 +412,8 @@ private:
         const std::string first = words(statement_.first.selection);
         judge(words(base,
                     fmt::format("{} from {} less from {}", first, words(statement_.third), words(statement_.second.selection))),
-              difference(distance(v.first, v.third), distance(v.first, v.second)), shown_as(statement_.first.quantity), {});
+              difference(distance(v.first, v.third), distance(v.first, v.second)), shown_as(statement_.first.quantity), {},
+              mean_of(v.first));
     }
 
     void compare_value(const Labels& base) {
@@ -432,8 +448,9 @@ private:
     const StudyResults& results_;
     StatementResult result_;
     std::map<Labels, std::size_t> points_;
-    std::set<std::size_t> here_;  // points of the comparison in hand
-    std::set<std::size_t> seen_;  // of the statement
+    std::vector<Target> targets_;  // of the comparisons of result_
+    std::set<std::size_t> here_;   // points of the comparison in hand
+    std::set<std::size_t> seen_;   // of the statement
 };
 
 StatementResult not_evaluated(const Statement& statement) {
@@ -456,6 +473,8 @@ const char* name(Verdict verdict) {
             return "reproduced";
         case Verdict::contradicted:
             return "contradicted";
+        case Verdict::no_difference:
+            return "no difference";
         case Verdict::in_part:
             return "in part";
         case Verdict::undecided:
@@ -474,10 +493,11 @@ Verdict together(std::span<const Verdict> verdicts) {
         return std::all_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) { return verdict == wanted; });
     };
     if (verdicts.empty()) return Verdict::undecided;
-    if (any(Verdict::in_part) || (any(Verdict::contradicted) && any(Verdict::reproduced))) return Verdict::in_part;
+    const bool denied = any(Verdict::contradicted) || any(Verdict::no_difference);
+    if (any(Verdict::in_part) || (denied && any(Verdict::reproduced))) return Verdict::in_part;
     if (any(Verdict::contradicted)) return Verdict::contradicted;
     if (any(Verdict::not_run)) return Verdict::not_run;
-    for (const Verdict verdict : {Verdict::reproduced, Verdict::not_evaluated})
+    for (const Verdict verdict : {Verdict::reproduced, Verdict::no_difference, Verdict::not_evaluated})
         if (all(verdict)) return verdict;
     return Verdict::undecided;
 }

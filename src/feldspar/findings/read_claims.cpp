@@ -11,32 +11,33 @@ namespace feldspar {
 namespace {
 
 constexpr std::string_view statement_keys[] = {
-    "says",    "study", "also",   "rule",     "property",     "also_property", "first",     "second",
-    "third",   "where", "axis",   "from",     "to",           "than_property", "than_axis", "than_from",
-    "than_to", "bound", "number", "packings", "not_evaluated"};
+    "says",    "study", "also",   "rule",          "property", "also_property", "first",     "second",
+    "third",   "where", "axis",   "from",          "to",       "than_property", "than_axis", "than_from",
+    "than_to", "bound", "number", "no_difference", "packings", "not_evaluated"};
 
 /// Which keys a rule needs, beside study and property.
 struct Needs {
     bool second = false, third = false, axis = false, bound = false, number = false;
     bool may_second = false, may_number = false, may_than = false;
+    bool compares = false;  // which of two is larger; it may turn out that neither is
 };
 
 Needs needs_of(Rule rule) {
     switch (rule) {
         case Rule::greater:
-            return {.second = true};
+            return {.second = true, .compares = true};
         case Rule::rises_with:
         case Rule::falls_with:
-            return {.axis = true};
+            return {.axis = true, .compares = true};
         case Rule::negligible:
         case Rule::matters:
         case Rule::linear_with:
             return {.axis = true, .bound = true};
         case Rule::influence_greater:
-            return {.axis = true, .may_second = true, .may_than = true};
+            return {.axis = true, .may_second = true, .may_than = true, .compares = true};
         case Rule::between:
         case Rule::closer:
-            return {.second = true, .third = true};
+            return {.second = true, .third = true, .compares = true};
         case Rule::above:
         case Rule::below:
             return {.number = true, .may_second = true};
@@ -89,9 +90,15 @@ std::string read_label(const TableReader& table, std::string_view key) {
     return table.has(key) ? label_of(table, *table.find(key), key) : std::string();
 }
 
+/// Text is a share, a number an amount.
+Bound read_bound(const TableReader& table, std::string_view key) {
+    return {.size = table.fraction(key, positive), .relative = table.find(key)->is_string()};
+}
+
 class StatementReader {
 public:
-    explicit StatementReader(const TableReader& table) : table_(table) {
+    /// @param usual  what the file calls no difference, of statements that do not say it
+    StatementReader(const TableReader& table, const Bound& usual) : table_(table), usual_(usual) {
         statement_.lines[""] = table.line();
         for (const std::string_view key : statement_keys)
             if (table.has(key)) statement_.lines[std::string(key)] = static_cast<int>(table.find(key)->source().begin.line);
@@ -102,7 +109,7 @@ public:
         if (table_.has("not_evaluated")) {
             statement_.not_evaluated = table_.text("not_evaluated");
             table_.refuse({"study", "also", "rule", "property", "also_property", "first", "second", "third", "where", "axis",
-                           "bound", "number"},
+                           "bound", "number", "no_difference"},
                           "not_evaluated");
             return statement_;
         }
@@ -146,6 +153,7 @@ private:
         need(needs.axis, false, "axis");
         need(needs.bound, false, "bound");
         need(needs.number, needs.may_number, "number");
+        need(false, needs.compares, "no_difference");
         if (table_.has("second")) table_.require({"first"});
         for (const std::string_view key : {"from", "to"}) need(false, needs.may_than || statement_.rule == Rule::matters, key);
         for (const std::string_view key : {"than_property", "than_axis", "than_from", "than_to"})
@@ -183,12 +191,13 @@ private:
     void read_numbers() {
         statement_.packings = static_cast<int>(table_.integer("packings", 2, 1000, 5));
         if (table_.has("bound")) {
-            statement_.bound.relative = table_.find("bound")->is_string();
-            statement_.bound.size = table_.fraction("bound", positive);
+            statement_.bound = read_bound(table_, "bound");
             const Rule rule = statement_.rule;
             if (!statement_.bound.relative && rule == Rule::linear_with)
                 table_.fail("bound", "must be a share of the change over the axis", "text such as \"10 %\"");
         }
+        if (needs_of(statement_.rule).compares)
+            statement_.no_difference = table_.has("no_difference") ? read_bound(table_, "no_difference") : usual_;
         if (!table_.has("number")) return;
         const bool stress = statement_.first.quantity.property.ends_with("_Pa") && statement_.first.quantity.divisor.empty() &&
                             !statement_.has_second;
@@ -198,14 +207,15 @@ private:
     }
 
     TableReader table_;
+    Bound usual_;
     Statement statement_;
 };
 
-Claim read_claim(const TableReader& table) {
+Claim read_claim(const TableReader& table, const Bound& no_difference) {
     table.require({"id", "figure", "says", "statement"});
     Claim claim{table.text("id"), table.text("figure"), table.text("says"), {}};
     for (const TableReader& statement : table.tables("statement", "a statement", statement_keys))
-        claim.statements.push_back(StatementReader(statement).read());
+        claim.statements.push_back(StatementReader(statement, no_difference).read());
     return claim;
 }
 
@@ -243,12 +253,18 @@ const char* name(Rule rule) {
 
 ClaimList parse_claims(const std::string& text, const std::filesystem::path& file) {
     const toml::table tree = parse_toml(text, file.string());
-    const TableReader root(tree, "", file.string(), {"title", "source", "claim"});
+    const TableReader root(tree, "", file.string(), {"title", "source", "no_difference", "claim"});
     root.require({"title", "source", "claim"});
     ClaimList list{file, root.text("title"), root.text("source"), {}};
+    Bound no_difference;
+    if (root.has("no_difference")) {
+        no_difference = read_bound(root, "no_difference");
+        if (!no_difference.relative)
+            root.fail("no_difference", "an amount cannot hold for all properties", "a share, such as \"2 %\"");
+    }
     std::set<std::string> ids;
     for (const TableReader& table : root.tables("claim", "a claim", {"id", "figure", "says", "statement"})) {
-        list.claims.push_back(read_claim(table));
+        list.claims.push_back(read_claim(table, no_difference));
         if (!ids.insert(list.claims.back().id).second)
             table.fail("id", "'" + list.claims.back().id + "' is the id of another claim", "each claim its own");
     }

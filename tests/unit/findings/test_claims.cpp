@@ -89,6 +89,59 @@ TEST(Claims, GreaterIsDecidedOnPairedDifferences) {
     EXPECT_EQ(judged(flexible_greater, two_models(0.05e6)).verdict, Verdict::undecided);
 }
 
+TEST(Claims, ADifferenceMayBeFoundToBeNone) {
+    const std::string none = "no_difference = \"1 %\"\n";  // of 100 MPa; noise of 0.1 MPa is far below it
+    const StatementResult zero = judged(flexible_greater + none, two_models(0.0));
+    EXPECT_EQ(zero.verdict, Verdict::no_difference);
+    EXPECT_NEAR(zero.comparisons[0].nothing, 1.0, 0.02) << "MPa";
+    EXPECT_FALSE(zero.comparisons[0].packings_to_decide);
+    EXPECT_EQ(judged(flexible_greater, two_models(0.0)).verdict, Verdict::undecided) << "nothing is said of it";
+    EXPECT_EQ(judged(flexible_greater + none, two_models(0.5e6)).verdict, Verdict::reproduced) << "small, but above zero";
+    EXPECT_EQ(judged(flexible_greater + "no_difference = 5e3\n", two_models(0.0)).verdict, Verdict::undecided) << "0.005 MPa";
+    const StatementResult open = judged(flexible_greater + none, two_models(0.0, 5, 3e6));
+    EXPECT_EQ(open.verdict, Verdict::undecided) << "3 MPa of noise";
+    ASSERT_TRUE(open.comparisons[0].packings_to_decide);
+    EXPECT_GT(*open.comparisons[0].packings_to_decide, 40);
+    const std::string text = claims_text(std::vector<ClaimResult>{{{"C1", "1", "c", {}}, Verdict::undecided, {open}}});
+    EXPECT_NE(text.find(fmt::format("about {} packings would decide it", *open.comparisons[0].packings_to_decide)),
+              std::string::npos)
+        << text;
+}
+
+TEST(Claims, WhatIsNoDifferenceCanBeSaidOnceForAFile) {
+    const ClaimList list = parse_claims("no_difference = \"2 %\"\n" + with_statement(flexible_greater), "claims.toml");
+    EXPECT_EQ(list.claims[0].statements[0].no_difference.size, 0.02);
+    const ClaimList other =
+        parse_claims("no_difference = \"2 %\"\n" + with_statement(flexible_greater + "no_difference = \"1 %\"\n"), "claims.toml");
+    EXPECT_EQ(other.claims[0].statements[0].no_difference.size, 0.01);
+    const ClaimList bound =
+        parse_claims("no_difference = \"2 %\"\n" +
+                         with_statement("rule = \"negligible\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nbound = \"5 %\"\n"),
+                     "claims.toml");
+    EXPECT_TRUE(std::isnan(bound.claims[0].statements[0].no_difference.size)) << "its bound says it";
+}
+
+// 30 comparisons without any effect, one of which is beyond 2.5 % by chance: alone it contradicts, among 30 it does not.
+TEST(Claims, OneContradictionAmongManyMustHoldTogetherWithThem) {
+    std::vector<std::string> mu;
+    for (int i = 0; i < 30; ++i) mu.push_back(fmt::format("{}", i));
+    const auto noise = [](int seed) { return 1e6 * (seed % 2 == 0 ? 1.5 : -1.0); };  // means -0 over five: -0.0
+    const auto studies = [&](double least) {
+        return made_up({{"grains", {"rigid", "flexible"}}, {"mu", mu}},
+                       {{"UCS_Pa",
+                         [=](const auto& labels, int seed) {
+                             if (labels[0] == "rigid") return 100e6;
+                             return 100e6 + noise(seed) + (labels[1] == "7" ? least : 0.0);
+                         }}},
+                       5);
+    };
+    EXPECT_EQ(judged(flexible_greater + "where = { mu = 7 }\n", studies(-2.5e6)).verdict, Verdict::contradicted);
+    const StatementResult among = judged(flexible_greater, studies(-2.5e6));
+    EXPECT_EQ(among.comparisons.size(), 30u);
+    EXPECT_EQ(among.verdict, Verdict::undecided);
+    EXPECT_EQ(judged(flexible_greater, studies(-20e6)).verdict, Verdict::contradicted) << "as far as this it holds";
+}
+
 TEST(Claims, AnotherDefinitionOfThePropertyIsShownBesideWithoutAVote) {
     StudiesByName studies = two_models(0.5e6);
     for (PointResults& point : studies.at("study").points) {  // the other definition says the opposite
@@ -292,6 +345,10 @@ TEST(Claims, VerdictsAreTakenTogether) {
     EXPECT_EQ(all({reproduced, not_run}), not_run);
     EXPECT_EQ(all({reproduced, not_evaluated}), undecided);
     EXPECT_EQ(all({not_evaluated}), not_evaluated);
+    EXPECT_EQ(all({no_difference, no_difference}), no_difference);
+    EXPECT_EQ(all({no_difference, reproduced}), in_part);
+    EXPECT_EQ(all({no_difference, contradicted}), contradicted);
+    EXPECT_EQ(all({no_difference, undecided}), undecided);
 }
 
 TEST(Claims, NumbersOfTheLedgerAreProperties) {
@@ -337,6 +394,10 @@ TEST(Claims, MistakesAreNamedWithTheirLine) {
          "nothing that the influence is compared with"},
         {with_statement(greater + "not_evaluated = \"no time\"\n"), 9, "study"},
         {with_statement(greater + "colour = 1\n"), 12, "unknown key"},
+        {with_statement(
+             "rule = \"negligible\"\nproperty = \"UCS_Pa\"\naxis = \"mu\"\nbound = \"5 %\"\nno_difference = \"2 %\"\n"),
+         14, "no_difference"},
+        {"no_difference = 3\n" + with_statement(greater), 1, "an amount cannot hold for all properties"},
     };
     for (const BadClaims& bad : mistakes) {
         try {
