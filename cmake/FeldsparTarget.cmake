@@ -13,7 +13,7 @@ if(FELDSPAR_SANITIZE)
 endif()
 if(FELDSPAR_FUZZ)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-        message(FATAL_ERROR "FELDSPAR_FUZZ needs Clang: cmake --preset fuzz")
+        message(FATAL_ERROR "FELDSPAR_FUZZ needs Clang: cmake --preset asan-ubsan")
     endif()
     target_compile_options(feldspar_options INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-recover=all -Wno-error)  # GCC's warnings are the measure
 endif()
