@@ -49,15 +49,20 @@ toml::table parse_setting(const std::string& setting) {
             table = table->begin()->second.as_table();
         return table->size() == 1;
     };
-    try {
-        toml::table tree = read(value);
-        const toml::node* node = &tree;
-        while (node->is_table() && !node->as_table()->empty() && !node->as_table()->is_inline())
-            node = &node->as_table()->begin()->second;
-        if (single(tree) && !node->is_date() && !node->is_time() && !node->is_date_time()) return tree;
-    } catch (const toml::parse_error& error) {
-        if (std::string_view("[{\"'").find(value.front()) != std::string_view::npos)
-            refuse(setting, "syntax error: " + std::string(error.description()), form);
+    if (beyond_ascii_outside_quotes(key)) refuse(setting, "'" + key + "' is not a key", form);
+    const bool bare = std::string_view("[{\"'").find(value.front()) == std::string_view::npos;
+    const bool strange = beyond_ascii_outside_quotes(value).has_value();
+    if (strange && !bare) refuse(setting, "syntax error: a character beyond ASCII outside of quotes", form);
+    if (!strange) {
+        try {
+            toml::table tree = read(value);
+            const toml::node* node = &tree;
+            while (node->is_table() && !node->as_table()->empty() && !node->as_table()->is_inline())
+                node = &node->as_table()->begin()->second;
+            if (single(tree) && !node->is_date() && !node->is_time() && !node->is_date_time()) return tree;
+        } catch (const toml::parse_error& error) {
+            if (!bare) refuse(setting, "syntax error: " + std::string(error.description()), form);
+        }
     }
     try {
         return read(quoted(value));

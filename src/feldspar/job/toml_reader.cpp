@@ -120,7 +120,35 @@ std::string read_toml_file(const std::filesystem::path& file, const std::string&
     return text;
 }
 
+std::optional<std::size_t> beyond_ascii_outside_quotes(std::string_view text) {
+    const std::size_t byte_order_mark = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+    for (std::size_t i = byte_order_mark; i < text.size(); ++i) {
+        const char c = text[i];
+        if (static_cast<unsigned char>(c) >= 0x80) return i;
+        if (c == '#') i = std::min(text.find('\n', i), text.size());
+        if (c != '"' && c != '\'') continue;
+        const bool escapes = c == '"', many_lines = text.substr(i).starts_with(std::string(3, c));
+        const std::string_view end = text.substr(i, many_lines ? 3 : 1);
+        for (i += end.size(); i < text.size() && !text.substr(i).starts_with(end); ++i) {
+            if (text[i] == '\n' && !many_lines) break;  // the quote is missing, which the parser will say
+            if (text[i] == '\\' && escapes) ++i;
+        }
+        if (many_lines) i += 2;
+    }
+    return std::nullopt;
+}
+
 toml::table parse_toml(const std::string& text, const std::string& file) {
+    if (const auto strange = beyond_ascii_outside_quotes(text)) {
+        const std::string_view before = std::string_view(text).substr(0, *strange);
+        const auto line_begin = before.rfind('\n') + 1;  // npos + 1 = 0
+        std::size_t end = *strange + 1;
+        while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) ++end;
+        const InputPlace place{
+            file, static_cast<int>(std::ranges::count(before, '\n')) + 1, static_cast<int>(*strange - line_begin) + 1, {}};
+        throw InputError(place, "syntax error: '" + text.substr(*strange, end - *strange) + "' stands outside of quotes",
+                         "letters, digits, '-' and '_' in keys, and values with other characters in quotes");
+    }
     try {
         return toml::parse(text, file);
     } catch (const toml::parse_error& error) {

@@ -856,6 +856,23 @@ TEST(FlattenedDiscs, WithNarrowFlatsAreWarnedOf) {
     EXPECT_NE(said[0].find("15 degrees: from 20 degrees on"), std::string::npos) << said[0];
 }
 
+TEST(Toml, CharactersBeyondAsciiStandInQuotesOrComments) {
+    const auto at = [](std::string_view text) { return beyond_ascii_outside_quotes(text); };
+    EXPECT_FALSE(at("a = \"\xC2\xB5m\" # \xC2\xB5\nb = '\xC2\xB5'\n"));
+    EXPECT_FALSE(at("a = \"quote \\\" \xC2\xB5\"\nb = 'no escape \\'\n")) << "an escaped quote does not end a text";
+    EXPECT_FALSE(at("a = \"\"\"\nlines \"of\" \xC2\xB5\n\"\"\"\nb = \'\'\'\xC2\xB5\n\xC2\xB5\'\'\'\n"));
+    EXPECT_FALSE(
+        at("\xEF\xBB\xBF"
+           "a = 1\n"))
+        << "a byte order mark";
+    EXPECT_EQ(at("a = \"x\" \xC2\xB5"), 8u);
+    EXPECT_EQ(at("a = 'no escape \\' \xC2\xB5"), 18u);
+    EXPECT_EQ(at("a = \"missing\n\xC2\xB5 = 1"), 13u) << "a text ends with its line";
+    EXPECT_EQ(at("a = \"\"\"x\"\"\"\n\xC2\xB5"), 12u);
+    EXPECT_FALSE(at("a = \"\"\"never closed \xC2\xB5"));
+    EXPECT_FALSE(at("# only a comment"));
+}
+
 }  // namespace
 
 // One rock, several specimens: a beam beside the upright specimen, of the same grains.

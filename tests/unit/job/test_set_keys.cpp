@@ -95,6 +95,11 @@ TEST(SetKeys, WrongOnesAreRefusedByName) {
         {"name=", {"has no value"}},
         {"run.seeds=[1, 2", {"--set 'run.seeds=[1, 2'", "syntax error"}},
         {"a b=1", {"'a b' is not a key"}},
+        {"br\xC3\xA9"
+         "ite=1",
+         {"is not a key"}},
+        {"run.seeds=[1, \xC2\xB5]", {"syntax error"}},
+        {"specimen.width=40 \xC2\xB5J", {"'40 \xC2\xB5J'"}},
         {"run.seeds=[1]\nname = \"x\"", {"run.seeds"}},
     };
     for (const auto& [setting, parts] : cases) {
