@@ -121,19 +121,29 @@ std::string read_toml_file(const std::filesystem::path& file, const std::string&
 }
 
 std::optional<std::size_t> beyond_ascii_outside_quotes(std::string_view text) {
-    const std::size_t byte_order_mark = text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
-    for (std::size_t i = byte_order_mark; i < text.size(); ++i) {
+    // Quotes begin a text only where a key or a value begins: in 99'x' the library reads on as if there were none.
+    std::string brackets;  // that are open, outside of a table's head
+    bool key = true;       // or a value
+    char before = '\n';
+    for (std::size_t i = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; i < text.size(); before = text[i++]) {
         const char c = text[i];
         if (static_cast<unsigned char>(c) >= 0x80) return i;
-        if (c == '#') i = std::min(text.find('\n', i), text.size());
-        if (c != '"' && c != '\'') continue;
-        const bool escapes = c == '"', many_lines = text.substr(i).starts_with(std::string(3, c));
-        const std::string_view end = text.substr(i, many_lines ? 3 : 1);
-        for (i += end.size(); i < text.size() && !text.substr(i).starts_with(end); ++i) {
-            if (text[i] == '\n' && !many_lines) break;  // the quote is missing, which the parser will say
-            if (text[i] == '\\' && escapes) ++i;
+        if (c == '#') i = std::min(text.find('\n', i), text.size() - 1);
+        const bool begins = std::string_view(" \t\r\n=,[{").find(before) != std::string_view::npos || (before == '.' && key);
+        if ((c == '"' || c == '\'') && begins) {
+            const bool escapes = c == '"', many_lines = text.substr(i).starts_with(std::string(3, c));
+            const std::string_view end = text.substr(i, many_lines ? 3 : 1);
+            for (i += end.size(); i < text.size() && !text.substr(i).starts_with(end); ++i) {
+                if (text[i] == '\n' && !many_lines) break;  // the quote is missing, which the library will say
+                if (text[i] == '\\' && escapes) ++i;
+            }
+            i = std::min(i + end.size(), text.size()) - 1;
         }
-        if (many_lines) i += 2;
+        if (text[i] == '\n' && brackets.empty()) key = true;
+        if (c == '=') key = false;
+        if (c == '{' || (c == '[' && !key)) brackets += c;
+        if ((c == ']' || c == '}') && !brackets.empty()) brackets.pop_back();
+        if (c == '{' || c == ',') key = brackets.ends_with('{');
     }
     return std::nullopt;
 }

@@ -871,6 +871,12 @@ TEST(Toml, CharactersBeyondAsciiStandInQuotesOrComments) {
     EXPECT_EQ(at("a = \"\"\"x\"\"\"\n\xC2\xB5"), 12u);
     EXPECT_FALSE(at("a = \"\"\"never closed \xC2\xB5"));
     EXPECT_FALSE(at("# only a comment"));
+    EXPECT_FALSE(
+        at("[\"\xC2\xB5\".'\xC2\xB5']\na.\"\xC2\xB5\" = { b.'\xC2\xB5' = [\"\xC2\xB5\",\n'\xC2\xB5'], \"\xC2\xB5\" = 1 }\n"));
+    // no text begins behind another character
+    EXPECT_EQ(at("a = 99'\xC2\xB5'"), 7u);
+    EXPECT_EQ(at("a = 9.'\xC2\xB5'"), 7u);
+    EXPECT_EQ(at("a = 'b''\xC2\xB5'"), 8u);
 }
 
 }  // namespace
