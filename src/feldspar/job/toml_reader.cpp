@@ -135,7 +135,11 @@ std::optional<std::size_t> beyond_ascii_outside_quotes(std::string_view text) {
             const std::string_view end = text.substr(i, many_lines ? 3 : 1);
             for (i += end.size(); i < text.size() && !text.substr(i).starts_with(end); ++i) {
                 if (text[i] == '\n' && !many_lines) break;  // the quote is missing, which the library will say
-                if (text[i] == '\\' && escapes) ++i;
+                if (text[i] != '\\' || !escapes) continue;
+                // behind a backslash, and a line end there, the library asks of what follows whether it is a space
+                const std::size_t next = many_lines ? text.find_first_not_of(" \t\r\n", i + 1) : i + 1;
+                if (next < text.size() && static_cast<unsigned char>(text[next]) >= 0x80) return next;
+                ++i;
             }
             i = std::min(i + end.size(), text.size()) - 1;
         }
@@ -156,8 +160,10 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
         while (end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) ++end;
         const InputPlace place{
             file, static_cast<int>(std::ranges::count(before, '\n')) + 1, static_cast<int>(*strange - line_begin) + 1, {}};
-        throw InputError(place, "syntax error: '" + text.substr(*strange, end - *strange) + "' stands outside of quotes",
-                         "letters, digits, '-' and '_' in keys, and values with other characters in quotes");
+        throw InputError(
+            place,
+            "syntax error: '" + text.substr(*strange, end - *strange) + "' stands outside of quotes, or behind a backslash",
+            "letters, digits, '-' and '_' in keys, and values with other characters in quotes");
     }
     try {
         return toml::parse(text, file);

@@ -201,8 +201,8 @@ private:
 /// @throws InputError if it cannot be read, or is larger than any such file
 std::string read_toml_file(const std::filesystem::path& file, const std::string& what, const std::string& suggestion = {});
 
-/// Where a character beyond ASCII stands outside of quotes and comments, which TOML does not allow; its place in the text. The
-/// library would go on with undefined behaviour there.
+/// Where a character beyond ASCII stands outside of quotes and comments, which TOML does not allow, or behind a backslash; its
+/// place in the text. The library would go on with undefined behaviour there.
 std::optional<std::size_t> beyond_ascii_outside_quotes(std::string_view text);
 
 /// Parses TOML. @throws InputError at the place of a syntax error.

@@ -873,6 +873,9 @@ TEST(Toml, CharactersBeyondAsciiStandInQuotesOrComments) {
     EXPECT_FALSE(at("# only a comment"));
     EXPECT_FALSE(
         at("[\"\xC2\xB5\".'\xC2\xB5']\na.\"\xC2\xB5\" = { b.'\xC2\xB5' = [\"\xC2\xB5\",\n'\xC2\xB5'], \"\xC2\xB5\" = 1 }\n"));
+    EXPECT_EQ(at("a = \"\"\"x \\\n  \xC2\xB5\"\"\""), 13u) << "a line end behind a backslash";
+    EXPECT_EQ(at("a = \"\\\xC2\xB5\""), 6u);
+    EXPECT_FALSE(at("a = \"\"\"x \\\n  \"\"\"\nb = '\\\xC2\xB5'"));
     // no text begins behind another character
     EXPECT_EQ(at("a = 99'\xC2\xB5'"), 7u);
     EXPECT_EQ(at("a = 9.'\xC2\xB5'"), 7u);
