@@ -35,8 +35,8 @@ SHEET = """[document.documentElement.scrollWidth, document.documentElement.clien
 class Program:
     """A run with its live view, and what it says."""
 
-    def __init__(self, command):
-        self.lines, self.process = [], subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    def __init__(self, command, cwd=None):
+        self.lines, self.process = [], subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, cwd=cwd)
         threading.Thread(target=lambda: self.lines.extend(self.process.stderr), daemon=True).start()
 
     def address(self):
