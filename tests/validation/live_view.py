@@ -104,6 +104,7 @@ def main():
             size(browser, 1000)
             browser.events.clear()
             browser.ask("Page.navigate", url=address)
+            wait_for(browser, "typeof charts !== 'undefined' && document.querySelector('.live') !== null")
             first = wait_for(browser, f"{CURVES}.some((n) => n > 5) && {PATTERNS}.some((drawn) => drawn) && {CURVES}")
             if not first:
                 wrong.append("no curve or no grains appear: " + str(browser.evaluate(f"[{CURVES}, {PATTERNS}]")))
