@@ -80,6 +80,28 @@ std::string memory_text(double bytes) {
     return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
+// One number where its bounds hardly differ.
+std::string memory_text(const Foreseen& bytes) {
+    constexpr double kSame = 1.05;
+    if (bytes.high < kSame * bytes.low) return memory_text(bytes.usual);
+    return fmt::format("{} to {}, the more the more steps it takes", memory_text(bytes.low), memory_text(bytes.high));
+}
+
+// Two digits: more are not known.
+double rounded_steps(double steps) {
+    const double unit = steps > 0.0 ? std::pow(10.0, std::floor(std::log10(steps)) - 1.0) : 1.0;
+    return std::round(steps / unit) * unit;
+}
+
+std::string course_text(const TestPreview& preview) {
+    const Foreseen& steps = preview.steps;
+    if (!(steps.high > steps.usual))  // the job's own limit
+        return fmt::format("{:.0f} steps, {}", steps.usual, duration_text(preview.step_seconds * steps.usual));
+    return fmt::format("about {:.0f} steps, {}; nine tests in ten take {:.0f} to {:.0f}, {} to {}", rounded_steps(steps.usual),
+                       duration_text(preview.step_seconds * steps.usual), rounded_steps(steps.low), rounded_steps(steps.high),
+                       duration_text(preview.step_seconds * steps.low), duration_text(preview.step_seconds * steps.high));
+}
+
 // What the runs of one variant and test have in common.
 struct Group {
     PlannedRun example;  // the first of them stands for all
@@ -132,8 +154,8 @@ public:
             if (stop_requested()) throw Interrupted();
             add(group);
         }
-        say("\n{}\nExpected time of the whole job: about {}. Nothing was run, no file was written.\n", text_,
-            duration_text(total_s_));
+        say("\n{}\nExpected time of the whole job: about {} ({} to {}). Nothing was run, no file was written.\n", text_,
+            duration_text(total_s_.usual), duration_text(total_s_.low), duration_text(total_s_.high));
     }
 
 private:
@@ -159,15 +181,16 @@ private:
         if (job_.has_variants()) {
             if (first) text_ += preview_text(preview);
             text_ += flats_text(run, *specimen) + card;
-            text_ += fmt::format("  {} x {}: about {:.0f} steps, {} each\n", group.runs, title(*run.test), preview.expected_steps,
-                                 duration_text(preview.expected_seconds));
+            text_ += fmt::format("  {} x {}: {} each\n", group.runs, title(*run.test), course_text(preview));
         } else {
             text_ += fmt::format("{} x {}\n{}", group.runs, title(*run.test), preview_text(preview));
             text_ += flats_text(run, *specimen) + card;
-            text_ += fmt::format("  expected, each        about {:.0f} steps, {}\n", preview.expected_steps,
-                                 duration_text(preview.expected_seconds));
+            text_ += fmt::format("  expected, each        {}\n", course_text(preview));
         }
-        total_s_ += preview.expected_seconds * group.runs / at_once;
+        const double each_s = preview.step_seconds * group.runs / at_once;
+        total_s_.low += preview.steps.low * each_s;
+        total_s_.usual += preview.steps.usual * each_s;
+        total_s_.high += preview.steps.high * each_s;
     }
 
     void show_specimen(const TestSpec& test, const Specimen& specimen) {
@@ -186,7 +209,7 @@ private:
     RunControl control_;
     const Variant* variant_ = nullptr;  // the last one shown
     std::set<std::string> shown_;       // headings of specimens
-    double total_s_ = 0.0;
+    Foreseen total_s_;
     std::string text_;
 };
 

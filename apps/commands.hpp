@@ -11,6 +11,7 @@
 #include "feldspar/job/first_job.hpp"
 #include "feldspar/job/job.hpp"
 #include "feldspar/study/slurm_plan.hpp"
+#include "printing.hpp"
 
 namespace feldspar {
 
@@ -38,8 +39,7 @@ struct RunOptions : JobOptions {
     bool fresh = false;        ///< never goes on with an unfinished run
     bool go_on = false;        ///< only goes on with one
     Keep keep = Keep::all;     ///< what stays of the tests
-    bool json = false;         ///< the summary on stdout, all else on stderr
-    bool quiet = false;        ///< only warnings, mistakes and where the results are
+    PrintOptions print;        ///< the object is the summary
     std::string command_line;  ///< for provenance
     LiveOptions live;
 };
@@ -74,6 +74,7 @@ ExitCode pages_command(const std::string& text);
 /// What stands on the command line beside the study file.
 struct StudyOptions {
     std::string study;
+    std::vector<std::string> settings;   ///< "key=value", over the study's job in all its points
     std::optional<std::string> results;  ///< directory of ledger and runs, instead of the study's own
     std::optional<int> threads;
     std::optional<int> at_once;  ///< runs side by side
@@ -84,6 +85,8 @@ struct StudyOptions {
     SlurmOptions slurm;
     bool retry_failed = false;  ///< also runs that failed for good
     bool wait = false;          ///< on Slurm: until the results are there
+    PrintOptions print;         ///< the object has the points with their properties
+    LiveOptions live;
 };
 
 /// What an element of a job array is called with.
@@ -120,6 +123,7 @@ ExitCode study_table_command(const StudyOptions& options);
 /// What stands on the command line beside the calibration file.
 struct CalibrateOptions {
     std::string calibration;
+    std::vector<std::string> settings;   ///< "key=value", over the calibration's job
     std::optional<std::string> results;  ///< directory of ledger and runs, instead of the file's own
     std::optional<int> budget;           ///< runs, instead of the file's own
     std::optional<int> threads;
@@ -128,6 +132,8 @@ struct CalibrateOptions {
     bool insist = false;         ///< run even if the targets contradict each other
     bool retry_failed = false;   ///< also runs that failed for good
     std::string command_line;    ///< for provenance
+    PrintOptions print;          ///< the object is calibration.json
+    LiveOptions live;
 };
 
 /// Finds the values of a job's keys with which the model shows a laboratory's numbers, and confirms them.
@@ -152,6 +158,8 @@ struct EnvelopeCommandOptions : JobOptions {
     bool retry_failed = false;           ///< also runs that failed for good
     std::optional<std::string> results;  ///< directory of ledger, runs and files
     std::string command_line;            ///< for provenance
+    PrintOptions print;                  ///< the object is envelope.json
+    LiveOptions live;
 };
 
 /// UCS, biaxial series, DTS and BTS on several packings; Mohr-Coulomb and Hoek-Brown through them.
@@ -164,6 +172,8 @@ struct ConvergeCommandOptions : JobOptions {
     bool retry_failed = false;           ///< also runs that failed for good
     std::optional<std::string> results;  ///< directory of ledger, runs and files
     std::string command_line;            ///< for provenance
+    PrintOptions print;                  ///< the object is converge.json
+    LiveOptions live;
 };
 
 /// Varies grain size, specimen size, triangles and loading rate one at a time, and says whether the answer depends on them.

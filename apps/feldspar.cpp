@@ -76,6 +76,8 @@ constexpr const char* schema_examples = R"(  feldspar schema --out job.schema.js
 )";
 
 constexpr const char* study_examples = R"(  feldspar study sweep.toml                              runs what is not done yet
+  feldspar study sweep.toml --set numerics.accuracy=5% --results trial     quickly, elsewhere
+  feldspar study sweep.toml --json > points.json         the points, to be read by a program
   feldspar study status sweep.toml
   feldspar study table sweep.toml --runs > runs.csv
   feldspar study sweep.toml --on slurm --partition short --time 2:00:00
@@ -177,10 +179,12 @@ void add_checkpoint_option(CLI::App& command) {
 }
 
 // The page in a browser.
-void add_live_options(CLI::App& command, LiveOptions& live) {
-    CLI::Option* on = command.add_flag("--live", live.on,
-                                       "show the run in a browser while it goes on: curves, cracks, time left, and buttons that "
-                                       "end a test or the run; prints the page's address");
+CLI::Option* add_live_options(CLI::App& command, LiveOptions& live,
+                              const char* meaning =
+                                  "show the runs in a browser while they are made: which of them are done, curves and cracks of "
+                                  "those under way, time left, and buttons that end one of them (without a result: the same "
+                                  "command makes it again) or all, as Ctrl-C does; prints the page's address") {
+    CLI::Option* on = command.add_flag("--live", live.on, meaning);
     command.add_option("--live-port", live.port, "the port of that page (default: any that is free)")
         ->type_name("PORT")
         ->check(CLI::Range(0, 65535))
@@ -191,6 +195,7 @@ void add_live_options(CLI::App& command, LiveOptions& live) {
             "the address of this machine to listen at; another than 127.0.0.1 lets other machines see the page, unencrypted")
         ->type_name("ADDRESS")
         ->needs(on);
+    return on;
 }
 
 constexpr const char* all_cores = "one for each core";
@@ -205,13 +210,23 @@ std::vector<std::string> test_words() {
     return words;
 }
 
-void add_set_option(CLI::App& command, JobOptions& options) {
-    command
-        .add_option("--set", options.settings,
-                    "a key of the job and its value, over what the file says, such as material.contact.tau=30MPa; of all tests "
-                    "as test.plate_mu=0.2, of one kind as test.BTS.plate_mu=0.2; may be repeated")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
+constexpr const char* set_meaning =
+    "a key of the job and its value, over what the file says, such as material.contact.tau=30MPa; of all tests as "
+    "test.plate_mu=0.2, of one kind as test.BTS.plate_mu=0.2; may be repeated";
+
+template <class Options>
+void add_set_option(CLI::App& command, Options& options, const std::string& meaning = set_meaning) {
+    command.add_option("--set", options.settings, meaning)->type_name("KEY=VALUE")->allow_extra_args(false);
+}
+
+// What is printed where. @param object  what --json prints
+std::vector<CLI::Option*> add_print_options(CLI::App& command, PrintOptions& print, const std::string& object) {
+    return {command.add_flag("--json", print.json,
+                             "print " + object +
+                                 " as JSON on standard output at the end, and all else on standard error; a "
+                                 "mistake as {\"error\": ...}"),
+            command.add_flag("--quiet", print.quiet,
+                             "print only warnings, mistakes and failures, and at the end the directory of the results")};
 }
 
 void add_job_options(CommandLine& line, CLI::App& command, JobOptions& options) {
@@ -238,9 +253,13 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
     command.add_option("study", options.study, "the study file")->type_name("STUDY.toml");
     command.add_option("--results", options.results, "directory of the ledger and the runs (default: as the study says)")
         ->type_name("DIR");
+    add_set_option(command, options,
+                   "a key of the study's job and its value, over the job, the study's [set] and its axes, such as "
+                   "numerics.accuracy=2%; its runs are others than those without it; a key that an axis varies is refused; may "
+                   "be repeated");
 }
 
-void add_slurm_options(CLI::App& command, StudyOptions& options) {
+CLI::Option* add_slurm_options(CLI::App& command, StudyOptions& options) {
     CLI::Option* on = command
                           .add_option("--on", options.on,
                                       "slurm: the runs that are not done go to a Slurm cluster as a job array (docs/study.md)")
@@ -270,13 +289,15 @@ void add_slurm_options(CLI::App& command, StudyOptions& options) {
         ->check(CLI::PositiveNumber)
         ->needs(on);
     command.add_flag("--wait", options.wait, "on Slurm: wait for the results and print them")->needs(on);
+    return on;
 }
 
 // What commands that make a study of a job share.
 template <class Options>
-void add_made_study_options(CLI::App& command, Options& options, const char* packings) {
+void add_made_study_options(CLI::App& command, Options& options, const char* packings, const char* object) {
     command.add_option("job", options.job, "the job file; - reads it from standard input")->required()->type_name("JOB.toml");
     add_set_option(command, options);
+    add_print_options(command, options.print, object);
     command.add_option("--seeds", options.packings, packings)->type_name("N")->check(CLI::Range(1, 1000));
     command.add_option("--variant", options.variants, "only this variant of the job, by its name; may be repeated")
         ->type_name("NAME")
@@ -284,6 +305,7 @@ void add_made_study_options(CLI::App& command, Options& options, const char* pac
     add_thread_options(command, options, job_or_all_cores, by_size);
     add_retry_option(command, options);
     add_checkpoint_option(command);
+    add_live_options(command, options.live);
 }
 
 void add_run(CommandLine& line) {
@@ -309,10 +331,11 @@ void add_run(CommandLine& line) {
                                                 {"numbers", Keep::numbers}, {"histories", Keep::histories}, {"all", Keep::all}})
                         .description(""));
     line.choices(keep, {"numbers", "histories", "all"});
-    command.add_flag("--json", options->json, "print the summary as JSON on standard output, and all else on standard error");
-    command.add_flag("--quiet", options->quiet, "print only warnings and mistakes, and at the end the directory of the results");
+    add_print_options(command, options->print, "the summary");
     add_checkpoint_option(command);
-    add_live_options(command, options->live);
+    add_live_options(command, options->live,
+                     "show the run in a browser while it goes on: curves, cracks, time left, and buttons that end a test or the "
+                     "run; prints the page's address");
     line.does(command, [options] { return run_command(*options); });
 }
 
@@ -381,7 +404,9 @@ void add_study(CommandLine& line) {
         "study", "run a study: one job varied along axes, on several packings; goes on where it was interrupted", study_examples);
     command.require_subcommand(0, 1);
     add_thread_options(command, *options, all_cores, by_size);
-    add_slurm_options(command, *options);
+    CLI::Option* slurm = add_slurm_options(command, *options);
+    for (CLI::Option* own : add_print_options(command, options->print, "the points with their properties")) own->excludes(slurm);
+    add_live_options(command, options->live)->excludes(slurm);
     add_retry_option(command, *options);
     add_checkpoint_option(command);
     add_study_options(command, *options);
@@ -419,7 +444,8 @@ void add_envelope(CommandLine& line) {
     CLI::App& command = line.add(
         "envelope", "strength envelope: UCS, biaxial series, DTS and BTS on several packings, with Mohr-Coulomb and Hoek-Brown",
         envelope_examples);
-    add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 5)");
+    add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 5)",
+                           "envelope.json");
     command
         .add_option("--sigma3", options->sigma3,
                     "confining stresses, such as \"2 MPa\" \"5 MPa\" (default: the job's biaxial tests, else 2.5, 5, 10 and 15 % "
@@ -439,7 +465,8 @@ void add_converge(CommandLine& line) {
     CLI::App& command =
         line.add("converge", "does the answer depend on grain size, specimen size, mesh, loading rate or the number of packings?",
                  converge_examples);
-    add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 3)");
+    add_made_study_options(command, *options, "number of packings (default: the job's seeds if there are several, else 3)",
+                           "converge.json");
     line.choices(
         command
             .add_option("--test", options->tests,
@@ -486,9 +513,15 @@ void add_calibrate(CommandLine& line) {
     command.add_option("--budget", options->budget, "at most so many runs (default: as the file says)")
         ->type_name("N")
         ->check(CLI::Range(20, 100'000));
+    add_set_option(command, *options,
+                   "a key of the calibration's job and its value, over the job and the file's [set], such as "
+                   "numerics.accuracy=2%; its runs are others than those without it; a key that is sought is refused; may be "
+                   "repeated");
+    add_print_options(command, options->print, "calibration.json");
     add_thread_options(command, *options, all_cores, by_size);
     add_retry_option(command, *options);
     add_checkpoint_option(command);
+    add_live_options(command, options->live);
     command.add_flag("--insist", options->insist, "run even if the targets contradict each other");
     line.does(command, [options] { return calibrate_command(*options); });
 }

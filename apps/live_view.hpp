@@ -7,7 +7,6 @@
 #include "commands.hpp"
 #include "feldspar/live/live_board.hpp"
 #include "feldspar/live/live_server.hpp"
-#include "feldspar/study/run_job.hpp"
 
 namespace feldspar {
 
@@ -15,13 +14,13 @@ class LiveView {
 public:
     /// Listens, and prints where, if the options ask for it; else nothing here does anything. @throws InputError if it cannot
     /// listen there
-    LiveView(const LiveOptions& options, const std::string& name);
+    LiveView(const LiveOptions& options, const std::string& name, LiveWords words = {});
 
     /// What the run fills; null without a live view.
     LiveBoard* board() { return board_ ? &*board_ : nullptr; }
     void busy(const std::string& what);
-    /// The run is over: pages become its report.
-    void over(const JobOutcome& outcome);
+    /// All is over: pages become its report. @param words  how it ended, in sentences
+    void over(const std::string& words);
 
 private:
     std::optional<LiveBoard> board_;

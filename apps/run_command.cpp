@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -11,15 +10,12 @@
 #include "feldspar/study/run_job.hpp"
 #include "interrupt.hpp"
 #include "live_view.hpp"
+#include "printing.hpp"
 #include "progress.hpp"
-#include "say.hpp"
 #include "tables.hpp"
-#include "terminal.hpp"
 
 namespace feldspar {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 void tell_place(std::size_t tests, const std::filesystem::path& directory) {
     say(stderr, "the files of {} are in {}\n", counted(tests, "finished test"), directory.string());
@@ -63,41 +59,39 @@ private:
 };
 
 // The properties last, where they stay in sight.
-void print_tables(std::FILE* where, std::size_t columns, const Job& job, const JobOutcome& outcome) {
+void print_tables(const Printing& print, const Job& job, const JobOutcome& outcome) {
+    const std::size_t columns = print.columns();
     const std::string properties =
         job.has_variants() ? variant_table(job, outcome.results, columns) : property_table(job, outcome.properties, columns);
-    say(where, "\n{}\n{}\n", test_table(outcome.results, outcome.failed, columns), properties);
-    say(where, "Report: {}\n", (outcome.directory / "report.html").string());
+    print.say_results("\n{}\n{}\n", test_table(outcome.results, outcome.failed, columns), properties);
+    print.say_results("Report: {}\n", (outcome.directory / "report.html").string());
 }
 
 // summary.json, and where it is.
 Json summary_of(const JobOutcome& outcome) {
-    Json json{{"directory", outcome.directory.string()},
-              {"report", (outcome.directory / "report.html").string()},
-              {"interrupted", outcome.interrupted}};
-    std::ifstream file(outcome.directory / "summary.json");
-    const Json summary = Json::parse(file, nullptr, false);
-    if (!summary.is_object())
-        throw OutputError(fmt::format("'{}' cannot be read again", (outcome.directory / "summary.json").string()));
-    for (const auto& [key, value] : summary.items()) json[key] = value;
-    return json;
+    return with_file({{"directory", outcome.directory.string()},
+                      {"report", (outcome.directory / "report.html").string()},
+                      {"interrupted", outcome.interrupted}},
+                     outcome.directory / "summary.json");
 }
 
-void print_json(const Json& json) { put(stdout, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"); }
-
-void print_results(const RunOptions& options, const Job& job, const JobOutcome& outcome) {
-    if (options.json) print_json(summary_of(outcome));
-    if (!options.quiet)
-        print_tables(options.json ? stderr : stdout, options.json ? error_columns() : output_columns(), job, outcome);
-    else if (!options.json)
-        say("{}\n", outcome.directory.string());
+// How the run ended, for its page.
+std::string last_words(const JobOutcome& outcome) {
+    std::string words =
+        outcome.interrupted
+            ? fmt::format("It was ended early, with results of {} of {}; the same command goes on there.", outcome.results.size(),
+                          counted(outcome.tests, "test"))
+            : fmt::format("{} have ended{}.", counted(outcome.tests, "test"),
+                          outcome.failed.empty() ? "" : fmt::format(", {} without a result", outcome.failed.size()));
+    return words +
+           fmt::format(" This page is the report of the run as it stands in {}.", (outcome.directory / "report.html").string());
 }
 
-ExitCode run_and_print(const RunOptions& options) {
+ExitCode run_and_print(const RunOptions& options, Printing& print) {
     install_signal_handlers();
     const Job job = job_with_options(options);
     LiveView live(options.live, job.name);
-    JobProgress progress(options.quiet, live);
+    JobProgress progress(print.quiet(), live);
     JobControl control;
     control.live = live.board();
     control.threads = thread_count(job.threads);
@@ -111,9 +105,9 @@ ExitCode run_and_print(const RunOptions& options) {
     control.checkpoints = checkpoint_settings();
     control.listener = &progress;
     const JobOutcome outcome = run_job(job, control);
-    print_results(options, job, outcome);
-    std::fflush(stdout);
-    live.over(outcome);
+    print_tables(print, job, outcome);
+    print.end(outcome.directory, [&] { return summary_of(outcome); });
+    live.over(last_words(outcome));
     if (!outcome.failed.empty()) {
         std::fflush(stdout);
         tell_place(outcome.results.size(), outcome.directory);
@@ -130,19 +124,7 @@ ExitCode run_and_print(const RunOptions& options) {
 }  // namespace
 
 ExitCode run_command(const RunOptions& options) {
-    if (!options.json) return run_and_print(options);
-    try {
-        return run_and_print(options);
-    } catch (const InputError& error) {  // what programs that call this one want to show their users
-        print_json({{"error",
-                     {{"kind", "input"},
-                      {"message", error.what()},
-                      {"file", error.place().file},
-                      {"line", error.place().line},
-                      {"column", error.place().column},
-                      {"key", error.place().key}}}});
-        throw;
-    }
+    return printing(options.print, [&](Printing& print) { return run_and_print(options, print); });
 }
 
 }  // namespace feldspar

@@ -6,6 +6,8 @@
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/execute.hpp"
 #include "feldspar/study/ledger.hpp"
+#include "live_view.hpp"
+#include "printing.hpp"
 
 namespace feldspar {
 
@@ -26,11 +28,22 @@ std::string label_of(const Study& study, const Run& run);
 /// "114 MPa, grade B, 4.1 s", or why it failed.
 std::string result_text(const RunRecord& record);
 
-/// Enrols the study, runs what is not done yet, and tells of it on stderr.
-Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& running);
+/// Enrols the study, runs what is not done yet, and tells of it on stderr: if it is to be quiet, of failures alone.
+/// @param live  shows the runs, if the user wants to see them
+Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& running, const Printing& print, LiveView& live);
+
+/// What the page of a live view calls a study, an envelope, a convergence or a calibration, and its runs.
+LiveWords words_of(const std::string& whole);
+
+/// All is over: open pages of the live view become the page that was written.
+void end_live(LiveView& live, const std::string& whole, const Execution& execution, const std::filesystem::path& page);
 
 /// Counts and times, where the ledger is, and what to do about an interruption.
-void print_execution(const Study& study, const Execution& execution);
+void print_execution(const Study& study, const Execution& execution, const Printing& print);
+
+/// The same for programs: `directory`, `page`, `ledger`, `interrupted`, and under `executed` how many runs were
+/// done now, done before, failed, failed before, left.
+Json execution_json(const Study& study, const Execution& execution, const std::filesystem::path& page);
 
 /// Interrupted if runs are left, numerical if one failed, now or before.
 ExitCode outcome(const Execution& execution);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "feldspar/study/point_results.hpp"
@@ -11,33 +12,52 @@
 #include "progress.hpp"
 #include "running_study.hpp"
 #include "say.hpp"
-#include "terminal.hpp"
 
 namespace feldspar {
 Study study_with_options(const StudyOptions& options) {
-    Study study = read_study(options.study);
+    Study study = read_study(options.study, options.settings);
     if (options.results) study.results = *options.results;
     return study;
 }
 
-ExitCode study_command(const StudyOptions& options) {
-    install_signal_handlers();
+namespace {
+
+ExitCode run_and_print(const StudyOptions& options, Printing& print) {
     const Study study = study_with_options(options);
     if (options.on == "slurm" && options.device != "cpu")
         throw InputError({.key = "--device"}, "elements of a job array run on processors", "cpu",
                          "run the study on a machine with a card, without --on slurm");
     if (options.on == "slurm") return study_on_slurm(study, options);
+    LiveView live(options.live, study.name, words_of("study"));
     Ledger ledger(study.results, Ledger::Access::write);
+    if (!options.settings.empty() && !print.quiet())
+        say(stderr,
+            "what --set changes makes other runs: those of the file as it stands stay in the ledger, and the page shows these\n");
     const Execution execution = run_study(study, ledger,
                                           {thread_count(options.threads.value_or(0)), options.at_once.value_or(0),
-                                           options.command_line, options.device, options.retry_failed});
+                                           options.command_line, options.device, options.retry_failed},
+                                          print, live);
 
     const std::vector<PointResults> points = point_results(study, ledger);
     write_study_report(study, points, study_page(study));
-    say("\n{}\n", study_text(study, points, output_columns()));
-    print_execution(study, execution);
-    say("Page: {}\n", study_page(study).string());
+    print.say_results("\n{}\n", study_text(study, points, print.columns()));
+    print_execution(study, execution, print);
+    print.say_results("Page: {}\n", study_page(study).string());
+    print.end(study.results, [&] {
+        Json object = execution_json(study, execution, study_page(study));
+        const Json found = Json::parse(study_json(study, points));
+        for (const auto& [key, value] : found.items()) object[key] = value;
+        return object;
+    });
+    end_live(live, "study", execution, study_page(study));
     return outcome(execution);
+}
+
+}  // namespace
+
+ExitCode study_command(const StudyOptions& options) {
+    install_signal_handlers();
+    return printing(options.print, [&](Printing& print) { return run_and_print(options, print); });
 }
 
 ExitCode study_status_command(const StudyOptions& options) {

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from typing import Any, Mapping
+from typing import Any, Mapping, Sequence, Union
 
 from .errors import InputError, Mistake
 
@@ -17,6 +17,13 @@ def dumps(table: Mapping[str, Any]) -> str:
     lines: list[str] = []
     _write(lines, table, ())
     return "\n".join(lines) + "\n"
+
+
+def settings_of(settings: Union[Mapping[str, Any], Sequence[str]]) -> list[str]:
+    """Keys over a file, as the program takes them: "key=value"."""
+    if isinstance(settings, Mapping):
+        return [f"{key}={_inline(value, (key,))}" for key, value in settings.items()]
+    return [settings] if isinstance(settings, str) else list(settings)
 
 
 def _key(word: str) -> str:

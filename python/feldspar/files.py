@@ -6,6 +6,7 @@ import io
 import json
 import os
 import tempfile
+import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterator, Optional, Union
 
@@ -192,6 +193,24 @@ class Run:
     def name(self) -> str:
         """Name of the job."""
         return str(self.summary["job"]["name"])
+
+    @property
+    def report(self) -> Path:
+        """The report for the browser. A notebook shows it by ``IPython.display.IFrame(run.report, "100%", 600)``; :meth:`view` opens it."""
+        return self.directory / "report.html"
+
+    def view(self) -> bool:
+        """Opens the report in the browser. Whether one was found. Raises InputError if the run has no report."""
+        if not self.report.is_file():
+            raise _wrong(self.report, "there is no such file", "the directory of a run with its report.html")
+        return webbrowser.open(self.report.resolve().as_uri())
+
+    def export_paraview(self, directory: Optional[PathLike] = None) -> Path:
+        """Writes the fields of all tests for ParaView, as `feldspar export --vtu`: into the directory ``paraview`` of the run, or another one, which is given back. Raises InputError if the run kept none, OutputError."""
+        place = self.directory / "paraview" if directory is None else Path(directory)
+        for test in self.tests:
+            test.export_paraview(place)
+        return place
 
     @property
     def complete(self) -> bool:

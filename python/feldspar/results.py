@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterator, Optional
 
 from . import _core
@@ -31,6 +32,11 @@ class JobResult:
     """Whether the user ended the job."""
     directory: Optional[str] = None
     """Where the files are; ``None`` if none were written."""
+
+    @property
+    def report(self) -> Optional[Path]:
+        """The report for the browser, if files were written."""
+        return None if self.directory is None else Path(self.directory) / "report.html"
 
     def __len__(self) -> int:
         return len(self.results)

@@ -199,14 +199,21 @@ void bind_jobs(py::module_& m) {
 
 Made by :meth:`read`, :meth:`parse` or :func:`feldspar.job`.)")
         .def_static(
-            "read", [](const std::string& file) { return std::make_shared<Job>(read_job(file)); }, py::arg("file"),
-            "Reads and checks a job file. Raises InputError with all mistakes, each with file, line, key and what is allowed.")
+            "read",
+            [](const std::string& file, const std::vector<std::string>& settings) {
+                return std::make_shared<Job>(read_job(file, settings));
+            },
+            py::arg("file"), py::arg("settings") = std::vector<std::string>{},
+            "Reads and checks a job file. settings: \"key=value\", as `--set` of the program, over what the file says. Raises "
+            "InputError with all mistakes, each with file, line, key and what is allowed.")
         .def_static(
             "parse",
-            [](const std::string& text, const std::string& name) { return std::make_shared<Job>(parse_job(text, name)); },
-            py::arg("text"), py::arg("name") = "<text>",
+            [](const std::string& text, const std::string& name, const std::vector<std::string>& settings) {
+                return std::make_shared<Job>(parse_job(text, name, settings));
+            },
+            py::arg("text"), py::arg("name") = "<text>", py::arg("settings") = std::vector<std::string>{},
             "Reads and checks a job that is given as TOML text. `name` stands for the file in messages, and relative paths in "
-            "the job count from its folder.")
+            "the job count from its folder. settings: as of :meth:`read`.")
         .def_property_readonly(
             "name", [](const Job& job) { return job.name; }, "Name of the job: its key `name`, else from the file.")
         .def_property_readonly(

@@ -272,9 +272,13 @@ py::dict preview(const Job& job, const TestChoice& test, const py::object& sigma
     d["nodes"] = p.nodes;
     d["triangles"] = p.triangles;
     d["bodies"] = p.bodies;
-    d["memory_MB"] = p.memory_bytes / 1e6;
-    d["expected_steps"] = p.expected_steps;
-    d["expected_seconds"] = p.expected_seconds;
+    const auto range = [](const Foreseen& f, double factor) { return py::make_tuple(f.low * factor, f.high * factor); };
+    d["memory_MB"] = p.memory_bytes.usual / 1e6;
+    d["memory_range_MB"] = range(p.memory_bytes, 1e-6);
+    d["expected_steps"] = p.steps.usual;
+    d["steps_range"] = range(p.steps, 1.0);
+    d["expected_seconds"] = p.steps.usual * p.step_seconds;
+    d["seconds_range"] = range(p.steps, p.step_seconds);
     return d;
 }
 
@@ -294,7 +298,7 @@ void bind_running(py::module_& m) {
     m.def(
         "preview", &preview, py::arg("job"), py::arg("test") = TestChoice{}, py::kw_only(), py::arg("sigma3") = py::none(),
         py::arg("seed") = py::none(), py::arg("variant") = py::none(),
-        R"(Builds and judges a test, and times a few steps, without running it: counts, memory_MB, expected_steps, expected_seconds. Arguments as of run(). Raises InputError for a setting that is unstable.)");
+        R"(Builds and judges a test, and times a few steps, without running it: counts, memory_MB, expected_steps, expected_seconds, and the bounds of nine tests in ten: memory_range_MB, steps_range, seconds_range. Arguments as of run(). Raises InputError for a setting that is unstable.)");
 }
 
 }  // namespace feldspar::python

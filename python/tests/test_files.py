@@ -1,5 +1,6 @@
 """Results of earlier runs and of studies, as tables and frames."""
 
+import json
 import os
 import tempfile
 import unittest
@@ -44,6 +45,8 @@ class Runs(unittest.TestCase):
 
     def test_knows_properties_job_and_verdict(self):
         self.assertTrue(self.run_.complete)
+        self.assertTrue(self.run_.report.is_file())
+        self.assertEqual(self.live.report, self.run_.report)
         self.assertAlmostEqual(self.run_.properties["UCS_MPa"]["median"], self.live.properties["UCS_MPa"]["median"], places=9)
         self.assertEqual(self.run_.job.resolved(), self.job.resolved())
         self.assertEqual(self.run_.tests[0].verdict, self.live[0].verdict)
@@ -92,7 +95,7 @@ class Runs(unittest.TestCase):
 
     def test_fields_for_paraview(self):
         with tempfile.TemporaryDirectory() as folder:
-            self.run_.tests[0].export_paraview(folder)
+            self.assertEqual(self.run_.export_paraview(folder), Path(folder))
             collection = list(Path(folder).glob("*.pvd"))
             self.assertEqual(len(collection), 1)
             self.assertTrue(list(Path(folder).glob("*/grains-*.vtu")))
@@ -120,6 +123,21 @@ class Studies(unittest.TestCase):
             self.assertEqual((len(points), len(runs)), (2, 4))
             self.assertLess(points.filter(like="UCS").iloc[0, 0], points.filter(like="UCS").iloc[1, 0], "cohesion makes strength")
 
+    def test_settings_go_over_a_study_and_make_other_runs(self):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "job.toml").write_text(feldspar.job(rock()).text)
+            Path(folder, "study.toml").write_text('job = "job.toml"\nseeds = [1]\n[[axis]]\nname = "tau"\nkey = "material.contact.tau"\nvalues = ["20 MPa", "40 MPa"]\n')
+            read = lambda **keys: feldspar.study(Path(folder, "study.toml"), results=Path(folder, "results"), **keys)
+            done = feldspar.run_study(read(settings={"numerics.accuracy": "8 %", "test.UCS.stop_fraction": 0.9}), progress=None)
+            self.assertEqual(done["done"], 2)
+            self.assertEqual(read(settings=["numerics.accuracy=8%", "test.UCS.stop_fraction=0.9"]).status()["done"], 2, "the same runs")
+            self.assertEqual(read().status(), {"runs": 2, "done": 0, "running": 0, "failed": 0, "left": 2, "failures": []})
+            points = json.loads(read(settings={"numerics.accuracy": "8 %", "test.UCS.stop_fraction": 0.9}).results_json())["points"]
+            self.assertLess(points[0]["properties"]["UCS_MPa"]["mean"], points[1]["properties"]["UCS_MPa"]["mean"])
+            with self.assertRaises(feldspar.InputError) as caught:
+                read(settings={"material.contact.tau": "30 MPa"})
+            self.assertIn("the axis 'tau' varies this key", str(caught.exception))
+
     def test_mistakes_of_a_study_and_a_calibration_arrive(self):
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "study.toml").write_text("jib = 1\n")
@@ -128,6 +146,49 @@ class Studies(unittest.TestCase):
             self.assertIn("jib", str(caught.exception))
             with self.assertRaises(feldspar.InputError):
                 feldspar.calibrate(Path(folder, "none.toml"))
+
+class Findings(unittest.TestCase):
+    """Envelopes, convergences and claims: small ones, as the program makes them."""
+
+    def test_an_envelope_runs_and_goes_on(self):
+        with tempfile.TemporaryDirectory() as folder:
+            job = feldspar.job(rock(), settings={"numerics.accuracy": "10 %"})
+            events = []
+            found = feldspar.envelope(job, seeds=2, sigma3=["3 MPa", 9e6], results=Path(folder, "results"), progress=events.append)
+            self.assertEqual(found["executed"]["done"], 10, "uniaxial, two biaxial, tension, Brazilian on two packings")
+            self.assertEqual(len(found["envelopes"][0]["strengths"]), 3)
+            self.assertTrue(os.path.exists(found["page"]))
+            self.assertEqual(len([e for e in events if e["event"] == "finished"]), 10)
+            again = feldspar.envelope(job, seeds=2, sigma3=["3 MPa", "9 MPa"], results=Path(folder, "results"), progress=None)
+            self.assertEqual((again["executed"]["done"], again["executed"]["found_done"]), (0, 10))
+            self.assertEqual(again["envelopes"], found["envelopes"])
+
+    def test_a_convergence_judges_every_axis(self):
+        with tempfile.TemporaryDirectory() as folder:
+            job = feldspar.job(rock(test=[{"kind": "direct-tension"}], numerics={"accuracy": "10 %"}))
+            found = feldspar.converge(job, seeds=2, tests=["DTS"], within=0.1, results=Path(folder, "results"), progress=None)
+            self.assertEqual(len(found["axes"]), 4, "grains, specimen, triangles, rate")
+            self.assertTrue(all(axis["verdict"]["words"] for axis in found["axes"]))
+            self.assertTrue(os.path.exists(found["page"]))
+
+    def test_mistakes_arrive_before_anything_is_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place = Path(folder, "results")
+            for wrong in (dict(sigma3=["5 mm"]), dict(sigma3=[0.0])):
+                with self.assertRaises(feldspar.InputError) as caught:
+                    feldspar.envelope(rock(), results=place, **wrong)
+                self.assertIn("sigma3", str(caught.exception))
+            with self.assertRaises(feldspar.InputError):
+                feldspar.converge(rock(), within=2.0, results=place)
+            self.assertFalse(place.exists())
+
+    def test_claims_are_held_against_ledgers(self):
+        folder = Path(os.environ["FELDSPAR_SOURCE_DIR"], "studies", "paper")
+        with tempfile.TemporaryDirectory() as nothing:
+            found = feldspar.claims(folder, results=Path(nothing, "none"))
+        self.assertEqual(len({claim["id"] for claim in found}), len(found))
+        self.assertTrue(all(claim["verdict"] in ("not run", "not evaluated") for claim in found), "there is no ledger")
+        self.assertTrue(all(claim["says"] and claim["statements"] for claim in found))
 
 
 if __name__ == "__main__":

@@ -54,6 +54,16 @@ class Jobs(unittest.TestCase):
             feldspar.job(rock(numerics={"accuracy": object()}))
         self.assertEqual(caught.exception.mistakes[0].key, "numerics.accuracy")
 
+    def test_settings_go_over_file_text_and_dictionary(self):
+        job = feldspar.job(rock(), settings={"material.contact.tau": "31 MPa", "test.UCS.plate_mu": 0.3})
+        self.assertIn('tau = "3.1e+07 Pa"', job.resolved())
+        self.assertEqual(job.resolved(), feldspar.job(feldspar.job(rock()).text.replace("29.75 MPa", "31 MPa"), settings=["test.plate_mu=0.3"], name="<dict>").resolved())
+        with self.assertRaises(feldspar.InputError) as caught:
+            feldspar.job(rock(), settings={"material.contact.taw": 1})
+        self.assertIn("tau", str(caught.exception))
+        with self.assertRaises(feldspar.InputError):
+            feldspar.job(job, settings={"numerics.accuracy": "1 %"})
+
     def test_a_missing_file_is_an_input_error(self):
         with self.assertRaises(feldspar.InputError):
             feldspar.job("no-such-job.toml")

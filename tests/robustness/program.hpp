@@ -27,6 +27,7 @@ struct Outcome {
     int code = -1;  ///< exit code; 128 + signal when a signal ended it
     std::string out;
     std::string err;
+    double resident_bytes = 0.0;  ///< at most
 };
 
 /// A running program. Its output goes to files outside its working directory.
@@ -76,10 +77,11 @@ public:
 
     Outcome finish() {
         int status = 0;
-        waitpid(child_, &status, 0);
+        struct rusage usage {};
+        wait4(child_, &status, 0, &usage);
         child_ = -1;
         return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), read_text(outputs_ / "out"),
-                read_text(outputs_ / "err")};
+                read_text(outputs_ / "err"), 1024.0 * static_cast<double>(usage.ru_maxrss)};
     }
 
 private:

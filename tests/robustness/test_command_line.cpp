@@ -1,5 +1,6 @@
 // The command line: what it offers, what it refuses, and where it writes.
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "program.hpp"
@@ -450,6 +451,44 @@ TEST(CommandLine, JsonIsAloneOnStandardOutput) {
     const auto error = nlohmann::json::parse(wrong.out).at("error");
     EXPECT_EQ(error.at("key"), "specimen.width");
     EXPECT_NE(error.at("message").get<std::string>().find("--set"), std::string::npos) << wrong.out;
+}
+
+// What `check` says of memory and steps, against what the run takes.
+TEST(CommandLine, CheckForeseesStepsAndMemory) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml",
+               small_job("[[test]]\nkind = \"uniaxial-compression\"\n", "[1]", "kind = \"adaptive\"\naccuracy = \"2 %\"\n"));
+    const Outcome check = run_program(place.path(), {"check", "job.toml"});
+    ASSERT_EQ(check.code, 0) << check.err;
+    std::smatch steps, memory;
+    ASSERT_TRUE(std::regex_search(check.out, steps, std::regex("nine tests in ten take (\\d+) to (\\d+)"))) << check.out;
+    ASSERT_TRUE(std::regex_search(check.out, memory, std::regex("memory +([\\d.]+) MB(?: to ([\\d.]+) MB)?"))) << check.out;
+    const double least_MB = std::stod(memory[1]), most_MB = memory[2].matched ? std::stod(memory[2]) : least_MB;
+    const Outcome run = run_program(place.path(), {"run", "job.toml", "--out", "out", "--json"});
+    ASSERT_EQ(run.code, 0) << run.err;
+    const double taken = nlohmann::json::parse(run.out).at("tests").at(0).at("steps");
+    EXPECT_GE(taken, std::stod(steps[1]));
+    EXPECT_LE(taken, std::stod(steps[2]));
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // which have memory of their own
+    EXPECT_GE(run.resident_bytes, 0.8e6 * least_MB) << "the memory that is foreseen is to be right within a fifth";
+    EXPECT_LE(run.resident_bytes, 1.2e6 * most_MB);
+#endif
+}
+
+TEST(CommandLine, CheckForeseesThatPressureMakesATestLonger) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job("[[test]]\nkind = \"uniaxial-compression\"\n[[test]]\nkind = \"biaxial\"\n"
+                                             "sigma3 = [\"2 MPa\", \"20 MPa\"]\n"));
+    const std::string said = run_program(place.path(), {"check", "job.toml"}).out;
+    std::vector<double> steps;
+    const std::regex about("about (\\d+) steps");
+    for (std::sregex_iterator found(said.begin(), said.end(), about), end; found != end; ++found)
+        steps.push_back(std::stod((*found)[1]));
+    ASSERT_EQ(steps.size(), 3u) << said;
+    EXPECT_LT(steps[0], steps[1]);
+    EXPECT_LT(steps[1], steps[2]);
+    const std::string limited = run_program(place.path(), {"check", "job.toml", "--set", "numerics.maximum_steps=500"}).out;
+    EXPECT_NE(limited.find("expected, each        500 steps"), std::string::npos) << limited;
 }
 
 TEST(CommandLine, FieldsAreExportedFromTheRun) {

@@ -38,6 +38,22 @@ TEST(Envelope, RunsSavesAndGoesOn) {
 
     const Outcome again = run_program(place.path(), command);  // nothing is run twice
     EXPECT_NE(again.out.find("0 runs done now, 10 before"), std::string::npos) << again.out;
+
+    std::vector<std::string> for_programs = command, quiet = command;
+    for_programs.push_back("--json");
+    quiet.push_back("--quiet");
+    const Outcome object = run_program(place.path(), for_programs);
+    ASSERT_EQ(object.code, 0) << object.err;
+    const auto printed = nlohmann::json::parse(object.out);
+    EXPECT_EQ(printed.at("envelopes"), json.at("envelopes"));
+    EXPECT_EQ(printed.at("page"), "results/job-envelope/envelope.html");
+    EXPECT_EQ(printed.at("interrupted"), false);
+    EXPECT_EQ(printed.at("executed").at("done_before"), 10);
+    EXPECT_NE(object.err.find("Cohesion"), std::string::npos) << "the table is for the reader";
+    const Outcome silent = run_program(place.path(), quiet);
+    EXPECT_EQ(silent.out, "results/job-envelope\n");
+    EXPECT_EQ(silent.err.find("10 done already"), std::string::npos) << silent.err;
+    EXPECT_NE(silent.err.find("The job has no brazilian test"), std::string::npos) << "what was added to the job is said";
     expect_no_half_files(place / "results");
 }
 

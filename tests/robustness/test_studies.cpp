@@ -2,11 +2,9 @@
 #include <pty.h>
 #include <sys/ioctl.h>
 
-#include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 
-#include "program.hpp"
+#include "studies.hpp"
 
 namespace feldspar::testing_program {
 namespace {
@@ -27,19 +25,6 @@ constexpr int runs_of_two_axes = 24;
 void write_study(const TemporaryFolder& place) {
     write_text(place / "job.toml", small_job());
     write_text(place / "study.toml", two_axes);
-}
-
-/// The numbers of every run that is done, but for those that tell of time.
-std::map<std::string, std::string> finished(const TemporaryFolder& place) {
-    std::map<std::string, std::string> runs;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(place / "results/study/runs", error)) {
-        if (!fs::exists(entry.path() / "run.json")) continue;
-        nlohmann::json record = nlohmann::json::parse(read_text(entry.path() / "run.json"));
-        for (const char* time : {"wall_s", "ms_per_step", "threads"}) record["numbers"].erase(time);
-        runs[entry.path().filename()] = record["numbers"].dump();
-    }
-    return runs;
 }
 
 /// What the program counted: "N runs done now".
@@ -214,6 +199,42 @@ TEST(Studies, NamesDoNotCommandTheTerminal) {
     EXPECT_EQ(mistyped.code, 2);
     EXPECT_NE(mistyped.err.find("\\x1b[31m"), std::string::npos) << mistyped.err;
     EXPECT_EQ(mistyped.err.find('\x1b'), std::string::npos) << mistyped.err;
+}
+
+TEST(Studies, AreSetFromTheCommandLineAndPrintedForPrograms) {
+    const TemporaryFolder place;
+    write_text(place / "job.toml", small_job());
+    write_text(place / "study.toml",
+               "job = \"job.toml\"\n[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.4]\n");
+    const std::vector<std::string> command{"study", "study.toml", "--set", "material.contact.tau=20MPa"};
+    std::vector<std::string> for_programs = command;
+    for_programs.push_back("--json");
+    const Outcome first = run_program(place.path(), for_programs);
+    ASSERT_EQ(first.code, 0) << first.err;
+    const auto object = nlohmann::json::parse(first.out);
+    EXPECT_EQ(object.at("directory"), "results/study");
+    EXPECT_EQ(object.at("executed").at("done"), 2);
+    ASSERT_EQ(object.at("points").size(), 2u);
+    EXPECT_EQ(object.at("points").at(1).at("labels").at("mu"), "0.4");
+    EXPECT_GT(object.at("points").at(1).at("properties").at("UCS_MPa").at("mean").get<double>(), 0.0);
+    EXPECT_NE(first.err.find("Page: results/study/study.html"), std::string::npos) << first.err;
+    EXPECT_NE(read_text(place / "results/study/study.html").find("--set material.contact.tau=20MPa"), std::string::npos);
+
+    std::vector<std::string> quiet = command;
+    quiet.push_back("--quiet");
+    const Outcome second = run_program(place.path(), quiet);
+    EXPECT_EQ(second.out, "results/study\n");
+    EXPECT_EQ(second.err, "");
+    const Outcome status = run_program(place.path(), {"study", "status", "study.toml", "--set", "material.contact.tau=20MPa"});
+    EXPECT_NE(status.out.find("2 done"), std::string::npos) << status.out;
+    const Outcome plain = run_program(place.path(), {"study", "status", "study.toml"});
+    EXPECT_NE(plain.out.find("0 done"), std::string::npos) << "the runs of the file are others: " << plain.out;
+
+    const Outcome wrong = run_program(place.path(), {"study", "study.toml", "--json", "--set", "material.contact.mu=0.3"});
+    EXPECT_EQ(wrong.code, 2);
+    const auto error = nlohmann::json::parse(wrong.out).at("error");
+    EXPECT_EQ(error.at("kind"), "input");
+    EXPECT_NE(error.at("message").get<std::string>().find("the axis 'mu' varies this key"), std::string::npos) << wrong.out;
 }
 
 }  // namespace

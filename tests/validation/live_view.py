@@ -35,8 +35,8 @@ SHEET = """[document.documentElement.scrollWidth, document.documentElement.clien
 class Program:
     """A run with its live view, and what it says."""
 
-    def __init__(self, command):
-        self.lines, self.process = [], subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
+    def __init__(self, command, cwd=None):
+        self.lines, self.process = [], subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, cwd=cwd)
         threading.Thread(target=lambda: self.lines.extend(self.process.stderr), daemon=True).start()
 
     def address(self):
@@ -104,6 +104,7 @@ def main():
             size(browser, 1000)
             browser.events.clear()
             browser.ask("Page.navigate", url=address)
+            wait_for(browser, "typeof charts !== 'undefined' && document.querySelector('.live') !== null")
             first = wait_for(browser, f"{CURVES}.some((n) => n > 5) && {PATTERNS}.some((drawn) => drawn) && {CURVES}")
             if not first:
                 wrong.append("no curve or no grains appear: " + str(browser.evaluate(f"[{CURVES}, {PATTERNS}]")))

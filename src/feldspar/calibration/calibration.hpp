@@ -71,8 +71,11 @@ struct Calibration {
 };
 
 /// Reads and checks the file. @throws InputError naming file, line, key, value and what is allowed
-Calibration read_calibration(const std::filesystem::path& file);
-Calibration parse_calibration(const std::string& text, const std::filesystem::path& name);
+/// @param settings  "key=value" (job/set_keys.hpp), over the job and `[set]`. A key that is an unknown, or coupled to one, is
+/// refused, and so are other tables than specimen, model, material, numerics, test and laboratory
+Calibration read_calibration(const std::filesystem::path& file, std::span<const std::string> settings = {});
+Calibration parse_calibration(const std::string& text, const std::filesystem::path& name,
+                              std::span<const std::string> settings = {});
 
 /// A commented calibration to start from, which reads as it stands beside a job "rock.toml" with a uniaxial, a Brazilian and a
 /// biaxial test.

@@ -7,6 +7,7 @@
 
 #include "feldspar/calibration/calibration.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/set_keys.hpp"
 #include "feldspar/lab/rock_properties.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/study/reader_on_job.hpp"
@@ -61,10 +62,10 @@ struct RangeRule {
 
 class CalibrationReader : private ReaderOnJob {
 public:
-    CalibrationReader(const std::string& text, const std::filesystem::path& file)
+    CalibrationReader(const std::string& text, const std::filesystem::path& file, std::span<const std::string> settings)
         : ReaderOnJob(text, file, {"name", "job", "set", "results", "seeds", "confirm_seeds", "budget", "targets", "unknown"},
-                      {"job", "targets", "unknown"}),
-          result_{file, text, {}, {}, base_, {}, {}, {}, {}, 300, {}} {}
+                      {"job", "targets", "unknown"}, settings),
+          result_{file, with_settings(text, settings), {}, {}, base_, {}, {}, {}, {}, 300, {}} {}
 
     Calibration read() {
         read_names(result_);
@@ -87,8 +88,10 @@ private:
             rock_ = base_.with({});
         } catch (const InputError& error) {
             for (const InputError& one : each_mistake(error))
-                mistakes_.add(InputError({root_.file(), 0, 0, "set"}, one.place().key + " " + one.problem(), one.allowed(),
-                                         one.suggestion()),
+                mistakes_.add(is_setting(one.place())
+                                  ? one
+                                  : InputError({root_.file(), 0, 0, "set"}, one.place().key + " " + one.problem(), one.allowed(),
+                                               one.suggestion()),
                               "set");
         }
     }
@@ -262,6 +265,7 @@ private:
         for (const TableReader& table :
              root_.tables("unknown", "an unknown", {"name", "key", "times", "coupled", "range", "scale"}))
             result_.unknowns.push_back(read_unknown(table));
+        for (const Unknown& unknown : result_.unknowns) refuse_settings_over(unknown);
         for (std::size_t i = 0; i < result_.unknowns.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
                 if (result_.unknowns[i].key == result_.unknowns[j].key && !result_.unknowns[i].key.empty())
@@ -282,6 +286,17 @@ private:
                                          one.allowed(), one.suggestion()),
                               {});
         }
+    }
+
+    // Behind it the unknown would be lost.
+    void refuse_settings_over(const Unknown& unknown) {
+        std::optional<std::string> setting = base_.setting_over(unknown.key);
+        for (const auto& [key, factor] : unknown.coupled)
+            if (!setting) setting = base_.setting_over(key);
+        if (setting)
+            mistakes_.add(InputError({place_of(*setting), 0, 0, {}},
+                                     fmt::format("the unknown '{}' decides this key", unknown.name), "keys that are not sought"),
+                          "unknown");
     }
 
     Unknown read_unknown(const TableReader& table) {
@@ -377,12 +392,12 @@ private:
 
 }  // namespace
 
-Calibration parse_calibration(const std::string& text, const std::filesystem::path& name) {
-    return CalibrationReader(text, name).read();
+Calibration parse_calibration(const std::string& text, const std::filesystem::path& name, std::span<const std::string> settings) {
+    return CalibrationReader(text, name, settings).read();
 }
 
-Calibration read_calibration(const std::filesystem::path& file) {
-    return parse_calibration(read_toml_file(file, "calibration"), file);
+Calibration read_calibration(const std::filesystem::path& file, std::span<const std::string> settings) {
+    return parse_calibration(read_toml_file(file, "calibration"), file, settings);
 }
 
 std::string Target::label() const { return name == "sigma1" ? fmt::format("sigma1 at {:g} MPa", sigma3_Pa / 1e6) : name; }

@@ -4,7 +4,6 @@
 #include <string_view>
 #include <utility>
 
-#include "feldspar/base/printable.hpp"
 #include "feldspar/base/utf8.hpp"
 #include "feldspar/job/file_reader.hpp"
 #include "feldspar/job/job_sections.hpp"
@@ -133,13 +132,7 @@ SpecimenSpec parse_specimen(const std::string& text, const std::string& name) {
 Job parse_job(const std::string& text, const std::string& name, std::span<const std::string> settings) {
     toml::table tree = parse_toml(text, name);
     set_keys(tree, settings);
-    std::string whole = text;
-    if (!settings.empty()) {
-        whole += (text.empty() || text.back() == '\n') ? "\n" : "\n\n";
-        whole += "# set on the command line, over what stands above:\n";
-        for (const std::string& setting : settings) whole += "# --set " + printable(setting, LineEnds::escaped) + "\n";
-    }
-    return read_tree(std::move(tree), whole, name);
+    return read_tree(std::move(tree), with_settings(text, settings), name);
 }
 
 Job read_job(const std::filesystem::path& file, std::span<const std::string> settings) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "feldspar/base/printable.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -15,7 +16,7 @@ constexpr std::string_view kOption = "--set ";
 
 [[noreturn]] void refuse(const std::string& setting, const std::string& problem, const std::string& allowed = {},
                          const std::string& suggestion = {}) {
-    throw InputError({std::string(kOption) + "'" + setting + "'", 0, 0, {}}, problem, allowed, suggestion);
+    throw InputError({place_of(setting), 0, 0, {}}, problem, allowed, suggestion);
 }
 
 std::string quoted(const std::string& text) {
@@ -41,7 +42,7 @@ toml::table parse_setting(const std::string& setting) {
     const std::string value = trimmed(std::string_view(setting).substr(equals + 1));
     if (key.empty()) refuse(setting, "has no key", form);
     if (value.empty()) refuse(setting, "has no value", form);
-    const std::string source = std::string(kOption) + "'" + setting + "'";
+    const std::string source = place_of(setting);
     const auto read = [&](const std::string& written) { return toml::parse(key + " = " + written, source); };
     const auto single = [](const toml::table& tree) {  // a value with a line end could bring further keys
         const toml::table* table = &tree;
@@ -127,6 +128,26 @@ void set_in_list(toml::array& list, const std::string& list_name, const std::str
 }  // namespace
 
 bool is_setting(const toml::source_region& region) { return region.path && region.path->starts_with(kOption); }
+bool is_setting(const InputPlace& place) { return place.file.starts_with(kOption); }
+
+std::string place_of(const std::string& setting) { return std::string(kOption) + "'" + setting + "'"; }
+
+std::vector<std::string> key_of(const std::string& setting) {
+    const toml::table tree = parse_setting(setting);
+    std::vector<std::string> words;
+    for (const toml::table* table = &tree; table != nullptr && !table->empty() && (table == &tree || !table->is_inline());
+         table = table->begin()->second.as_table())
+        words.emplace_back(table->begin()->first.str());
+    return words;
+}
+
+std::string with_settings(const std::string& text, std::span<const std::string> settings) {
+    if (settings.empty()) return text;
+    std::string whole = text + ((text.empty() || text.back() == '\n') ? "\n" : "\n\n");
+    whole += "# set on the command line, over what stands above:\n";
+    for (const std::string& setting : settings) whole += "# --set " + printable(setting, LineEnds::escaped) + "\n";
+    return whole;
+}
 
 void set_keys(toml::table& job, std::span<const std::string> settings) {
     for (const std::string& setting : settings) {

@@ -3,6 +3,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "feldspar/job/toml_reader.hpp"
 
@@ -21,5 +22,16 @@ void set_keys(toml::table& job, std::span<const std::string> settings);
 
 /// Whether a place in the source of a node is a setting, and not a line of a file.
 bool is_setting(const toml::source_region& region);
+/// The same of the place of a mistake.
+bool is_setting(const InputPlace& place);
+
+/// The key of a setting, word by word: {"test", "BTS", "plate_mu"}. @throws InputError as set_keys()
+std::vector<std::string> key_of(const std::string& setting);
+
+/// What stands for a setting as the file of a mistake: "--set 'material.contact.tau=1 GPa'".
+std::string place_of(const std::string& setting);
+
+/// The text of a file with the settings below it, as comments: for those who read later what was run.
+std::string with_settings(const std::string& text, std::span<const std::string> settings);
 
 }  // namespace feldspar

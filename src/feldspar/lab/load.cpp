@@ -11,6 +11,7 @@
 #include "feldspar/base/stopwatch.hpp"
 #include "feldspar/lab/body_energy.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/foresee.hpp"
 #include "feldspar/lab/grain_fields.hpp"
 #include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/observer.hpp"
@@ -91,34 +92,6 @@ void maintain_contacts(Experiment& e, ContactFinder& finder, ShapeWatch& watch, 
     if (shapes.fallback_sides > 0)
         result.angular_momentum_loss = std::max(result.angular_momentum_loss, fallback_moment_loss(e.assembly));
 }
-
-}  // namespace
-
-// How many times as long as a plain test one with stages typically takes: a stage about a third of it.
-double stages_over_test(const Experiment& e) {
-    constexpr double kOfATest = 0.3;
-    constexpr int kUntilTheEnd = 8;  // repetitions of what is repeated until the test ends
-    double stages = 0.0;
-    for (const StageGroup& group : e.stages)
-        stages += static_cast<double>(group.stages.size()) * (group.times == 0 ? kUntilTheEnd : group.times);
-    return stages > 1.0 ? 1.0 + kOfATest * (stages - 1.0) : 1.0;
-}
-
-double typical_steps(const Experiment& e) {
-    const NumericsSpec& n = e.setup.numerics;
-    const MethodId kind = e.setup.test.kind;
-    if (n.kind != NumericsKind::adaptive) {
-        return e.method.rate.fixed_speed_strain * e.length_m / (n.speed_m.value_or(kPaperSpeed) * e.settings.dt);
-    }
-    // In travel times, at the usual accuracy: medians over eight rocks (docs/validation, true strengths). The time of a mode is
-    // known once the elastic answer is; a beam with a span of 4 h takes 1.5 times as long as a wave through its whole length.
-    constexpr double kModeOverWave = 1.5;
-    const double time = e.travel_time * (e.method.start.time_of_mode && e.preparation_steps == 0 ? kModeOverWave : 1.0);
-    return stages_over_test(e) * e.method.rate.travel_times * time *
-           std::sqrt(residual_target(NumericsSpec{}, kind) / residual_target(n, kind));
-}
-
-namespace {
 
 // What leads the loading, and goes back with the body.
 struct Lead {
@@ -209,7 +182,7 @@ public:
                 StageCursor(e)} {}
 
     void run() {
-        const int block = adaptive_ ? 10 : 50;  // steps between records
+        const int block = steps_per_row(e_.setup.numerics);
         TestKeeping* const keeping = e_.keeping;
         if (keeping != nullptr && keeping->goes_on(TestPart::loading)) {
             keeping->go_on([&](StateReader& reader) { go_on(reader); });

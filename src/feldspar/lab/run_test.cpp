@@ -9,6 +9,7 @@
 #include "feldspar/base/stopwatch.hpp"
 #include "feldspar/lab/acoustic_emission.hpp"
 #include "feldspar/lab/experiment.hpp"
+#include "feldspar/lab/foresee.hpp"
 #include "feldspar/lab/keep_test.hpp"
 #include "feldspar/lab/memory.hpp"
 #include "feldspar/lab/nearest_to_failure.hpp"
@@ -224,7 +225,6 @@ TestPreview preview_test(const TestSetup& setup, const RunControl& control) {
     preview.contact_points = static_cast<int>(e.assembly.points.size());
     preview.nodes = e.assembly.nodes.count();
     preview.triangles = static_cast<int>(e.assembly.triangles.size());
-    preview.memory_bytes = memory_of_run(*setup.specimen, e.assembly, setup.test);
     preview.omega2 = e.omega2;
     preview.omega2_limit = e.omega2_bound;
     preview.stable_time_step_s = std::sqrt(e.omega2_bound / real_omega2);
@@ -232,9 +232,9 @@ TestPreview preview_test(const TestSetup& setup, const RunControl& control) {
     evaluate_forces(e.assembly, e.team, Strength::unlimited);
     const Clock::time_point start = Clock::now();
     e.run(kTrial);
-    const double per_step = seconds_since(start) / kTrial;
-    preview.expected_steps = typical_steps(e);
-    preview.expected_seconds = preview.expected_steps * per_step;
+    preview.step_seconds = seconds_since(start) / kTrial;
+    preview.steps = foreseen_steps(e);
+    preview.memory_bytes = memory_of_run(setup, e.assembly, preview.steps);
     return preview;
 }
 

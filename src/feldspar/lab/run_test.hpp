@@ -87,16 +87,21 @@ void keep_result(const TestResult& result, const StatePut& put);
 /// The result that keep_result() has put. @param setup  of the same test  @throws StateError
 TestResult kept_result(const TestSetup& setup, std::span<const char> kept);
 
+/// What is known of a test before it is run: what half of its like stayed below, and the bounds of nine in ten.
+struct Foreseen {
+    double low = 0.0, usual = 0.0, high = 0.0;
+};
+
 /// What `feldspar check` prints: built, judged and timed for a moment, but not run.
 struct TestPreview {
     int grains = 0, contacts = 0, contact_points = 0, nodes = 0, triangles = 0;
     int bodies = 0;                   ///< that move by themselves: grains, or their inner particles
-    double memory_bytes = 0.0;        ///< at the peak of the run, an estimate (lab/memory.hpp)
+    Foreseen memory_bytes;            ///< at the peak of the run (lab/memory.hpp)
     double omega2 = 0.0;              ///< largest omega^2 dt^2 of the initial state
     double omega2_limit = 0.0;        ///< 4, or 4 / (1 + alpha) with local damping
     double stable_time_step_s = 0.0;  ///< largest stable time step with real masses
-    double expected_steps = 0.0;
-    double expected_seconds = 0.0;
+    Foreseen steps;                   ///< of loading (lab/foresee.hpp)
+    double step_seconds = 0.0;        ///< that a step takes now, with the threads that are given
 };
 
 /// @throws InputError for an unstable setting.

@@ -115,7 +115,8 @@ void LiveBoard::Watch::add_frame(const TestSight& sight, Clock::time_point now) 
     test_.version = board_.version_;
 }
 
-LiveBoard::LiveBoard(std::string name, std::atomic<bool>& stop) : name_(std::move(name)), stop_(stop) {}
+LiveBoard::LiveBoard(std::string name, std::atomic<bool>& stop, LiveWords words)
+    : name_(std::move(name)), words_(std::move(words)), stop_(stop) {}
 
 LiveBoard::~LiveBoard() = default;
 
@@ -131,6 +132,20 @@ void LiveBoard::planned(std::vector<LivePlan> tests) {
         tests_.push_back(std::make_unique<Test>());
         tests_.back()->plan = std::move(plan);
     }
+    news();
+}
+
+std::size_t LiveBoard::adds(LivePlan plan) {
+    const std::lock_guard lock(mutex_);
+    tests_.push_back(std::make_unique<Test>());
+    tests_.back()->plan = std::move(plan);
+    news();
+    return tests_.size() - 1;
+}
+
+void LiveBoard::expects(std::size_t most) {
+    const std::lock_guard lock(mutex_);
+    most_ = most;
     news();
 }
 
@@ -167,6 +182,15 @@ void LiveBoard::progress(std::size_t number, const TestProgress& state) {
     test.version = version_;
 }
 
+void LiveBoard::waits(std::size_t number) {
+    const std::lock_guard lock(mutex_);
+    Test& test = *tests_.at(number);
+    test.state = LiveState::waiting;
+    test.forget();
+    news();
+    test.version = version_;
+}
+
 void LiveBoard::written(std::size_t number) {
     const std::lock_guard lock(mutex_);
     Test& test = *tests_.at(number);
@@ -181,13 +205,10 @@ void LiveBoard::ended(std::size_t number, const LiveResult& result) {
     const std::lock_guard lock(mutex_);
     Test& test = *tests_.at(number);
     if (test.state == LiveState::running) test.took_s = seconds_since(test.began);
+    if (result.took_s > 0.0) test.took_s = result.took_s;
     test.state = result.state;
     test.words = result.words;
-    test.progress.reset();  // the report has all of it
-    test.curve = {};
-    test.cracks = {};
-    test.frame.reset();
-    test.specimen.reset();
+    test.forget();  // the report has all of it
     news();
     test.version = version_;
 }
@@ -303,6 +324,11 @@ double LiveBoard::seconds_left() const {
         }
         work += left;
         longest = std::max(longest, left);
+    }
+    if (most_ > tests_.size()) {  // tests of which nothing is known yet
+        if (of_all.count == 0 && of_running.count == 0) return -1.0;
+        const double each = of_all.count > 0 ? of_all.value() : of_running.value();
+        work += each * static_cast<double>(most_ - tests_.size());
     }
     return std::max(longest, work / std::max(1, running));
 }

@@ -27,6 +27,13 @@ struct LivePlan {
     std::string strain_axis;
 };
 
+/// What the page calls things, and what becomes of a test that the user ends.
+struct LiveWords {
+    std::string whole = "run";  ///< "study", "calibration"
+    std::string one = "test";   ///< "run"
+    bool keeps_ended = true;    ///< a test that the user ends keeps its results; else it has none, and is made again another time
+};
+
 enum class LiveState { waiting, running, writing, ended, failed };
 
 /// A point of a curve, as it is shown.
@@ -52,7 +59,8 @@ struct LiveFrame {
 /// What is to be said of a test that has ended.
 struct LiveResult {
     LiveState state = LiveState::ended;
-    std::string words;  ///< "114 MPa, grade B", or why it failed
+    std::string words;    ///< "114 MPa, grade B", or why it failed
+    double took_s = 0.0;  ///< of one that was not made here; 0: as long as it was running here
 };
 
 /// The places of all calls: the run's on its own thread, but a test's watch on the test's; the pages' on any. Whoever looks costs
@@ -60,7 +68,7 @@ struct LiveResult {
 class LiveBoard {
 public:
     /// @param name  of the run   @param stop  is set when the user ends the run
-    LiveBoard(std::string name, std::atomic<bool>& stop);
+    LiveBoard(std::string name, std::atomic<bool>& stop, LiveWords words = {});
     ~LiveBoard();
     LiveBoard(const LiveBoard&) = delete;
     LiveBoard& operator=(const LiveBoard&) = delete;
@@ -68,6 +76,10 @@ public:
     // The run's side.
 
     void planned(std::vector<LivePlan> tests);
+    /// One more test, of which nobody knew before. @return its number
+    std::size_t adds(LivePlan test);
+    /// Tests become known on the way; there will be at most so many.
+    void expects(std::size_t most);
     /// What is being done now that is no test.
     void busy(const std::string& what);
     /// Test number `test` (from 0 on) begins on this specimen. @return who looks at it; it stays as long as the board
@@ -75,6 +87,8 @@ public:
     /// The same for a run of which only the progress is shown.
     void begins(std::size_t test);
     void progress(std::size_t test, const TestProgress& state);
+    /// It has ended without a result and waits again.
+    void waits(std::size_t test);
     /// It no longer runs, and its files are being written.
     void written(std::size_t test);
     void ended(std::size_t test, const LiveResult& result);
@@ -86,6 +100,7 @@ public:
     // The side of those who look.
 
     const std::string& name() const { return name_; }
+    const LiveWords& words() const { return words_; }
     std::filesystem::path report_file() const;
     bool is_over() const;
     std::string over_words() const;
@@ -111,11 +126,13 @@ private:
     double seconds_left() const;
 
     const std::string name_;
+    const LiveWords words_;
     std::atomic<bool>& stop_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::uint64_t version_ = 1;
     std::vector<std::unique_ptr<Test>> tests_;
+    std::size_t most_ = 0;  // tests that there will be; 0: those that are known
     std::string busy_;
     std::filesystem::path report_;
     int reports_ = 0;  // how often it was written

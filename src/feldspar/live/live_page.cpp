@@ -18,9 +18,10 @@ void put(std::string& page, const std::string& place, std::size_t from, const st
 
 }  // namespace
 
-std::string live_page(const std::string& report, const std::string& name, const std::string& over) {
+std::string live_page(const std::string& report, const std::string& name, const std::string& over, const LiveWords& words) {
     std::string page = report.empty() ? html_page(name, nlohmann::ordered_json::object(), "") : report;
-    const nlohmann::ordered_json live = {{"name", name}, {"over", over}, {"report", !report.empty()}};
+    const nlohmann::ordered_json live = {{"name", name},         {"over", over},     {"report", !report.empty()},
+                                         {"whole", words.whole}, {"one", words.one}, {"keeps_ended", words.keeps_ended}};
     const std::string end = "</body>";
     put(page, end, page.rfind(end),
         std::string("<style>\n") + asset_live_css + "</style>\n<script type=\"application/json\" id=\"live\">" +

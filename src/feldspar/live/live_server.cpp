@@ -135,15 +135,16 @@ struct LiveServer::Inside {
     void send_page(httplib::Response& response) {
         const std::filesystem::path file = board.report_file();
         const bool over = board.is_over();
-        response.set_content(live_page(file.empty() ? "" : text_of(file), board.name(), over ? board.over_words() : ""),
-                             "text/html; charset=utf-8");
+        response.set_content(
+            live_page(file.empty() ? "" : text_of(file), board.name(), over ? board.over_words() : "", board.words()),
+            "text/html; charset=utf-8");
         if (over) ++last_pages;
     }
 
     void stop(const httplib::Request& request, httplib::Response& response) {
         if (request.body == "run") {
             board.end_run();
-            return response.set_content("the run ends\n", "text/plain");
+            return response.set_content("the " + board.words().whole + " ends\n", "text/plain");
         }
         std::size_t test = 0;
         const char* const last = request.body.data() + request.body.size();
@@ -151,7 +152,7 @@ struct LiveServer::Inside {
         if (error != std::errc{} || end != last)
             return refuse(response, 400, "the body is neither \"run\" nor the number of a test");
         if (!board.end_test(test)) return refuse(response, 409, "no such test runs");
-        response.set_content("the test ends\n", "text/plain");
+        response.set_content("the " + board.words().one + " ends\n", "text/plain");
     }
 
     void listen() {

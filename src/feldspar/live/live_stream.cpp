@@ -147,7 +147,8 @@ std::string LiveStream::next(std::chrono::milliseconds at_most) {
         const double left = board_.seconds_left();
         run = {{"name", board_.name_},
                {"busy", board_.busy_},
-               {"tests", board_.tests_.size()},
+               {"tests", std::max(board_.tests_.size(), board_.most_)},
+               {"at_most", board_.most_ > board_.tests_.size()},
                {"running", running},
                {"ended", ended},
                {"failed", failed},

@@ -11,12 +11,13 @@ namespace feldspar {
 
 /// The news of a board for one page. The first ones hold everything.
 ///
-/// `run`: name, what it is busy with, tests, ended, failed, seconds_left, reports (how often the report has been written), over
-/// (how the run ended; null while it goes on), ending, cost (LiveBoard::cost()). `tests`, those of which there is something new:
-/// n (from 0 on), label, state, words, progress; and of a running one the parts `axes`; `curve` and `cracks` with `from` (how
-/// many the page has already: those behind are to be forgotten) and the new ones by columns; `outline`, once: corners of the
-/// grains in steps of `scale` from (x0, y0), mm (`begin` int32, `points` uint16 x, y); `frame`: displacements of these corners
-/// (int16 all x, then all y, in steps of `scale` mm). Numbers in blocks are little-endian, as base64.
+/// `run`: name, what it is busy with, tests, at_most (whether there may be fewer), ended, failed, seconds_left, reports (how
+/// often the report has been written), over (how the run ended; null while it goes on), ending, cost (LiveBoard::cost()).
+/// `tests`, those of which there is something new: n (from 0 on), label, state, words, progress; and of a running one the parts
+/// `axes`; `curve` and `cracks` with `from` (how many the page has already: those behind are to be forgotten) and the new ones by
+/// columns; `outline`, once: corners of the grains in steps of `scale` from (x0, y0), mm (`begin` int32, `points` uint16 x, y);
+/// `frame`: displacements of these corners (int16 all x, then all y, in steps of `scale` mm). Numbers in blocks are
+/// little-endian, as base64.
 class LiveStream {
 public:
     explicit LiveStream(LiveBoard& board);

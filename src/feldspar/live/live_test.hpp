@@ -58,6 +58,17 @@ struct LiveBoard::Test {
     std::shared_ptr<const Specimen> specimen;  // while it runs
     std::shared_ptr<const LiveFrame> frame;    // the last one
     std::unique_ptr<Watch> watch;
+
+    /// What is shown of a running one.
+    void forget() {
+        progress.reset();
+        curve = {};
+        cracks = {};
+        ++curve_round;
+        ++crack_round;
+        frame.reset();
+        specimen.reset();
+    }
 };
 
 }  // namespace feldspar

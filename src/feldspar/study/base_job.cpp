@@ -11,6 +11,7 @@
 
 #include "feldspar/base/utf8.hpp"
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/set_keys.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -168,8 +169,61 @@ std::string read_directory_name(const TableReader& table, std::string_view key, 
     return name;
 }
 
-BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : file_(root.text("job")) {
+namespace {
+
+const std::array<std::string_view, 2> tables_of_the_job{"variant", "laboratory"};  // which no piece has
+
+bool is_one_of(std::span<const std::string_view> words, std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+// A key of a piece or a setting: the kind of tests that it is for apart; none: all.
+struct PieceKey {
+    std::vector<std::string> words;
+    std::optional<MethodId> kind;
+
+    explicit PieceKey(std::vector<std::string> path) : words(std::move(path)) {
+        if (words.size() < 3 || words.front() != "test") return;
+        kind = find_method_called(words[1]);
+        if (kind) words.erase(words.begin() + 1);
+    }
+    // Whether both are one key, or one holds the other.
+    bool meets(const PieceKey& other) const {
+        if (kind && other.kind && *kind != *other.kind) return false;
+        const std::size_t shared = std::min(words.size(), other.words.size());
+        return std::equal(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(shared), other.words.begin());
+    }
+};
+
+void for_each_key(const toml::table& piece, const std::string& path, const std::function<void(const std::string&)>& visit) {
+    for (const auto& [key, value] : piece) {
+        const std::string full = path.empty() ? std::string(key.str()) : path + "." + std::string(key.str());
+        if (value.is_table() && !value.as_table()->empty())
+            for_each_key(*value.as_table(), full, visit);
+        else
+            visit(full);
+    }
+}
+
+}  // namespace
+
+BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file, std::span<const std::string> settings)
+    : file_(root.text("job")) {
     if (file_.is_relative()) file_ = file.parent_path() / file_;
+    std::vector<std::string> of_the_job;
+    for (const std::string& setting : settings) {
+        const std::string table = key_of(setting).front();
+        if (is_one_of(tables_of_the_job, table))
+            of_the_job.push_back(setting);
+        else if (table == "specimen" || table == "test")
+            others_.push_back(setting);
+        else if (is_one_of(job_pieces, table))
+            physics_.push_back(setting);
+        else
+            throw InputError({place_of(setting), 0, 0, table}, "is no table of a job that can be set here",
+                             "keys of " + listed(job_pieces) + ", " + listed(tables_of_the_job) +
+                                 "; packings, threads and the like have keys of the file or options of the command");
+    }
     root.check({"job"}, [&] {
         try {
             text_ = read_toml_file(file_, "job");
@@ -177,8 +231,13 @@ BaseJob::BaseJob(const TableReader& root, const std::filesystem::path& file) : f
             root.fail("job", "'" + file_.string() + "' " + error.problem(),
                       "a job file; a relative path counts from this file's folder");
         }
-        tree_ = parse_toml(text_, file_.string());
-        job_ = read_tree(tree_, text_, file_.string());
+        const auto parsed = [&] {
+            toml::table tree = parse_toml(text_, file_.string());
+            set_keys(tree, of_the_job);
+            return tree;
+        };
+        tree_ = parsed();
+        job_ = read_tree(of_the_job.empty() ? tree_ : parsed(), text_, file_.string());  // a copy would forget what is a setting
     });
     if (root.has("set")) common_ = read_piece(root, "set");
 }
@@ -199,10 +258,28 @@ Job BaseJob::with(const toml::table& piece) const {
         }
     }
     tree.insert_or_assign("variant", toml::array{variant});
+    set_keys(*tree.get("variant")->as_array()->get(0)->as_table(), physics_);
+    set_keys(tree, others_);
     Job job = read_tree(std::move(tree), text_, file_.string());
     job.variants.front().name.clear();
     job.variants.front().stem.clear();
     return job;
+}
+
+std::optional<std::string> BaseJob::setting_over(const std::string& key) const {
+    const PieceKey wanted(split(key));
+    for (const std::vector<std::string>* settings : {&physics_, &others_})
+        for (const std::string& setting : *settings)
+            if (PieceKey(key_of(setting)).meets(wanted)) return setting;
+    return std::nullopt;
+}
+
+std::optional<std::string> BaseJob::setting_over(const toml::table& piece) const {
+    std::optional<std::string> found;
+    for_each_key(piece, {}, [&](const std::string& key) {
+        if (!found) found = setting_over(key);
+    });
+    return found;
 }
 
 Measure BaseJob::value_in(const toml::table& piece, const std::string& key) const {

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -55,7 +57,9 @@ class BaseJob {
 public:
     /// Reads the keys `job` and `set` of a file; a relative path counts from that file's folder. Mistakes in the job are noted as
     /// such of `job`.
-    BaseJob(const TableReader& root, const std::filesystem::path& file);
+    /// @param settings  "key=value", as set_keys() takes them: laid over the job, `[set]` and every piece. Those of `variant` and
+    /// `laboratory` are laid over the job's own file  @throws InputError for one of another table than these and job_pieces
+    BaseJob(const TableReader& root, const std::filesystem::path& file, std::span<const std::string> settings = {});
 
     /// As the job's own file has it.
     const Job& job() const { return job_; }
@@ -63,6 +67,11 @@ public:
 
     /// The job with `[set]` and a piece laid over it; with a single variant without a name. @throws InputError
     Job with(const toml::table& piece) const;
+
+    /// The setting behind which a key of a piece would be lost, in part or as a whole; none if there is none.
+    std::optional<std::string> setting_over(const std::string& key) const;
+    /// The same for all keys of a piece.
+    std::optional<std::string> setting_over(const toml::table& piece) const;
 
     /// What a key has in the resolved job with this piece, presets and defaults included. @throws InputError unless it is a
     /// number
@@ -73,7 +82,8 @@ private:
     std::string text_;
     std::filesystem::path file_;
     Job job_;
-    toml::table common_;  // [set]
+    toml::table common_;                         // [set]
+    std::vector<std::string> physics_, others_;  // settings of pieces: of tables that variants have, and of the rest
 };
 
 }  // namespace feldspar

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <exception>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -11,6 +12,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/stopwatch.hpp"
+#include "feldspar/lab/test_watch.hpp"
 #include "feldspar/study/notes.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_files.hpp"
@@ -39,8 +41,13 @@ public:
         std::set<std::string> seen;
         for (const Run& run : runs)  // points may share runs
             if (seen.insert(run.id).second) runs_.push_back(&run);
-        const SettledRuns settled =
-            settled_runs(ledger_.find(std::vector<std::string>(seen.begin(), seen.end())), whose_failures_count());
+        const std::vector<RunRecord> records = ledger_.find(std::vector<std::string>(seen.begin(), seen.end()));
+        const SettledRuns settled = settled_runs(records, whose_failures_count());
+        if (control_.live != nullptr) {
+            control_.live->plan(runs_);
+            for (const RunRecord& record : records)
+                if (settled.done.contains(record.id) || settled.failed.contains(record.id)) control_.live->settled(record);
+        }
         execution_.found_done = static_cast<int>(settled.done.size());
         execution_.found_failed = static_cast<int>(settled.failed.size());
         std::erase_if(runs_, [&](const Run* run) { return settled.done.contains(run->id) || settled.failed.contains(run->id); });
@@ -63,9 +70,11 @@ public:
         switch (ledger_.claim(run, whose_failures_count())) {  // another process may have ended it by now
             case Ledger::Claim::done:
                 ++execution_.found_done;
+                show(ledger_.find(run.id));
                 return {};
             case Ledger::Claim::failed:
                 ++execution_.found_failed;
+                show(ledger_.find(run.id));
                 return {};
             case Ledger::Claim::others:
                 others_.push_back(i);
@@ -79,23 +88,29 @@ public:
                                                 run)) {  // it ended, but the program did before its row was written
             ledger_.record(*record);
             forget_state(ledger_.run_directory(run.id));
+            show(record);
             ++execution_.found_done;
             return {};
         }
         if (const auto record = failure_left(ledger_.run_directory(run.id), run);
             record && !settled_runs(std::span(&*record, 1), whose_failures_count()).failed.empty()) {
             ledger_.record(*record);
+            show(record);
             ++execution_.found_failed;
             return {};
         }
+        if (control_.live != nullptr) control_.live->begins(run);
         return [this, &run](const RunControl& run_control) { return run_one(run, run_control); };
     }
 
     void progress(std::size_t i, const TestProgress& state) override {
         if (control_.progress) control_.progress(*runs_[i], state);
+        if (control_.live != nullptr) control_.live->progress(*runs_[i], state);
     }
 
-    void ended(std::size_t) override {}
+    void ended(std::size_t i) override {
+        if (control_.live != nullptr) control_.live->written(*runs_[i]);
+    }
 
     void finished(std::size_t i, TestResult result) override {
         const Run& run = *runs_[i];
@@ -103,9 +118,15 @@ public:
             if (result.interrupted) throw Interrupted();
             if (!ledger_.holds(run.id)) {  // this process slept for so long that another took the run
                 others_.push_back(i);
+                if (control_.live != nullptr) control_.live->waits(run);
                 return;
             }
             execution_.run_s += result.wall_s;
+            if (result.stop_reason == kEndedByUser) {  // it has not come as far as one that is done
+                record(run, failed_record(run, kEndedByUser, Failure::other, control_.provenance));
+                ++execution_.failed;
+                return;
+            }
             finish_files(run, result, ledger_.run_directory(run.id), control_.keep, control_.provenance);
             record(run, *finished_record(ledger_.run_directory(run.id), run));
             ++execution_.done;
@@ -144,9 +165,9 @@ private:
     // On the run's own thread.
     TestResult run_one(const Run& run, const RunControl& run_control) {
         const Clock::time_point start = Clock::now();
-        TestResult result =
-            run_to_files(run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control,
-                         control_.device, control_.checkpoints, [this](const std::string& line) { notes_.add(line); });
+        TestResult result = run_to_files(
+            run, packings_, ledger_.run_directory(run.id), control_.keep, control_.provenance, run_control, control_.device,
+            control_.checkpoints, [this](const std::string& line) { notes_.add(line); }, control_.live);
         result.wall_s = seconds_since(start);
         return result;
     }
@@ -159,6 +180,7 @@ private:
         } catch (const Interrupted&) {
             ledger_.release(run.id);
             ++interrupted_;
+            if (control_.live != nullptr) control_.live->waits(run);
         } catch (const OutputError&) {
             ledger_.release(run.id);
             ++interrupted_;
@@ -178,8 +200,13 @@ private:
         ++execution_.failed;
     }
 
+    void show(const std::optional<RunRecord>& record) const {
+        if (control_.live != nullptr && record) control_.live->settled(*record);
+    }
+
     void record(const Run& run, const RunRecord& record) {
         ledger_.record(record);
+        show(record);
         if (control_.ended) control_.ended(run, record);
     }
 

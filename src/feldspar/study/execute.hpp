@@ -10,6 +10,7 @@
 #include "feldspar/output/checkpoints.hpp"
 #include "feldspar/study/device_use.hpp"
 #include "feldspar/study/ledger.hpp"
+#include "feldspar/study/live_runs.hpp"
 
 namespace feldspar {
 
@@ -27,6 +28,8 @@ struct ExecuteControl {
     std::function<void(const Run&, const TestProgress&)> progress;  ///< a run tells how far it is; may be empty
     std::function<void(const Run&, const RunRecord&)> ended;        ///< done or failed; may be empty
     std::function<void(const std::string&)> note;                   ///< something that the user should read; may be empty
+    LiveRuns* live = nullptr;  ///< shows the runs while they are made; may be null. One that the user ends there is recorded as
+                               ///< failed, "ended by the user", and made again by the next call
 };
 
 /// How many of the runs were found in which state, and what became of the others.

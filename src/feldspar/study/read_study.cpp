@@ -9,6 +9,7 @@
 #include <set>
 
 #include "feldspar/job/job_sections.hpp"
+#include "feldspar/job/set_keys.hpp"
 #include "feldspar/study/reader_on_job.hpp"
 #include "feldspar/study/study.hpp"
 
@@ -35,10 +36,11 @@ struct Axis {
 
 class StudyReader : private ReaderOnJob {
 public:
-    StudyReader(const std::string& text, const std::filesystem::path& file)
-        : ReaderOnJob(text, file, {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}, {"job"}) {
+    StudyReader(const std::string& text, const std::filesystem::path& file, std::span<const std::string> settings)
+        : ReaderOnJob(text, file, {"name", "title", "job", "results", "keep", "seeds", "tests", "set", "axis"}, {"job"},
+                      settings) {
         study_.file = file;
-        study_.text = text;
+        study_.text = with_settings(text, settings);
     }
 
     Study read() {
@@ -46,7 +48,10 @@ public:
         read_common();
         if (root_.sound({"job"}) && base_.job().has_variants()) axes_.push_back(variant_axis());
         if (root_.has("axis") && root_.sound({"axis"})) read_axes();
-        for (const Axis& axis : axes_) study_.axes.push_back(axis.name);
+        for (const Axis& axis : axes_) {
+            study_.axes.push_back(axis.name);
+            refuse_settings_over(axis);
+        }
         if (root_.sound({"job", "set", "seeds", "tests", "axis"}))
             root_.check({}, [&] { make_points(); });
         else if (root_.sound({"job", "set"}))
@@ -103,6 +108,25 @@ private:
             table.check({"value", "values"}, [&] { check_labels(table, axis); });
             axes_.push_back(std::move(axis));
         }
+    }
+
+    // A setting would make all points of the axis the same.
+    void refuse_settings_over(const Axis& axis) {
+        const auto refuse = [&](const std::optional<std::string>& setting) {
+            if (!setting) return false;
+            const bool variants = axis.name == "variant" && axis.key.empty();
+            mistakes_.add(InputError({place_of(*setting), 0, 0, {}},
+                                     variants ? "a variant of the job has this key, too"
+                                              : fmt::format("the axis '{}' varies this key", axis.name),
+                                     "keys that no axis varies", variants ? "--set variant.<key>, or variant.<name>.<key>" : ""),
+                          "axis");
+            return true;
+        };
+        for (const auto& [key, factor] : axis.coupled)
+            if (refuse(base_.setting_over(key))) return;
+        for (const Choice& choice : axis.choices)
+            if (refuse(base_.setting_over(choice.piece))) return;
+        if (!axis.key.empty()) (void)refuse(base_.setting_over(axis.key));
     }
 
     static void check_labels(const TableReader& table, const Axis& axis) {
@@ -276,6 +300,8 @@ private:
     InputError in_point(const InputError& error, const Point& point) const {
         std::string key = error.place().key;
         if (key.starts_with("variant[1].")) key.erase(0, 11);
+        if (is_setting(error.place()))
+            return InputError({error.place().file, 0, 0, key}, error.problem(), error.allowed(), error.suggestion());
         if (key.starts_with("test[")) key = "test." + key.substr(std::min(key.size(), key.find('.') + 1));
         InputPlace place{root_.file(), 0, 0, key};
         const auto look = [&](const toml::node* node) {
@@ -315,8 +341,12 @@ private:
 
 }  // namespace
 
-Study parse_study(const std::string& text, const std::filesystem::path& name) { return StudyReader(text, name).read(); }
+Study parse_study(const std::string& text, const std::filesystem::path& name, std::span<const std::string> settings) {
+    return StudyReader(text, name, settings).read();
+}
 
-Study read_study(const std::filesystem::path& file) { return parse_study(read_toml_file(file, "study"), file); }
+Study read_study(const std::filesystem::path& file, std::span<const std::string> settings) {
+    return parse_study(read_toml_file(file, "study"), file, settings);
+}
 
 }  // namespace feldspar

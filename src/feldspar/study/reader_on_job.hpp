@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,12 +13,13 @@
 
 namespace feldspar {
 
-/// To be derived from. Keys: `name`, `results`, `job`, `set`; the last two make the base job.
+/// To be derived from. Keys: `name`, `results`, `job`, `set`; the last two make the base job, with the settings of a command line
+/// over it.
 class ReaderOnJob : protected FileReader {
 protected:
     ReaderOnJob(const std::string& text, const std::filesystem::path& file, std::initializer_list<std::string_view> known,
-                std::initializer_list<std::string_view> required)
-        : FileReader(parse_toml(text, file.string()), file.string(), known, required), base_(root_, file) {}
+                std::initializer_list<std::string_view> required, std::span<const std::string> settings = {})
+        : FileReader(parse_toml(text, file.string()), file.string(), known, required), base_(root_, file, settings) {}
     ~ReaderOnJob() = default;
 
     /// The name of `result` (of the file's stem unless it is given), and the directory of its results, named like it unless that

@@ -32,7 +32,7 @@ RunDirectory cleared(const fs::path& path) {
 
 TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path, Keep keep, const Provenance& provenance,
                         const RunControl& control, const DeviceUse& device, const CheckpointSettings& settings,
-                        const std::function<void(const std::string&)>& note) {
+                        const std::function<void(const std::string&)>& note, LiveRuns* live) {
     const bool finished = finished_record(path, run).has_value();
     const RunDirectory directory = finished ? RunDirectory::open(path) : cleared(path);
     TestResult result;
@@ -46,6 +46,7 @@ TestResult run_to_files(const Run& run, Packings& packings, const fs::path& path
                                     note);
         RunControl own_control = control;
         own_control.keeper = &checkpoints;
+        if (live != nullptr) own_control.watch = &live->watch(run, specimen);
         const TestSetup setup{specimen, variant.model, variant.grain, variant.contact, variant.numerics, test, variant.rock};
         own_control.device = opener_for(setup, device, note);
         result = run_test(setup, own_control);

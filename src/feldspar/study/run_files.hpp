@@ -9,6 +9,7 @@
 #include "feldspar/lab/run_test.hpp"
 #include "feldspar/output/checkpoints.hpp"
 #include "feldspar/study/device_use.hpp"
+#include "feldspar/study/live_runs.hpp"
 #include "feldspar/study/packings.hpp"
 #include "feldspar/study/run_record.hpp"
 
@@ -18,9 +19,11 @@ namespace feldspar {
 /// any thread. Goes on from the last state that an earlier attempt has kept in the directory; all else that it left there is
 /// replaced. An interrupted test leaves its state alone.
 /// @param note  told what the user should read, on the same thread; may be empty
+/// @param live  shows the test while it runs; may be null
 TestResult run_to_files(const Run& run, Packings& packings, const std::filesystem::path& directory, Keep keep,
                         const Provenance& provenance, const RunControl& control, const DeviceUse& device = {},
-                        const CheckpointSettings& checkpoints = {}, const std::function<void(const std::string&)>& note = {});
+                        const CheckpointSettings& checkpoints = {}, const std::function<void(const std::string&)>& note = {},
+                        LiveRuns* live = nullptr);
 
 /// Writes the rest, run.json at the end. On the main thread only: the HDF5 library is not made for several.
 void finish_files(const Run& run, const TestResult& result, const std::filesystem::path& directory, Keep keep,

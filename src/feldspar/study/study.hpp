@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,10 +54,13 @@ struct Study {
 /// Reads and checks a study file and everything that it stands for (docs/study.md).
 /// @throws InputError naming file, line, key, value and what is allowed; for a value that only the combination makes impossible
 /// also the point
-Study read_study(const std::filesystem::path& file);
+/// @param settings  "key=value" (job/set_keys.hpp), over the job, `[set]` and the axes' pieces: the points have other runs then.
+/// A key that an axis varies is refused, and so are other tables than specimen, model, material, numerics, test, variant,
+/// laboratory
+Study read_study(const std::filesystem::path& file, std::span<const std::string> settings = {});
 
 /// The same from text; `name` stands in for the file in messages and for finding the job.
-Study parse_study(const std::string& text, const std::filesystem::path& name);
+Study parse_study(const std::string& text, const std::filesystem::path& name, std::span<const std::string> settings = {});
 
 /// A commented study to start from, which reads as it stands beside a job "rock.toml" with a uniaxial test.
 std::string study_template();

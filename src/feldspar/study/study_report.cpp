@@ -40,7 +40,33 @@ Json point_json(const PointResults& point, const std::vector<std::string>& prope
     return json;
 }
 
+// Of one point, by names.
+Json named_json(const Study& study, const PointResults& point, const std::vector<std::string>& properties) {
+    Json json = {{"labels", Json::object()},     {"numbers", Json::object()},
+                 {"properties", Json::object()}, {"grades", grades_json(point.results)},
+                 {"done", point.results.size()}, {"failed", point.failed.size()},
+                 {"missing", point.missing}};
+    for (std::size_t a = 0; a < point.values.size() && a < study.axes.size(); ++a) {
+        json["labels"][study.axes[a]] = point.values[a].label;
+        json["numbers"][study.axes[a]] = json_number(point.values[a].number);
+    }
+    for (const std::string& property : properties) json["properties"][user_quantity(property).name] = cell_json(point, property);
+    return json;
+}
+
 }  // namespace
+
+std::string study_json(const Study& study, std::span<const PointResults> points) {
+    const std::vector<std::string> properties = properties_of(points);
+    Json json = {{"name", study.name},
+                 {"title", study.title.empty() ? study.name : study.title},
+                 {"axes", study.axes},
+                 {"points", Json::array()},
+                 {"failures", failures_json(points)},
+                 {"laboratory", study.points.empty() ? Json::object() : laboratory_json(study.points.front().job)}};
+    for (const PointResults& point : points) json["points"].push_back(named_json(study, point, properties));
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 void write_study_report(const Study& study, std::span<const PointResults> points, const std::filesystem::path& file) {
     const std::vector<std::string> properties = properties_of(points);

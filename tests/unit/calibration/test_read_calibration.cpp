@@ -297,5 +297,25 @@ TEST(CalibrationTemplate, TakesTheNumbersOfARock) {
     EXPECT_TRUE(unknown(more, "material.grain.nu"));
 }
 
+TEST_F(ReadCalibration, SettingsGoOverTheJobButNotOverWhatIsSought) {
+    const std::string text =
+        "job = \"rock.toml\"\n[set]\nnumerics.accuracy = \"3 %\"\n[targets]\nUCS = \"120 MPa\"\nBTS = \"9 MPa\"\n"
+        "[[unknown]]\nkey = \"material.contact.sigma_nt\"\n[[unknown]]\nkey = \"material.contact.tau\"\n";
+    const auto read = [&](std::vector<std::string> settings) {
+        return parse_calibration(text, folder_ / "targets.toml", settings);
+    };
+    const Calibration set = read({"numerics.accuracy=6 %", "material.contact.mu=0.5"});
+    const Job job = set.job_with({8.0, 30.0});
+    EXPECT_DOUBLE_EQ(job.variants.front().numerics.accuracy, 0.06);
+    EXPECT_DOUBLE_EQ(job.variants.front().contact.mu, 0.5);
+    EXPECT_DOUBLE_EQ(job.variants.front().contact.tau_Pa, 30e6) << "the unknown";
+    try {
+        (void)read({"material.contact.tau=20 MPa"});
+        ADD_FAILURE() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("the unknown 'tau' decides this key"), std::string::npos) << error.what();
+    }
+}
+
 }  // namespace
 }  // namespace feldspar

@@ -236,5 +236,42 @@ TEST(LivePage, IsTheReportWithWhatGoesOnAndMayAskOnlyItsOwnServer) {
     EXPECT_THROW((void)live_page("<p>another page</p>", "granite", ""), std::exception);
 }
 
+TEST(LiveBoardOfAStudy, LearnsOfItsRunsOnTheWay) {
+    std::atomic<bool> stop{false};
+    LiveBoard board("targets", stop, {.whole = "calibration", .one = "run", .keeps_ended = false});
+    board.expects(40);
+    LiveStream page(board);
+    Json run = Json::parse(page.next(milliseconds(0)))["run"];
+    EXPECT_EQ(run["tests"], 40);
+    EXPECT_EQ(run["at_most"], true);
+    const std::size_t first = board.adds({"UCS, seed 1", "UCS", "Axial stress", "Axial strain"});
+    const std::size_t second = board.adds({"UCS, seed 2", "UCS", "Axial stress", "Axial strain"});
+    EXPECT_EQ(first, 0u);
+    EXPECT_EQ(second, 1u);
+    board.ended(first, {LiveState::ended, "114 MPa, grade B", 3.0});  // of an earlier call
+    const Json news = Json::parse(page.next(milliseconds(0)));
+    EXPECT_EQ(news["run"]["ended"], 1);
+    EXPECT_EQ(news["run"]["tests"], 40);
+    EXPECT_NEAR(news["run"]["seconds_left"].get<double>(), 39 * 3.0, 1e-6) << "39 like the one that is known";
+    EXPECT_EQ(news["tests"][0]["words"], "114 MPa, grade B");
+    const std::string text = live_page("", "targets", "", board.words());
+    EXPECT_NE(text.find("\"whole\":\"calibration\",\"one\":\"run\",\"keeps_ended\":false"), std::string::npos);
+}
+
+TEST_F(LiveBoardTest, AnInterruptedTestWaitsAgain) {
+    TestWatch& watch = board_.begins(0, nullptr);
+    LiveStream page(board_);
+    see(watch, record(50, 3));
+    (void)news(page);
+    board_.waits(0);
+    const Json all = news(page);
+    EXPECT_EQ(all["run"]["running"], 0);
+    EXPECT_EQ(all["tests"][0]["state"], "waiting");
+    EXPECT_FALSE(board_.end_test(0)) << "it does not run";
+    TestWatch& again = board_.begins(0, nullptr);
+    see(again, record(5));
+    EXPECT_EQ(news(page)["tests"][0]["curve"]["stress"].size(), 5u);
+}
+
 }  // namespace
 }  // namespace feldspar

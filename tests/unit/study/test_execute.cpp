@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
 
 #include "../../small_study.hpp"
+#include "feldspar/live/live_stream.hpp"
 #include "feldspar/study/execute.hpp"
 #include "feldspar/study/point_results.hpp"
 #include "feldspar/study/study_table.hpp"
@@ -25,6 +28,7 @@ protected:
         control.retry_failed = retry_failed_;
         control.provenance = collect_provenance("test", threads);
         control.ended = [this](const feldspar::Run& run, const RunRecord&) { ended_.push_back(run.id); };
+        control.live = live_;
         return execute(study.runs, ledger, control);
     }
 
@@ -33,6 +37,7 @@ protected:
     std::atomic<bool> stop_{false};
     std::vector<std::string> ended_;
     bool retry_failed_ = false;
+    LiveRuns* live_ = nullptr;
 };
 
 constexpr const char* two_frictions = "[[axis]]\nname = \"mu\"\nkey = \"material.contact.mu\"\nvalues = [0.2, 0.5]\n";
@@ -210,6 +215,68 @@ TEST_F(ExecuteStudy, ARunThatEndedUnrecordedIsFoundAndHalfOfOneIsDoneAgain) {
     EXPECT_EQ(again.found_done, 1);
     EXPECT_EQ(again.done, 1);
     EXPECT_EQ(ledger.find(study.runs[0].id)->state, RunState::done);
+}
+
+// A board that shows the runs of a study.
+struct ShownRuns {
+    std::atomic<bool> stop{false};
+    LiveBoard board{"study", stop, {.whole = "study", .one = "run", .keeps_ended = false}};
+    LiveRuns runs{board, [](const Run& run) { return "seed " + std::to_string(run.seed()); },
+                  [](const RunRecord& record) { return record.state == RunState::failed ? record.reason : "is done"; }};
+};
+
+TEST_F(ExecuteStudy, IsShownWhileItRunsAndChangesNoBit) {
+    const Study study = read("keep = \"numbers\"\n");
+    std::map<std::string, double> strengths;
+    {
+        Ledger ledger(folder_ / "unseen", Ledger::Access::write);
+        (void)run(study, ledger);
+        for (const auto& one : study.runs) strengths[one.id] = ledger.find(one.id)->numbers.at("strength_Pa");
+    }
+    ShownRuns shown;
+    live_ = &shown.runs;
+    LiveStream page(shown.board);
+    Ledger ledger(place_, Ledger::Access::write);
+    std::atomic<bool> over{false};
+    std::jthread asker([&] {
+        while (!over) shown.board.ask_tests();
+    });
+    EXPECT_EQ(run(study, ledger).done, 2);
+    over = true;
+    for (const auto& one : study.runs) EXPECT_EQ(ledger.find(one.id)->numbers.at("strength_Pa"), strengths.at(one.id));
+    const auto news = nlohmann::json::parse(page.next(std::chrono::milliseconds(0)));
+    EXPECT_EQ(news["run"]["tests"], 2);
+    EXPECT_EQ(news["run"]["ended"], 2);
+    EXPECT_EQ(news["tests"][1]["words"], "is done");
+    EXPECT_EQ(news["tests"][1]["label"], "seed 2");
+    EXPECT_GT(shown.board.cost(), 0.0) << "nobody has looked";
+
+    ShownRuns again;  // a later call shows what was done before
+    live_ = &again.runs;
+    LiveStream later(again.board);
+    EXPECT_EQ(run(study, ledger).found_done, 2);
+    EXPECT_EQ(nlohmann::json::parse(later.next(std::chrono::milliseconds(0)))["run"]["ended"], 2);
+}
+
+TEST_F(ExecuteStudy, ARunThatTheUserEndsHasNoResultAndIsMadeAgain) {
+    // one that would take long: its end is the user's
+    const Study study = read("keep = \"numbers\"\nseeds = [1]\n[set]\nnumerics.accuracy = \"0.1 %\"\n");
+    ShownRuns shown;
+    live_ = &shown.runs;
+    Ledger ledger(place_, Ledger::Access::write);
+    std::jthread user([&] {
+        while (!shown.board.end_test(0)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    });
+    const Execution first = run(study, ledger);
+    EXPECT_EQ(first.failed, 1);
+    const RunRecord record = *ledger.find(study.runs.front().id);
+    EXPECT_EQ(record.state, RunState::failed);
+    EXPECT_EQ(record.reason, "ended by the user");
+    EXPECT_FALSE(std::filesystem::exists(ledger.run_directory(record.id) / "run.json"));
+    live_ = nullptr;
+    const Execution second = run(study, ledger);
+    EXPECT_EQ(second.found_failed, 0) << "it did not fail for good";
+    EXPECT_EQ(second.done, 1);
 }
 
 }  // namespace

@@ -357,5 +357,88 @@ TEST(StudyTemplate, ReadsBesideAJob) {
     EXPECT_EQ(parse_study(switched_on(study_template()), folder / "study.toml").points.size(), 24u);
 }
 
+// What a command line sets.
+class SetInStudy : public ReadStudy {
+protected:
+    Study read(const std::string& text, std::vector<std::string> settings) const {
+        return parse_study("job = \"job.toml\"\n" + text, folder_ / "study.toml", settings);
+    }
+    InputError mistake(const std::string& text, std::vector<std::string> settings) const {
+        try {
+            (void)read(text, std::move(settings));
+        } catch (const InputError& error) {
+            return error;
+        }
+        ADD_FAILURE() << "no error";
+        return InputError({}, "");
+    }
+};
+
+const std::string kTwoStrengths =
+    "[[axis]]\nname = \"strength\"\nkey = \"material.contact.sigma_nt\"\nvalues = [\"7 MPa\", \"9 MPa\"]\n";
+
+TEST_F(SetInStudy, GoesOverTheJobAndItsPiecesInAllPoints) {
+    const std::string text = "[set]\nmaterial.contact.tau = \"20 MPa\"\nnumerics.accuracy = \"4 %\"\n" + kTwoStrengths;
+    const Study plain = read(text, {});
+    const Study set = read(text, {"material.contact.tau=31 MPa", "specimen.width=14mm", "test.UCS.plate_mu=0.3"});
+    ASSERT_EQ(set.points.size(), 2u);
+    ASSERT_EQ(set.runs.size(), plain.runs.size());
+    for (const Point& point : set.points) {
+        EXPECT_DOUBLE_EQ(point.job.variants.front().contact.tau_Pa, 31e6) << "also over [set]";
+        EXPECT_DOUBLE_EQ(point.job.variants.front().numerics.accuracy, 0.04) << "the rest of [set] stays";
+        EXPECT_DOUBLE_EQ(point.job.specimen.outline.width_m, 0.014);
+        EXPECT_DOUBLE_EQ(point.job.tests[0].plate_mu.value(), 0.3);
+        EXPECT_FALSE(point.job.tests[1].plate_mu) << "the setting is for the other kind of test";
+    }
+    EXPECT_DOUBLE_EQ(contact(set, 0).sigma_nt_Pa, 7e6);
+    for (std::size_t i = 0; i < set.runs.size(); ++i) EXPECT_NE(set.runs[i].id, plain.runs[i].id) << "other runs";
+    EXPECT_NE(set.text.find("# --set material.contact.tau=31 MPa"), std::string::npos) << set.text;
+    EXPECT_EQ(plain.text.find("--set"), std::string::npos);
+}
+
+TEST_F(SetInStudy, IsTheSameRunAsThatOfAJobWithTheSameKey) {
+    const Study set = read("", {"material.contact.tau=31 MPa"});
+    const Job job = read_job(folder_ / "job.toml", std::vector<std::string>{"material.contact.tau=31 MPa"});
+    EXPECT_EQ(set.runs[0].id, make_run(job, job.variants.front(), job.tests.front(), 1).id);
+}
+
+TEST_F(SetInStudy, AKeyThatAnAxisVariesIsRefused) {
+    for (const char* setting : {"material.contact.sigma_nt=8 MPa", "material.contact={ sigma_nt = \"8 MPa\" }"}) {
+        const std::string said = mistake(kTwoStrengths, {setting}).what();
+        EXPECT_NE(said.find("--set"), std::string::npos) << said;
+        EXPECT_NE(said.find("the axis 'strength' varies this key"), std::string::npos) << said;
+    }
+    const std::string coupled =
+        "[[axis]]\nname = \"G\"\nkey = \"material.contact.Gfn\"\nvalues = [\"20 N/m\"]\n"
+        "coupled = { material.contact.Gfs = 40 }\n";
+    EXPECT_NE(std::string(mistake(coupled, {"material.contact.Gfs=900 N/m"}).what()).find("the axis 'G'"), std::string::npos);
+    const std::string plates = "[[axis]]\nname = \"mu\"\nkey = \"test.uniaxial-compression.plate_mu\"\nvalues = [0.1, 0.2]\n";
+    EXPECT_NE(std::string(mistake(plates, {"test.plate_mu=0.3"}).what()).find("the axis 'mu'"), std::string::npos);
+    EXPECT_NE(std::string(mistake(plates, {"test.UCS.plate_mu=0.3"}).what()).find("the axis 'mu'"), std::string::npos);
+    EXPECT_EQ(read(plates, {"test.DTS.stop_fraction=0.9"}).points.size(), 2u);
+}
+
+TEST_F(SetInStudy, VariantsOfTheJobAreSetByName) {
+    folder_.write("job.toml", small_job +
+                                  "[[variant]]\nname = \"weak\"\nmaterial.contact.tau = \"10 MPa\"\n"
+                                  "[[variant]]\nname = \"strong\"\nmaterial.contact.tau = \"40 MPa\"\n");
+    const Study study = read("", {"variant.weak.material.contact.tau=12 MPa"});
+    EXPECT_DOUBLE_EQ(contact(study, 0).tau_Pa, 12e6);
+    EXPECT_DOUBLE_EQ(contact(study, 1).tau_Pa, 40e6);
+    const std::string said = mistake("", {"material.contact.tau=12 MPa"}).what();
+    EXPECT_NE(said.find("a variant of the job has this key, too"), std::string::npos) << said;
+    EXPECT_NE(said.find("variant.<name>.<key>"), std::string::npos) << said;
+}
+
+TEST_F(SetInStudy, WhatCannotBeSetHereIsRefusedWithWhatCan) {
+    const std::string seeds = mistake("", {"run.seeds=[3]"}).what();
+    EXPECT_NE(seeds.find("--set 'run.seeds=[3]'"), std::string::npos) << seeds;
+    EXPECT_NE(seeds.find("material"), std::string::npos) << seeds;
+    const std::string value = mistake(kTwoStrengths, {"material.contact.tau=-1 MPa"}).what();
+    EXPECT_NE(value.find("--set 'material.contact.tau=-1 MPa'"), std::string::npos) << value;
+    const std::string key = mistake("", {"material.contact.taw=1 MPa"}).what();
+    EXPECT_NE(key.find("tau"), std::string::npos) << key;
+}
+
 }  // namespace
 }  // namespace feldspar

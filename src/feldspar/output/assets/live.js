@@ -1,4 +1,4 @@
-// What is going on in a run, above its report: curves and cracks that grow, the time left, and buttons that end a test or the run. The program sends what is new.
+// What is going on in a run, or in the runs of a study, above the report: curves and cracks that grow, the time left, and buttons that end a test or the run. The program sends what is new.
 "use strict";
 
 (() => {
@@ -91,7 +91,7 @@
       this.x = []; this.stress = []; this.tensile = []; this.shear = [];
       this.axes = test.axes;
       this.words = h("p", {class: "state soft small"}, "begins");
-      this.button = sureButton("End this test", "End it, keeping what it has?", () => end(String(test.n)));
+      this.button = sureButton("End this " + live.one, live.keeps_ended ? "End it, keeping what it has?" : "End it without a result? The same command makes it again another time.", () => end(String(test.n)));
       const curve = h("div", {}, h("p", {class: "soft small"}, "The curve begins with the loading.")), pattern = h("div", {class: "pattern"});
       this.element = h("div", {class: "test"}, h("div", {class: "top"}, h("h3", {}, test.label), this.button), this.words, h("div", {class: "both"}, curve, h("div", {}, pattern)));
       this.pattern = new Pattern(pattern);
@@ -126,19 +126,19 @@
     }
   }
 
-  const title = h("h2", {}, "Running"), words = h("p", {class: "state"}, "connecting"), bar = h("progress", {max: 1, value: 0, "aria-label": "Tests that have ended"});
-  const stopRun = sureButton("End the run", "End the run? What it has is kept, and the same command goes on.", () => end("run"));
+  const title = h("h2", {}, "Running"), words = h("p", {class: "state"}, "connecting"), bar = h("progress", {max: 1, value: 0, "aria-label": "What has ended"});
+  const stopRun = sureButton("End the " + live.whole, "End the " + live.whole + "? What it has is kept, and the same command goes on.", () => end("run"));
   const tests = h("div", {class: "tests"}), done = h("ul", {class: "done"}), news = h("p", {class: "news small"});
   const panel = h("section", {class: "live", "aria-label": "What is going on"}, h("div", {class: "top"}, title, stopRun), bar, words, news, tests, done);
   const running = new Map(), found = new Set();
-  let reports = null, reload = null;
+  let reports = null, reload = null, soon = null;
   if (!live.report) {   // no report yet, so the page is ours
     setTheme();
     pageHead("live view", live.name, []);
     followTheme();
   }
   page.querySelector("header").after(panel);
-  if (!live.report && live.over) tests.append(h("p", {class: "soft"}, "No test has ended, so there is no report."));
+  if (!live.report && live.over) tests.append(h("p", {class: "soft"}, live.one === "test" ? "No test has ended, so there is no report." : "There is no report."));
   redraw.push(() => running.forEach((test) => test.pattern.draw()));
 
   function again() { sessionStorage.setItem("live-scroll", String(scrollY)); location.reload(); }
@@ -147,7 +147,7 @@
   if (scroll) requestAnimationFrame(() => scrollTo(0, Number(scroll)));
 
   function isOver(text) {
-    title.textContent = "The run has ended";
+    title.textContent = "The " + live.whole + " has ended";
     stopRun.remove(); bar.remove(); tests.remove(); done.remove(); news.remove();
     panel.classList.add("over");
     words.textContent = text;
@@ -178,8 +178,8 @@
     title.textContent = run.ending ? "Ending" : run.busy ? "Preparing" : "Running";
     bar.max = run.tests || 1;
     bar.value = ended;
-    words.textContent = [run.tests ? ended + " of " + plural(run.tests, "test") + " ended" : null, run.failed ? run.failed + " failed" : null, running.size ? running.size + " running" : null,
-      waiting > 0 && run.tests ? waiting + " waiting" : null, run.busy || null, run.seconds_left !== null && run.tests && !run.ending ? "about " + duration(run.seconds_left) + " left" : null].filter(Boolean).join("  \u00b7  ");
+    words.textContent = [run.tests ? ended + " of " + (run.at_most ? "at most " : "") + plural(run.tests, live.one) + " ended" : null, run.failed ? run.failed + " failed" : null, running.size ? running.size + " running" : null,
+      waiting > 0 && run.tests ? (run.at_most ? "up to " : "") + waiting + (run.at_most ? " to come" : " waiting") : null, run.busy || null, run.seconds_left !== null && run.tests && !run.ending ? (run.at_most ? "at most " : "") + "about " + duration(run.seconds_left) + " left" : null].filter(Boolean).join("  \u00b7  ");
     document.title = (run.tests ? ended + "/" + run.tests + " " : "") + live.name + " - Feldspar";
     if (reports === null) reports = run.reports;
     if (run.over !== null) {
@@ -187,10 +187,10 @@
       isOver(run.over);
       again();   // the page becomes the report of the whole run
     } else if (run.reports > reports) {
-      if (!live.report) again();
+      if (!live.report) soon ||= setTimeout(again, 1500);   // not at once: where all is over, that is told next, and the program waits for pages that listen
       else if (!reload) {
         reload = h("button", {type: "button", onclick: again}, "Show them");
-        news.replaceChildren("More tests have ended since the report below was made. ", reload);
+        news.replaceChildren("More " + live.one + "s have ended since the report below was made. ", reload);
       }
     }
   };
