@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
+#include "feldspar/ranks/communicator.hpp"
 #include "interrupt.hpp"
 #include "say.hpp"
 
@@ -101,7 +103,8 @@ constexpr const char* calibrate_examples = R"(  feldspar new calibration --UCS 1
 )";
 
 int complain(ExitCode code, const std::string& message) {
-    put(stderr, "feldspar: " + printable(message) + "\n");
+    if (started_rank() == 0)  // ranks are told the same
+        put(stderr, "feldspar: " + printable(message) + "\n");
     return static_cast<int>(code);
 }
 
@@ -639,5 +642,9 @@ int main(int argc, char** argv) {
     for (auto* add : {add_run, add_check, add_view, add_export, add_export_cells, add_new, add_schema, add_study, add_envelope,
                       add_converge, add_claims, add_calibrate, add_pages})
         add(line);
+    if (started_ranks() > 1 && (argc < 2 || std::string_view(argv[1]) != "run"))
+        return complain(ExitCode::input, fmt::format("{} programs were started together, which share out the steps of 'feldspar "
+                                                     "run' only; run this command without mpirun",
+                                                     started_ranks()));
     return line.run(argc, argv, guarded);
 }

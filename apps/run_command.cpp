@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "device_option.hpp"
 #include "feldspar/base/counted.hpp"
+#include "feldspar/base/usable_cores.hpp"
+#include "feldspar/ranks/communicator.hpp"
 #include "feldspar/study/planned_runs.hpp"
+#include "feldspar/study/ranked_job.hpp"
 #include "feldspar/study/run_job.hpp"
 #include "interrupt.hpp"
 #include "live_view.hpp"
@@ -87,20 +91,62 @@ std::string last_words(const JobOutcome& outcome) {
            fmt::format(" This page is the report of the run as it stands in {}.", (outcome.directory / "report.html").string());
 }
 
+// What only one program can do. The same on all ranks.
+void refuse_with_ranks(const RunOptions& options, const Communicator& ranks) {
+    if (ranks.alone()) return;
+    const auto refuse = [&](const char* option, const std::string& problem, const char* allowed) {
+        throw InputError({{}, 0, 0, option}, fmt::format("{} ranks make this run together, and {}", ranks.size(), problem),
+                         allowed);
+    };
+    if (options.job == "-") refuse("mpirun", "the standard input reaches the first one only", "the job in a file");
+    if (options.device != "cpu") refuse("--device", "their steps are made on processors", "cpu, or one program without mpirun");
+    if (options.live.on)
+        refuse("--live", "a run that is watched may be led", "a run without --live, or one program without mpirun");
+}
+
+// Cores are shared by the ranks of a machine, unless the user says otherwise.
+int threads_of_rank(const Job& job, const Communicator& ranks) {
+    if (ranks.alone()) return thread_count(job.threads);
+    return job.threads > 0 ? job.threads : std::max(1, usable_cores() / ranks.on_this_machine());
+}
+
+// Ranks but the first: what they throw here is theirs alone.
+ExitCode follow(const Job& job, Communicator& ranks, int threads) {
+    try {
+        follow_job(job, ranks, threads, stop_requested());
+        return ExitCode::success;
+    } catch (const std::exception& error) {
+        say(stderr, "feldspar: rank {} of {}: {}\n", ranks.rank(), ranks.size(), error.what());
+        ranks.give_up(static_cast<int>(ExitCode::numerical));
+        throw;
+    }
+}
+
 ExitCode run_and_print(const RunOptions& options, Printing& print) {
     install_signal_handlers();
-    const Job job = job_with_options(options);
+    const std::unique_ptr<Communicator> ranks = communicator_here();
+    refuse_with_ranks(options, *ranks);
+    const auto read = [&options] { return job_with_options(options); };
+    const Job job = ranks->alone() ? read() : read_together(*ranks, read, collect_provenance(options.command_line, 1));
+    const int threads = threads_of_rank(job, *ranks);
+    if (!ranks->first()) return follow(job, *ranks, threads);
     LiveView live(options.live, job.name);
     JobProgress progress(print.quiet(), live);
     JobControl control;
     control.live = live.board();
-    control.threads = thread_count(job.threads);
+    control.threads = threads;
     control.out = options.out;
     control.fresh = options.fresh;
     control.go_on = options.go_on;
     control.keep = options.keep;
     control.provenance = collect_provenance(options.command_line, control.threads);
+    control.provenance.ranks = ranks->size();
     control.device = device_use(options.device, control.provenance);
+    if (!ranks->alone()) {
+        control.ranks = ranks.get();
+        progress.note(
+            fmt::format("{} ranks make the steps together, this one with {}", ranks->size(), counted(threads, "thread")));
+    }
     control.stop = &stop_requested();
     control.checkpoints = checkpoint_settings();
     control.listener = &progress;

@@ -15,8 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The rooms in the order in which data visits them; a room may include itself and the rooms before it.
-const std::vector<std::string> rooms{"base", "geometry", "specimen", "laws",   "model", "methods", "fast",     "step",
-                                     "gpu",  "lab",      "job",      "output", "live",  "study",   "findings", "calibration"};
+const std::vector<std::string> rooms{"base",   "geometry", "specimen", "laws",     "model",      "methods",
+                                     "fast",   "step",     "gpu",      "ranks",    "lab",        "job",
+                                     "output", "live",     "study",    "findings", "calibration"};
 
 /// What the user asks, as plain data. Every room speaks this language, so it may be included from any floor; in turn it may
 /// include nothing of the house but itself and base (SharedVocabularyIncludesNothing).

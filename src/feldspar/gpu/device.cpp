@@ -59,7 +59,8 @@ public:
         }
     }
 
-    void advance(Assembly& assembly, const StepSettings& settings, long long first_step, int count, PlatenWork& work) override {
+    void advance(Assembly& assembly, Team&, const StepSettings& settings, long long first_step, int count,
+                 PlatenWork& work) override {
         if (count <= 0) return;
         sort_out_packs(assembly);
         if (const std::string unknown = not_ported(assembly); !unknown.empty())

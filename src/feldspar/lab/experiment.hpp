@@ -79,7 +79,11 @@ struct Experiment : ExperimentState {
     ExperimentState& state() { return *this; }
     const ExperimentState& state() const { return *this; }
 
-    bool stopped() const { return control.stop != nullptr && control.stop->load(); }
+    /// Whether the test is to end here. Of several ranks the first decides.
+    bool stopped() const {
+        const bool here = control.stop != nullptr && control.stop->load();
+        return control.agree ? control.agree(here) : here;
+    }
     bool confined() const { return is_confined(setup.test); }  ///< a pressure acts on the sides, and first on all
     bool has_dead_loads() const;                               ///< pressures or gravity act before the loading starts
     /// Pressure on the sides of a confined specimen, Pa; 0 of others.

@@ -1,4 +1,4 @@
-// What a test asks of a graphics card.
+// What a test asks of a graphics card, or of ranks.
 #pragma once
 
 #include <string>
@@ -14,5 +14,8 @@ struct CardNeeds {
 
 /// Builds the test, and runs nothing.
 CardNeeds card_needs(const TestSetup& setup, const RunControl& control);
+
+/// How many ranks can make the test together at most. Builds the test, and runs nothing.
+int most_ranks(const TestSetup& setup);
 
 }  // namespace feldspar

@@ -64,6 +64,8 @@ struct RunControl {
     TestObserver* observer =
         nullptr;                 ///< sees the test while it loads, and may lead it (lab/observer.hpp); there is then no keeper
     TestWatch* watch = nullptr;  ///< looks at the test while it runs, and may end it (test_watch.hpp)
+    std::function<bool(bool)> agree;  ///< of several ranks that make the test together: what the first one is given, for all; so
+                                      ///< they end at the same record; may be empty: alone
 };
 
 /// Everything that defines a test.

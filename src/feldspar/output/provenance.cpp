@@ -78,6 +78,7 @@ nlohmann::ordered_json provenance_json(const Provenance& provenance) {
                                 {"started", provenance.started},          {"threads", provenance.threads},
                                 {"command_line", provenance.command_line}};
     if (!provenance.device.empty()) json["device"] = provenance.device;
+    if (provenance.ranks > 1) json["ranks"] = provenance.ranks;
     return json;
 }
 

@@ -25,6 +25,7 @@ struct Provenance {
     std::string command_line;
     int threads = 1;
     std::string device;  ///< the card that made the steps; empty: the processor did
+    int ranks = 1;       ///< programs that made the steps together
 };
 
 Provenance collect_provenance(std::string command_line, int threads);

@@ -25,7 +25,7 @@ void advance_readably(Assembly& assembly, Team& team, const StepSettings& settin
 }  // namespace
 
 void StepSequence::advance(const StepSettings& settings, long long first_step, int count, PlatenWork& work) {
-    if (settings.device != nullptr) return settings.device->advance(assembly_, settings, first_step, count, work);
+    if (settings.device != nullptr) return settings.device->advance(assembly_, team_, settings, first_step, count, work);
     if (settings.kernels == nullptr) return advance_readably(assembly_, team_, settings, first_step, count, work);
     if (!arrays_) {
         sort_out_packs(assembly_);

@@ -101,48 +101,40 @@ void take_over(Assembly& assembly, const Body& grain) {
     }
 }
 
-// The stages over ranges of the packs.
-class Stages {
-public:
-    Stages(Assembly& assembly, const StepSettings& settings, const KernelArrays& arrays)
-        : assembly_(assembly), settings_(settings), arrays_(arrays) {}
+}  // namespace
 
-    void lines(const PackRanges& part) const {
-        settings_.kernels->grain_lines(arrays_, part.grains.begin, part.grains.end);
-        settings_.kernels->rigid_lines(arrays_, part.rigid.begin, part.rigid.end);
-        for_each_loose_body(part, [&](const Body& body, int) { write_lines_of(assembly_, body); });
-    }
-    void contacts(const KernelStep& step, const PackRanges& part) const {
-        settings_.kernels->contacts(arrays_, step, part.contacts.begin, part.contacts.end);
-        for (int i = part.loose_contacts.begin; i < part.loose_contacts.end; ++i) {
-            const int c = assembly_.packs.loose_contacts[i];
-            contact_forces(assembly_, {c, c + 1}, settings_, step.step);
-            hand_over(assembly_, c);
-        }
-    }
-    void bodies(const KernelStep& step, const PackRanges& part) const {
-        grains_of_packs(assembly_, arrays_, step, settings_, part.grains);
-        settings_.kernels->rigid(arrays_, step, part.rigid.begin, part.rigid.end);
-        for_each_loose_body(part, [&](const Body& body, int b) {
-            if (body.kind == BodyKind::flexible) take_over(assembly_, body);
-            body_forces(assembly_, {b, b + 1}, settings_);
-            write_lines_of(assembly_, body);
-        });
-    }
+void PackStages::lines(const PackRanges& part) const {
+    settings_.kernels->grain_lines(arrays_, part.grains.begin, part.grains.end);
+    settings_.kernels->rigid_lines(arrays_, part.rigid.begin, part.rigid.end);
+    for (int i = part.loose_bodies.begin; i < part.loose_bodies.end; ++i) lines_of_loose(assembly_.packs.loose_bodies[i]);
+}
 
-private:
-    template <class Visit>
-    void for_each_loose_body(const PackRanges& part, Visit visit) const {
-        for (int i = part.loose_bodies.begin; i < part.loose_bodies.end; ++i) {
-            const int b = assembly_.packs.loose_bodies[i];
-            visit(assembly_.bodies[b], b);
-        }
-    }
+void PackStages::contacts(const KernelStep& step, const PackRanges& part) const {
+    settings_.kernels->contacts(arrays_, step, part.contacts.begin, part.contacts.end);
+    for (int i = part.loose_contacts.begin; i < part.loose_contacts.end; ++i)
+        loose_contact(step, assembly_.packs.loose_contacts[i]);
+}
 
-    Assembly& assembly_;
-    const StepSettings& settings_;
-    const KernelArrays& arrays_;
-};
+void PackStages::bodies(const KernelStep& step, const PackRanges& part) const {
+    grains_of_packs(assembly_, arrays_, step, settings_, part.grains);
+    settings_.kernels->rigid(arrays_, step, part.rigid.begin, part.rigid.end);
+    for (int i = part.loose_bodies.begin; i < part.loose_bodies.end; ++i) loose_body(assembly_.packs.loose_bodies[i]);
+}
+
+void PackStages::loose_contact(const KernelStep& step, int contact) const {
+    contact_forces(assembly_, {contact, contact + 1}, settings_, step.step);
+    hand_over(assembly_, contact);
+}
+
+void PackStages::loose_body(int body) const {
+    if (assembly_.bodies[body].kind == BodyKind::flexible) take_over(assembly_, assembly_.bodies[body]);
+    body_forces(assembly_, {body, body + 1}, settings_);
+    lines_of_loose(body);
+}
+
+void PackStages::lines_of_loose(int body) const { write_lines_of(assembly_, assembly_.bodies[body]); }
+
+namespace {
 
 PackRanges whole(const Packs& packs) {
     const auto all = [](const auto& list) { return IndexRange{0, static_cast<int>(std::ssize(list))}; };
@@ -161,7 +153,7 @@ PackRanges share_of(const Team& team, const PackRanges& all, int thread) {
 }  // namespace
 
 void write_lines(Assembly& assembly, Team& team, const StepSettings& settings, const KernelArrays& arrays) {
-    const Stages stages(assembly, settings, arrays);
+    const PackStages stages(assembly, settings, arrays);
     team.run([&](int thread) { stages.lines(share_of(team, whole(assembly.packs), thread)); });
 }
 
@@ -177,7 +169,7 @@ void advance_packs(Assembly& assembly, Team& team, const StepSettings& settings,
     const std::span<const PackRanges> bands = at_once > 1 ? std::span(cut.ranges) : std::span(&everything, 1);
     const int last_band = static_cast<int>(bands.size()) - 1, platen_band = at_once > 1 ? cut.platen : 0;
     const double travel = settings.dt * settings.speed;
-    const Stages stages(assembly, settings, arrays);
+    const PackStages stages(assembly, settings, arrays);
     team.run([&](int thread) {
         KernelStep step = kernel_step(settings);
         // Calls stage(band) for all steps [begin, end) that have a band so far along, and waits for the others.

@@ -48,8 +48,8 @@ struct PlatenWork {
     double loading = 0.0;
 };
 
-/// Makes whole blocks of steps somewhere else than on the processor (gpu/): with its own copy of the assembly, that it brings up
-/// to date before and reads back behind a block.
+/// Makes whole blocks of steps in another way than this processor alone: on a graphics card (gpu/), or with other ranks (ranks/).
+/// Between blocks the assembly holds the whole state, as if the processor had made the steps.
 class StepDevice {
 public:
     StepDevice() = default;
@@ -58,7 +58,8 @@ public:
     virtual ~StepDevice() = default;
 
     /// What advance() does. @throws InputError where it cannot: a part of the model that it does not know, too little memory
-    virtual void advance(Assembly& assembly, const StepSettings& settings, long long first_step, int count, PlatenWork& work) = 0;
+    virtual void advance(Assembly& assembly, Team& team, const StepSettings& settings, long long first_step, int count,
+                         PlatenWork& work) = 0;
 };
 
 /// What the body opposes to the loading, N: positive where it resists.

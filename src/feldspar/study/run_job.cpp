@@ -14,11 +14,13 @@
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/error.hpp"
 #include "feldspar/base/parallel.hpp"
+#include "feldspar/lab/on_device.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/write_cells.hpp"
 #include "feldspar/study/job_place.hpp"
 #include "feldspar/study/notes.hpp"
 #include "feldspar/study/packings.hpp"
+#include "feldspar/study/ranked_job.hpp"
 #include "feldspar/study/schedule.hpp"
 #include "feldspar/study/study.hpp"
 
@@ -109,6 +111,14 @@ private:
         if (*control_.stop) throw Interrupted();
         if (control_.device.open && !control_.device.where_possible)
             (void)opener_for(setup_of(run, specimen(run)), control_.device, {});
+        if (control_.ranks != nullptr) {
+            const int most = most_ranks(setup_of(run, specimen(run)));
+            if (most < control_.ranks->size())
+                throw InputError({.key = "mpirun"},
+                                 fmt::format("{}: {} ranks cannot share the specimen: it has {} packs of grains, or rigid bodies",
+                                             label_of(run), control_.ranks->size(), most),
+                                 fmt::format("at most {} ranks", most), "a larger specimen, or fewer ranks");
+        }
         const NumericsSpec& numerics = run.variant->numerics;
         if (numerics.kind == NumericsKind::adaptive && !numerics.mass_factor) return;
         RunControl judging;
@@ -164,8 +174,10 @@ LiveResult live_result(const TestResult& result) {
 class DirectorySink final : public RunSink {
 public:
     /// @param found  where an unfinished run of the job is gone on with
-    DirectorySink(const Job& job, PreparedRuns& runs, const JobControl& control, FoundPlace found)
+    /// @param leader  of several ranks; null: alone
+    DirectorySink(const Job& job, PreparedRuns& runs, const JobControl& control, FoundPlace found, JobLeader* leader)
         : job_(job),
+          leader_(leader),
           runs_(runs),
           control_(control),
           tell_(*control.listener),
@@ -219,7 +231,7 @@ public:
             own_control.device = opener_for(setup, control_.device, [this, i](const std::string& line) {
                 notes_.add(fmt::format("{}: {}", numbered_label(i), line));
             });
-            TestResult result = run_test(setup, own_control);
+            TestResult result = leader_ ? leader_->run(i, setup, own_control) : run_test(setup, own_control);
             result.variant = run.variant->name;
             if (result.history.empty()) return result;  // interrupted before the first row
             write_record(result);
@@ -375,6 +387,7 @@ private:
     }
 
     const Job& job_;
+    JobLeader* leader_;
     PreparedRuns& runs_;
     const JobControl& control_;
     JobListener& tell_;
@@ -393,6 +406,8 @@ private:
 }  // namespace
 
 JobOutcome run_job(const Job& job, const JobControl& control) {
+    std::optional<JobLeader> leader;  // whatever ends the job here, ends it for the others
+    if (control.ranks != nullptr) leader.emplace(*control.ranks);
     PreparedRuns runs(job, control);
     FoundPlace found = find_place(control.out, job, control.fresh);
     if (control.go_on && !found.unfinished) {
@@ -403,9 +418,9 @@ JobOutcome run_job(const Job& job, const JobControl& control) {
     if (!found.unfinished) RunDirectory::check(control.out, job.name);
     check_space(control.out, runs.all(), control.keep);
     runs.prepare();
-    DirectorySink sink(job, runs, control, std::move(found));
+    DirectorySink sink(job, runs, control, std::move(found), leader ? &*leader : nullptr);
     try {
-        run_in_order(runs.count(), Sharing(job.at_once, control.threads), *control.stop, sink);
+        run_in_order(runs.count(), Sharing(leader ? 1 : job.at_once, control.threads), *control.stop, sink);
         return sink.outcome();
     } catch (const std::exception&) {
         control.listener->broken_off(sink.tests(), sink.path());

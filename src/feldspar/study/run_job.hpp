@@ -17,6 +17,8 @@
 
 namespace feldspar {
 
+class Communicator;
+
 /// Whom a job tells how far it is. All calls are made on the thread of run_job().
 class JobListener {
 public:
@@ -52,7 +54,9 @@ struct JobControl {
     Keep keep =
         Keep::all;  ///< numbers: summary, report and jobs; histories: also histories and events; all: also packings and archives
     CheckpointSettings checkpoints;
-    DeviceUse device;  ///< where the steps are made
+    DeviceUse device;               ///< where the steps are made
+    Communicator* ranks = nullptr;  ///< of several that make the tests together, one after the other: this is the first, and the
+                                    ///< others follow it (study/ranked_job.hpp); null: alone
     Provenance provenance;
     std::atomic<bool>* stop = nullptr;  ///< becomes true when the user interrupts, or when nothing more can be written
     JobListener* listener = nullptr;
