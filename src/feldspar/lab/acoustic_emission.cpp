@@ -100,7 +100,7 @@ private:
 
 }  // namespace
 
-AcousticEmission gather_events(const TestResult& result, double radius_grains) {
+AcousticEmission events_of_cracks(const TestResult& result, double radius_grains) {
     AcousticEmission emission;
     if (!result.specimen || result.cracks.empty()) return emission;
     emission.radius_m = radius_grains * result.specimen->quality.cell_sizes.mean_m;
@@ -128,15 +128,20 @@ AcousticEmission gather_events(const TestResult& result, double radius_grains) {
                            event.moment_Nm.yy + m.yy};
     }
     std::vector<double> magnitudes;
-    std::vector<Vec2> places;
     for (AcousticEvent& event : emission.events) {
         finish(event);
         if (std::isfinite(event.magnitude)) magnitudes.push_back(event.magnitude);
-        places.push_back(event.place);
     }
     const double completeness = magnitude_of_completeness(magnitudes);
     const BValue fit = b_value(magnitudes, completeness);
     if (fit.events >= fewest_events) emission.b_value = fit;
+    return emission;
+}
+
+AcousticEmission gather_events(const TestResult& result, double radius_grains) {
+    AcousticEmission emission = events_of_cracks(result, radius_grains);
+    std::vector<Vec2> places;
+    for (const AcousticEvent& event : emission.events) places.push_back(event.place);
     if (static_cast<int>(places.size()) >= fewest_events) emission.fractal_dimension = correlation_dimension(places);
     return emission;
 }
@@ -145,7 +150,7 @@ AcousticEmission acoustic_emission(const TestResult& result) {
     AcousticEmission emission = gather_events(result, usual_event_radius);
     if (emission.events.empty()) return emission;
     for (const double radius : counted_event_radii) {
-        const AcousticEmission other = radius == usual_event_radius ? emission : gather_events(result, radius);
+        const AcousticEmission other = radius == usual_event_radius ? emission : events_of_cracks(result, radius);
         emission.counts.push_back({radius, other.events.size(), other.b_value});
     }
     return emission;

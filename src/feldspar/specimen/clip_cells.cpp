@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/sort_in_buckets.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/geometry/triangulate.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -284,7 +286,11 @@ void sort_keys(ClippedPart& part) {
     for (const auto& face : part.faces) {
         for (const KeyedVertex& v : face) part.keys.push_back(v.key);
     }
-    std::sort(part.keys.begin(), part.keys.end());
+    if (part.keys.empty()) return;
+    int most = -1;  // those of the outline's vertices come first, whose first number is -1
+    for (const VertexKey& key : part.keys) most = std::max(most, key[0]);
+    sort_in_buckets(
+        part.keys, static_cast<std::size_t>(most) + 2, [](const VertexKey& key) { return key[0] + 1; }, std::less<>());
     part.keys.erase(std::unique(part.keys.begin(), part.keys.end()), part.keys.end());
 }
 
@@ -300,9 +306,28 @@ std::vector<VertexKey> all_keys(std::vector<ClippedPart>& parts) {
     return keys;
 }
 
+/// Finds the number of a key: those of one first cell are a few.
+class KeyNumbers {
+public:
+    explicit KeyNumbers(const std::vector<VertexKey>& keys) : keys_(keys) {
+        for (std::size_t k = 0; k < keys.size(); ++k)
+            while (std::ssize(begin_) <= keys[k][0] + 1) begin_.push_back(k);
+        begin_.push_back(keys.size());
+    }
+    int operator()(const VertexKey& key) const {
+        const auto at = [&](int n) { return keys_.begin() + static_cast<std::ptrdiff_t>(begin_[static_cast<std::size_t>(n)]); };
+        return static_cast<int>(std::lower_bound(at(key[0] + 1), at(key[0] + 2), key) - keys_.begin());
+    }
+
+private:
+    const std::vector<VertexKey>& keys_;
+    std::vector<std::size_t> begin_;  ///< of the keys of each first cell, the outline's vertices before them
+};
+
 /// Gives every key one number and one position.
 CellGraph number_vertices(std::vector<ClippedPart>& parts, const Outline& outline, int sites, const StageControl& control) {
     const std::vector<VertexKey> keys = all_keys(parts);
+    const KeyNumbers number_of(keys);
     CellGraph graph;
     graph.vertices.resize(keys.size());
     graph.place.reserve(keys.size());
@@ -329,7 +354,7 @@ CellGraph number_vertices(std::vector<ClippedPart>& parts, const Outline& outlin
                 face.vertices.reserve(part.faces[f].size());
                 face.labels.reserve(part.faces[f].size());
                 for (const KeyedVertex& v : part.faces[f]) {
-                    face.vertices.push_back(static_cast<int>(std::lower_bound(keys.begin(), keys.end(), v.key) - keys.begin()));
+                    face.vertices.push_back(number_of(v.key));
                     face.labels.push_back(v.label);
                 }
                 part.numbered.push_back(std::move(face));

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/sort_in_buckets.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/clip_cells.hpp"
 #include "feldspar/specimen/cut_cells.hpp"
@@ -101,9 +102,9 @@ void check_conforming(const Tessellation& cells) {
             sides.push_back({std::min(a, b), std::max(a, b), i, cell.neighbours[k], a < b});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& l, const Side& r) {
-        return std::tie(l.low, l.high, l.forward, l.cell) < std::tie(r.low, r.high, r.forward, r.cell);
-    });
+    sort_in_buckets(
+        sides, cells.vertices.size(), [](const Side& side) { return side.low; },
+        [](const Side& l, const Side& r) { return std::tie(l.high, l.forward, l.cell) < std::tie(r.high, r.forward, r.cell); });
     for (std::size_t k = 0; k < sides.size();) {
         std::size_t end = k + 1;
         while (end < sides.size() && sides[end].low == sides[k].low && sides[end].high == sides[k].high) ++end;
