@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
 #include <utility>
 
+#include "feldspar/base/sort_in_buckets.hpp"
 #include "feldspar/geometry/polygon.hpp"
 
 namespace feldspar {
@@ -30,8 +32,13 @@ using Constrained = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Constrain
 
 /// Turned so that the smallest number stands first, then sorted: the result does not depend on CGAL's own order.
 void put_in_order(std::vector<std::array<int, 3>>& triangles) {
-    for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
-    std::sort(triangles.begin(), triangles.end());
+    std::size_t points = 0;
+    for (auto& t : triangles) {
+        std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+        points = std::max(points, static_cast<std::size_t>(t.front()) + 1);
+    }
+    sort_in_buckets(
+        triangles, points, [](const auto& t) { return t.front(); }, std::less<>());
 }
 
 }  // namespace

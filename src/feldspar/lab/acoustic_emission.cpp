@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <unordered_map>
 
 #include "feldspar/base/regression.hpp"
 
@@ -48,35 +51,76 @@ void finish(AcousticEvent& event) {
     event.isotropy = 100.0 * 2.0 * mean / (2.0 * std::abs(mean) + 2.0 * radius);
 }
 
+// Events that a crack may still join, in squares a little wider than the radius of an event: a crack looks at nine of them,
+// however many events there are elsewhere.
+class ActiveEvents {
+public:
+    ActiveEvents(const std::vector<AcousticEvent>& events, double radius_m, double window_steps)
+        : events_(events), radius_m_(radius_m), side_m_(radius_m > 0.0 ? 1.001 * radius_m : 1.0), window_steps_(window_steps) {}
+
+    // The event within the radius that is nearest to a crack, of equally near ones the newest; what is too old for this crack is
+    // forgotten. @return its number, or nobody
+    std::size_t nearest(const Crack& crack) {
+        std::size_t found = nobody;
+        double least = radius_m_;
+        const std::int64_t column = step_of(crack.place.x), row = step_of(crack.place.y);
+        for (std::int64_t r = row - 1; r <= row + 1; ++r)
+            for (std::int64_t c = column - 1; c <= column + 1; ++c) {
+                const auto square = squares_.find(key(c, r));
+                if (square == squares_.end()) continue;
+                std::erase_if(square->second, [&](std::size_t e) {
+                    return static_cast<double>(crack.step - events_[e].last_step) > window_steps_;
+                });
+                for (const std::size_t e : square->second) {
+                    const double distance = norm(crack.place - events_[e].place);
+                    if (!(distance <= least) || (distance == least && found != nobody && e < found)) continue;
+                    least = distance;
+                    found = e;
+                }
+                if (square->second.empty()) squares_.erase(square);
+            }
+        return found;
+    }
+    void add(std::size_t event) { squares_[square_of(event)].push_back(event); }
+    void remove(std::size_t event) { std::erase(squares_[square_of(event)], event); }
+
+    static constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
+
+private:
+    std::int64_t step_of(double x) const { return static_cast<std::int64_t>(std::floor(x / side_m_)); }
+    static std::int64_t key(std::int64_t column, std::int64_t row) { return row * (std::int64_t{1} << 32) + column; }
+    std::int64_t square_of(std::size_t event) const {
+        return key(step_of(events_[event].place.x), step_of(events_[event].place.y));
+    }
+
+    const std::vector<AcousticEvent>& events_;
+    double radius_m_, side_m_, window_steps_;
+    std::unordered_map<std::int64_t, std::vector<std::size_t>> squares_;
+};
+
 }  // namespace
 
-AcousticEmission gather_events(const TestResult& result, double radius_grains) {
+AcousticEmission events_of_cracks(const TestResult& result, double radius_grains) {
     AcousticEmission emission;
     if (!result.specimen || result.cracks.empty()) return emission;
     emission.radius_m = radius_grains * result.specimen->quality.cell_sizes.mean_m;
     emission.window_steps = emission.radius_m / result.length_m * result.travel_steps;
     const Lame rock = lame_of(result);
-    std::vector<std::size_t> active;  // events that a crack may still join, the oldest first
+    ActiveEvents active(emission.events, emission.radius_m, emission.window_steps);
     for (const Crack& crack : result.cracks) {
-        std::erase_if(active, [&](std::size_t e) {
-            return static_cast<double>(crack.step - emission.events[e].last_step) > emission.window_steps;
-        });
-        std::size_t joined = emission.events.size();
-        double nearest = emission.radius_m;
-        for (const std::size_t e : active)
-            if (const double distance = norm(crack.place - emission.events[e].place); distance <= nearest) {
-                nearest = distance;
-                joined = e;
-            }
-        if (joined == emission.events.size()) {
+        std::size_t joined = active.nearest(crack);
+        if (joined == ActiveEvents::nobody) {
+            joined = emission.events.size();
             emission.events.push_back(
                 {.first_step = crack.step, .axial_strain = crack.axial_strain, .axial_stress_Pa = crack.axial_stress_Pa});
-            active.push_back(joined);
+        } else {
+            active.remove(joined);  // its place moves
         }
         AcousticEvent& event = emission.events[joined];
         event.last_step = crack.step;
         event.place = (1.0 / (event.cracks + 1)) * (static_cast<double>(event.cracks) * event.place + crack.place);
         ++event.cracks;
+        active.add(joined);
         event.shear_cracks += crack.mode == CrackMode::shear;
         event.energy_J += crack.energy_J;
         const Mat2 m = moment_of(crack, rock);
@@ -84,15 +128,20 @@ AcousticEmission gather_events(const TestResult& result, double radius_grains) {
                            event.moment_Nm.yy + m.yy};
     }
     std::vector<double> magnitudes;
-    std::vector<Vec2> places;
     for (AcousticEvent& event : emission.events) {
         finish(event);
         if (std::isfinite(event.magnitude)) magnitudes.push_back(event.magnitude);
-        places.push_back(event.place);
     }
     const double completeness = magnitude_of_completeness(magnitudes);
     const BValue fit = b_value(magnitudes, completeness);
     if (fit.events >= fewest_events) emission.b_value = fit;
+    return emission;
+}
+
+AcousticEmission gather_events(const TestResult& result, double radius_grains) {
+    AcousticEmission emission = events_of_cracks(result, radius_grains);
+    std::vector<Vec2> places;
+    for (const AcousticEvent& event : emission.events) places.push_back(event.place);
     if (static_cast<int>(places.size()) >= fewest_events) emission.fractal_dimension = correlation_dimension(places);
     return emission;
 }
@@ -101,7 +150,7 @@ AcousticEmission acoustic_emission(const TestResult& result) {
     AcousticEmission emission = gather_events(result, usual_event_radius);
     if (emission.events.empty()) return emission;
     for (const double radius : counted_event_radii) {
-        const AcousticEmission other = radius == usual_event_radius ? emission : gather_events(result, radius);
+        const AcousticEmission other = radius == usual_event_radius ? emission : events_of_cracks(result, radius);
         emission.counts.push_back({radius, other.events.size(), other.b_value});
     }
     return emission;

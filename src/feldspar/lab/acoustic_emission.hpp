@@ -17,7 +17,11 @@ inline constexpr double usual_event_radius = 5.0;
 /// Radii for which the count of events is told, rising.
 inline constexpr double counted_event_radii[] = {2.0, 3.0, usual_event_radius};
 
-/// Gathers all cracks of a test. @param radius_grains  radius of an event, in mean grain diameters
+/// Gathers all cracks of a test, without the fractal dimension of the events. @param radius_grains  radius of an event, in mean
+/// grain diameters
+AcousticEmission events_of_cracks(const TestResult& result, double radius_grains);
+
+/// The same with it. @param radius_grains  radius of an event, in mean grain diameters
 AcousticEmission gather_events(const TestResult& result, double radius_grains);
 
 /// The acoustic emission of a test: events at the usual radius, and counts at others. What files, summary and report tell is

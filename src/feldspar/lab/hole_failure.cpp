@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <queue>
 #include <vector>
 
 #include "feldspar/lab/gauges.hpp"
@@ -38,23 +40,18 @@ public:
     Breakout(const RoundHole& hole, double step_m) : hole_(hole), step_m_(step_m) {}
 
     void add(const Crack& crack) {
-        waiting_.push_back(norm(crack.place - hole_.centre) - hole_.radius_m);
-        for (bool grew = true; grew;) {
-            grew = false;
-            for (double& depth : waiting_)
-                if (depth <= depth_m_ + step_m_ && depth > depth_m_) {
-                    depth_m_ = depth;
-                    grew = true;
-                }
+        waiting_.push(norm(crack.place - hole_.centre) - hole_.radius_m);
+        while (!waiting_.empty() && waiting_.top() <= depth_m_ + step_m_) {
+            depth_m_ = std::max(depth_m_, waiting_.top());
+            waiting_.pop();
         }
-        std::erase_if(waiting_, [&](double depth) { return depth <= depth_m_; });
     }
     double depth_m() const { return depth_m_; }
 
 private:
     RoundHole hole_;
     double step_m_, depth_m_ = 0.0;
-    std::vector<double> waiting_;  // cracks that are too deep yet
+    std::priority_queue<double, std::vector<double>, std::greater<>> waiting_;  // cracks that are too deep yet, the least first
 };
 
 // A row of the elastic answer: the end of the computed start, which lies below the first damage; else where loading has begun,

@@ -426,20 +426,15 @@ void Nodes::reserve(std::size_t nodes) {
     for_each_array(arrays_of(*this), [&](auto& array) { array.reserve(nodes); });
 }
 
-namespace {
-
-// What growing arrays have reserved beyond their ends: up to half of the memory.
 void release_spare_memory(Assembly& a) {
     const auto release = [](auto& array) { array.shrink_to_fit(); };
     for_each_array(arrays_of(a.nodes), release);
     for_each_array(arrays_of(a.bonds), release);
     for_each_array(std::tie(a.triangles, a.bodies, a.edges, a.contacts, a.origins, a.points, a.initial_shapes), release);
-    for_each_array(
-        std::tie(a.packs.offset, a.packs.tangent_x, a.packs.tangent_y, a.packs.line_a, a.packs.line_b, a.packs.contacts),
-        release);
+    for_each_array(std::tie(a.packs.offset, a.packs.tangent_x, a.packs.tangent_y, a.packs.line_a, a.packs.line_b,
+                            a.packs.contacts, a.packs.scale),
+                   release);
 }
-
-}  // namespace
 
 void Bonds::reserve(std::size_t count) {
     for_each_array(arrays_of(*this), [&](auto& quantity) { quantity.reserve(count); });
@@ -600,6 +595,21 @@ void index_contacts(Assembly& assembly) {
 
 namespace {
 
+// Room for new contacts: they are few, and arrays that grow on their own would take twice their memory for the first one.
+void keep_room(Assembly& assembly) {
+    const std::size_t points = assembly.points.size(), contacts = assembly.contacts.size();
+    const auto more = [](std::size_t count) { return count + count / 32 + 16; };
+    if (points == assembly.points.capacity()) {
+        assembly.points.reserve(more(points));
+        assembly.bonds.reserve(more(points));
+        if (!assembly.initial_shapes.empty()) assembly.initial_shapes.reserve(more(points));
+    }
+    if (contacts == assembly.contacts.capacity()) {
+        assembly.contacts.reserve(more(contacts));
+        assembly.origins.reserve(more(contacts));
+    }
+}
+
 // A new contact in a rock whose contacts are not alike: stiffness and friction are the means of those of the contacts that the
 // two bodies have.
 std::int32_t law_between(Assembly& assembly, int body_a, int body_b) {
@@ -625,6 +635,7 @@ std::int32_t law_between(Assembly& assembly, int body_a, int body_b) {
 }  // namespace
 
 void add_new_contact(Assembly& assembly, int body_a, int body_b, double rest_overlap_m, double closing_distance_m) {
+    keep_room(assembly);
     const double ra = assembly.bodies[body_a].radius_m, rb = assembly.bodies[body_b].radius_m;
     const Vec2 xa = assembly.centre(body_a), line = assembly.centre(body_b) - xa;
     const double d = norm(line);

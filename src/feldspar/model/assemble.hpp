@@ -36,6 +36,9 @@ void index_bodies(Assembly& assembly);
 /// contacts were added or dropped.
 void index_contacts(Assembly& assembly);
 
+/// Gives back what arrays that have grown hold beyond their ends: up to half of their memory.
+void release_spare_memory(Assembly& assembly);
+
 /// Adds a frictional one-point contact on the closest edge of each of two bodies; the point starts at the
 /// gap -(RA + RB - d) - `rest_overlap_m`, broken, with the force of that gap. The area is that of the shorter edge; of discs, of
 /// the smaller diameter.

@@ -452,6 +452,7 @@ void attach(Assembly& assembly, const Specimen& specimen, std::span<const Fixtur
     attach_one.finish();
     index_bodies(assembly);
     index_contacts(assembly);
+    release_spare_memory(assembly);
 }
 
 double labelled_width_m(const Specimen& specimen, const std::string& label) {

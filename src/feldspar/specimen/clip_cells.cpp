@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -12,6 +15,7 @@
 #include <utility>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/sort_in_buckets.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/geometry/triangulate.hpp"
 #include "feldspar/specimen/outline.hpp"
@@ -56,51 +60,66 @@ Vec2 power_centre(std::span<const Vec2> sites, std::span<const double> weights, 
     return sites[t[0]] + inverse * Vec2{ra * b.y - rb * a.y, a.x * rb - b.x * ra};
 }
 
-/// The whole cells, before clipping. Far away around the sites stand auxiliary sites, so that every cell is bounded; their
-/// own cells do not reach the outline.
-std::vector<std::vector<Corner>> whole_cells(std::span<const Vec2> centres, std::span<const double> weights, const Box& box) {
-    constexpr int auxiliary = 16;
-    const int n = static_cast<int>(centres.size());
-    std::vector<Vec2> sites(centres.begin(), centres.end());
-    std::vector<double> all_weights(weights.begin(), weights.end());
-    const Vec2 middle = 0.5 * (box.lower + box.upper);
-    const double far = 10.0 * norm(box.upper - box.lower);
-    for (int k = 0; k < auxiliary; ++k) {
-        const double angle = 2.0 * std::numbers::pi * (k + 0.37) / auxiliary;
-        sites.push_back(middle + far * Vec2{std::cos(angle), std::sin(angle)});
-        all_weights.push_back(0.0);
-    }
-    const RegularTriangulation triangulation = regular_triangulation(sites, all_weights);
-    if (!triangulation.hidden.empty()) {
-        const int i = triangulation.hidden.front();
-        throw InputError({},
-                         fmt::format("disc {} at ({:.6g}, {:.6g}) m is hidden by its neighbours: it has no Laguerre cell", i,
-                                     sites[i].x, sites[i].y),
-                         "discs that overlap less");
-    }
-    // Around site a the triangle (a, b, c) leads from neighbour b to neighbour c.
-    struct Spoke {
-        int from, to, triangle;
-    };
-    std::vector<std::vector<Spoke>> spokes(static_cast<std::size_t>(n));
-    for (int t = 0; t < std::ssize(triangulation.triangles); ++t) {
-        for (int k = 0; k < 3; ++k) {
-            const auto& corners = triangulation.triangles[t];
-            if (corners[k] < n) spokes[corners[k]].push_back({corners[(k + 1) % 3], corners[(k + 2) % 3], t});
+/// The whole cells, before clipping, each made when it is asked for. Far away around the sites stand auxiliary sites, so that
+/// every cell is bounded; their own cells do not reach the outline.
+class WholeCells {
+public:
+    WholeCells(std::span<const Vec2> centres, std::span<const double> weights, const Box& box)
+        : sites_(centres.begin(), centres.end()), weights_(weights.begin(), weights.end()) {
+        constexpr int auxiliary = 16;
+        const int n = static_cast<int>(centres.size());
+        const Vec2 middle = 0.5 * (box.lower + box.upper);
+        const double far = 10.0 * norm(box.upper - box.lower);
+        for (int k = 0; k < auxiliary; ++k) {
+            const double angle = 2.0 * std::numbers::pi * (k + 0.37) / auxiliary;
+            sites_.push_back(middle + far * Vec2{std::cos(angle), std::sin(angle)});
+            weights_.push_back(0.0);
         }
+        const RegularTriangulation triangulation = regular_triangulation(sites_, weights_);
+        if (!triangulation.hidden.empty()) {
+            const int i = triangulation.hidden.front();
+            throw InputError({},
+                             fmt::format("disc {} at ({:.6g}, {:.6g}) m is hidden by its neighbours: it has no Laguerre cell", i,
+                                         sites_[i].x, sites_[i].y),
+                             "discs that overlap less");
+        }
+        const auto for_each_spoke = [&](auto visit) {
+            for (const auto& corners : triangulation.triangles)
+                for (int k = 0; k < 3; ++k)
+                    if (corners[k] < n) visit(corners[k], Spoke{corners[(k + 1) % 3], corners[(k + 2) % 3]});
+        };
+        begin_.assign(static_cast<std::size_t>(n) + 1, 0);
+        for_each_spoke([&](int site, const Spoke&) { ++begin_[site + 1]; });
+        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+        spokes_.resize(static_cast<std::size_t>(begin_.back()));
+        std::vector<int> next(begin_.begin(), begin_.end() - 1);
+        for_each_spoke([&](int site, const Spoke& spoke) { spokes_[next[site]++] = spoke; });
     }
-    std::vector<std::vector<Corner>> cells(static_cast<std::size_t>(n));
-    for (int i = 0; i < n; ++i) {
-        Spoke spoke = spokes[i].front();
-        for (std::size_t count = 0; count < spokes[i].size(); ++count) {
+
+    std::vector<Corner> operator()(int i) const {
+        const auto first = spokes_.begin() + begin_[i], end = spokes_.begin() + begin_[i + 1];
+        std::vector<Corner> cell;
+        cell.reserve(static_cast<std::size_t>(end - first));
+        Spoke spoke = *first;
+        for (auto count = first; count != end; ++count) {
             std::array<int, 3> t = {i, spoke.from, spoke.to};
             std::sort(t.begin(), t.end());
-            cells[i].push_back({power_centre(sites, all_weights, t), spoke.from, spoke.to});
-            spoke = *std::find_if(spokes[i].begin(), spokes[i].end(), [&](const Spoke& s) { return s.from == spoke.to; });
+            cell.push_back({power_centre(sites_, weights_, t), spoke.from, spoke.to});
+            spoke = *std::find_if(first, end, [&](const Spoke& s) { return s.from == spoke.to; });
         }
+        return cell;
     }
-    return cells;
-}
+
+private:
+    /// Around site a the triangle (a, b, c) leads from neighbour b to neighbour c.
+    struct Spoke {
+        int from, to;
+    };
+    std::vector<Vec2> sites_;
+    std::vector<double> weights_;
+    std::vector<int> begin_;  ///< sites + 1 offsets into the spokes
+    std::vector<Spoke> spokes_;
+};
 
 /// Where the edge p-q crosses the line through a and b; the same bits from either direction of the edge.
 Vec2 crossing_with_line(Vec2 p, Vec2 q, Vec2 a, Vec2 b) {
@@ -254,18 +273,64 @@ std::vector<KeyedVertex> clip_by_circle(const std::vector<Corner>& cell, int i, 
     return result;
 }
 
-/// Gives every key one number and one position.
-CellGraph number_vertices(const std::vector<std::vector<KeyedVertex>>& faces, const std::vector<int>& owner,
-                          const Outline& outline, int sites) {
-    std::vector<VertexKey> keys;
-    for (const auto& face : faces) {
-        for (const KeyedVertex& v : face) keys.push_back(v.key);
-    }
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+/// What one share of the cells has become.
+struct ClippedPart {
+    std::vector<std::vector<KeyedVertex>> faces;
+    std::vector<int> owner;       ///< a face: its cell
+    std::vector<VertexKey> keys;  ///< of its vertices, in order, each once
+    std::vector<Face> numbered;
+    std::exception_ptr problem;  ///< of the first cell that cannot be clipped; those behind it are left out
+};
 
+void sort_keys(ClippedPart& part) {
+    for (const auto& face : part.faces) {
+        for (const KeyedVertex& v : face) part.keys.push_back(v.key);
+    }
+    if (part.keys.empty()) return;
+    int most = -1;  // those of the outline's vertices come first, whose first number is -1
+    for (const VertexKey& key : part.keys) most = std::max(most, key[0]);
+    sort_in_buckets(
+        part.keys, static_cast<std::size_t>(most) + 2, [](const VertexKey& key) { return key[0] + 1; }, std::less<>());
+    part.keys.erase(std::unique(part.keys.begin(), part.keys.end()), part.keys.end());
+}
+
+std::vector<VertexKey> all_keys(std::vector<ClippedPart>& parts) {
+    std::vector<VertexKey> keys;
+    for (ClippedPart& part : parts) {
+        std::vector<VertexKey> more;
+        more.reserve(keys.size() + part.keys.size());
+        std::set_union(keys.begin(), keys.end(), part.keys.begin(), part.keys.end(), std::back_inserter(more));
+        keys = std::move(more);
+        part.keys = {};
+    }
+    return keys;
+}
+
+/// Finds the number of a key: those of one first cell are a few.
+class KeyNumbers {
+public:
+    explicit KeyNumbers(const std::vector<VertexKey>& keys) : keys_(keys) {
+        for (std::size_t k = 0; k < keys.size(); ++k)
+            while (std::ssize(begin_) <= keys[k][0] + 1) begin_.push_back(k);
+        begin_.push_back(keys.size());
+    }
+    int operator()(const VertexKey& key) const {
+        const auto at = [&](int n) { return keys_.begin() + static_cast<std::ptrdiff_t>(begin_[static_cast<std::size_t>(n)]); };
+        return static_cast<int>(std::lower_bound(at(key[0] + 1), at(key[0] + 2), key) - keys_.begin());
+    }
+
+private:
+    const std::vector<VertexKey>& keys_;
+    std::vector<std::size_t> begin_;  ///< of the keys of each first cell, the outline's vertices before them
+};
+
+/// Gives every key one number and one position.
+CellGraph number_vertices(std::vector<ClippedPart>& parts, const Outline& outline, int sites, const StageControl& control) {
+    const std::vector<VertexKey> keys = all_keys(parts);
+    const KeyNumbers number_of(keys);
     CellGraph graph;
     graph.vertices.resize(keys.size());
+    graph.place.reserve(keys.size());
     const int outline_edges = static_cast<int>(outline.vertices.size());
     for (const VertexKey& key : keys) {
         int place = place_inside;
@@ -280,18 +345,36 @@ CellGraph number_vertices(const std::vector<std::vector<KeyedVertex>>& faces, co
         }
         graph.place.push_back(place);
     }
-    std::vector<char> placed(keys.size(), 0);
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        Face face;
-        face.cell = owner[f];
-        for (const KeyedVertex& v : faces[f]) {
-            const auto number = std::lower_bound(keys.begin(), keys.end(), v.key) - keys.begin();
-            if (!placed[number]) graph.vertices[number] = v.at;
-            placed[number] = 1;
-            face.vertices.push_back(static_cast<int>(number));
-            face.labels.push_back(v.label);
+    in_shares(control.team, static_cast<int>(parts.size()), [&](IndexRange range, int) {
+        for (int p = range.begin; p < range.end; ++p) {
+            ClippedPart& part = parts[static_cast<std::size_t>(p)];
+            for (std::size_t f = 0; f < part.faces.size(); ++f) {
+                Face face;
+                face.cell = part.owner[f];
+                face.vertices.reserve(part.faces[f].size());
+                face.labels.reserve(part.faces[f].size());
+                for (const KeyedVertex& v : part.faces[f]) {
+                    face.vertices.push_back(number_of(v.key));
+                    face.labels.push_back(v.label);
+                }
+                part.numbered.push_back(std::move(face));
+            }
         }
-        graph.faces.push_back(std::move(face));
+    });
+    std::vector<char> placed(keys.size(), 0);
+    std::size_t count = 0;
+    for (const ClippedPart& part : parts) count += part.faces.size();
+    graph.faces.reserve(count);
+    for (ClippedPart& part : parts) {
+        for (std::size_t f = 0; f < part.faces.size(); ++f) {
+            for (std::size_t k = 0; k < part.faces[f].size(); ++k) {
+                const int number = part.numbered[f].vertices[k];
+                if (!placed[number]) graph.vertices[number] = part.faces[f][k].at;
+                placed[number] = 1;
+            }
+            graph.faces.push_back(std::move(part.numbered[f]));
+        }
+        part = {};
     }
     return graph;
 }
@@ -350,32 +433,45 @@ std::vector<ConvexRegion> convex_regions(const Outline& outline) {
     return regions;
 }
 
-CellGraph clip_cells(std::span<const Vec2> centres, std::span<const double> weights, const Outline& outline) {
+CellGraph clip_cells(std::span<const Vec2> centres, std::span<const double> weights, const Outline& outline,
+                     const StageControl& control) {
     reject_equal_centres(centres);
-    const auto cells = whole_cells(centres, weights, bounding_box(outline));
+    std::vector<ClippedPart> parts(static_cast<std::size_t>(control.team ? control.team->size() : 1));
     const auto regions = outline.is_disc ? std::vector<ConvexRegion>{} : convex_regions(outline);
-    std::vector<std::vector<KeyedVertex>> faces;
-    std::vector<int> owner;
-    for (int i = 0; i < std::ssize(cells); ++i) {
-        const std::size_t before = faces.size();
+    const auto add_faces = [&](ClippedPart& part, const std::vector<Corner>& whole, int i) {
+        const std::size_t before = part.faces.size();
         if (outline.is_disc)
-            faces.push_back(clip_by_circle(outline.flattened() ? clip_by_flats(cells[i], outline) : cells[i], i, outline));
+            part.faces.push_back(clip_by_circle(outline.flattened() ? clip_by_flats(whole, outline) : whole, i, outline));
         for (const ConvexRegion& region : regions) {
-            std::vector<Corner> cell = cells[i];
+            std::vector<Corner> cell = whole;
             for (int s = 0; s < std::ssize(region) && !cell.empty(); ++s) {
                 cell = clip_by_side(cell, s, outline.vertices[region[s].stops.front()], outline.vertices[region[s].stops.back()]);
             }
-            if (cell.size() >= 3) faces.push_back(with_keys(cell, i, region, outline.vertices));
+            if (cell.size() >= 3) part.faces.push_back(with_keys(cell, i, region, outline.vertices));
         }
-        if (faces.size() == before || faces.back().size() < 3) {
+        if (part.faces.size() == before || part.faces.back().size() < 3) {
             throw InputError({},
                              fmt::format("the Laguerre cell of disc {} at ({:.6g}, {:.6g}) m has no area inside the outline", i,
                                          centres[i].x, centres[i].y),
                              "discs inside the outline, and smaller grains if there are only a few");
         }
-        owner.resize(faces.size(), i);
+        part.owner.resize(part.faces.size(), i);
+    };
+    {
+        const WholeCells cells(centres, weights, bounding_box(outline));
+        in_shares(control.team, static_cast<int>(centres.size()), [&](IndexRange range, int thread) {
+            ClippedPart& part = parts[static_cast<std::size_t>(thread)];
+            try {
+                for (int i = range.begin; i < range.end; ++i) add_faces(part, cells(i), i);
+                sort_keys(part);
+            } catch (...) {
+                part.problem = std::current_exception();
+            }
+        });
     }
-    return number_vertices(faces, owner, outline, static_cast<int>(centres.size()));
+    for (const ClippedPart& part : parts)  // the first share that failed has the first cell that does, however many there are
+        if (part.problem) std::rethrow_exception(part.problem);
+    return number_vertices(parts, outline, static_cast<int>(centres.size()), control);
 }
 
 }  // namespace feldspar

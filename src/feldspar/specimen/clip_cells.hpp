@@ -6,6 +6,7 @@
 
 #include "feldspar/specimen/cell_graph.hpp"
 #include "feldspar/specimen/specimen.hpp"
+#include "feldspar/specimen/stage_control.hpp"
 
 namespace feldspar {
 
@@ -30,6 +31,7 @@ std::vector<ConvexRegion> convex_regions(const Outline& outline);
 /// Labels of the faces: cell_graph.hpp, with -1 - (edge count + c) for cut c.
 /// @param centres, weights  the discs' centres (m) and squared radii (m^2)
 /// @throws InputError for equal centres and for cells that are empty or lie outside the outline
-CellGraph clip_cells(std::span<const Vec2> centres, std::span<const double> weights, const Outline& outline);
+CellGraph clip_cells(std::span<const Vec2> centres, std::span<const double> weights, const Outline& outline,
+                     const StageControl& control = {});
 
 }  // namespace feldspar

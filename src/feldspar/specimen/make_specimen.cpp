@@ -424,8 +424,7 @@ Specimen make_specimen(const SpecimenSpec& spec, std::uint64_t seed, const Speci
         making.expect(specimen.packing.centres.size());
         quality.mean_diameter_m = mean_diameter(specimen.packing);
         const double merge_length = spec.merge_length_m.value_or(quality.mean_diameter_m / 12.0);
-        making.stage("cells", true);
-        specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length);
+        specimen.cells = tessellate_laguerre(specimen.packing, specimen.outline, merge_length, making.stage("cells", true));
         give_discs_to_pieces(specimen);
     }
     if (spec.crystal_sizes) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <optional>
 
@@ -179,37 +180,92 @@ std::optional<Vec2> centre_of_grain(const std::vector<Vec2>& corners) {
     return std::nullopt;
 }
 
-GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const StageControl& control) {
-    GrainMesh mesh;
-    mesh.node_begin.push_back(0);
-    mesh.triangle_begin.push_back(0);
-    mesh.edge_begin.push_back(0);
-    for (int g = 0; g < std::ssize(cells.cells); ++g) {
-        if (g % 1000 == 0) control.done(static_cast<double>(g) / static_cast<double>(cells.cells.size()));
-        const std::vector<Vec2> corners = corners_of_cell(cells, g);
-        const Vec2 centre = centre_of(corners, g);
-        OneGrain grain =
-            triangles_per_grain > 0 ? mesh_finely(corners, centre, triangles_per_grain) : mesh_with_ring(corners, centre);
-        if (triangles_per_grain > 0 && has_flat_triangle(grain, signed_area(corners))) grain = mesh_with_ring(corners, centre);
+namespace {
 
-        const int first_node = mesh.node_begin.back();
-        const int first_triangle = mesh.triangle_begin.back();
-        mesh.nodes.insert(mesh.nodes.end(), grain.nodes.begin(), grain.nodes.end());
-        for (const auto& t : grain.triangles) {
-            if (triangle_area(grain, t) <= 0.0) throw NumericalError(fmt::format("grain {} has a triangle without area", g));
-            mesh.triangles.push_back({first_node + t[0], first_node + t[1], first_node + t[2]});
-        }
-        for (const int t : grain.edge_triangle) {
-            if (t < 0) throw NumericalError(fmt::format("an edge of grain {} has no triangle", g));
-            mesh.edge_triangle.push_back(first_triangle + t);
-        }
-        mesh.vertex_count.push_back(static_cast<int>(corners.size()));
-        mesh.centre_node.push_back(first_node + static_cast<int>(corners.size()));
-        mesh.node_begin.push_back(static_cast<int>(mesh.nodes.size()));
-        mesh.triangle_begin.push_back(static_cast<int>(mesh.triangles.size()));
-        mesh.edge_begin.push_back(static_cast<int>(mesh.edge_triangle.size()));
+/// The grains of one share, numbered from the share's first.
+struct MeshPart {
+    GrainMesh mesh;
+    std::exception_ptr problem;  ///< of the first grain that cannot be meshed; those behind it are left out
+};
+
+void add_grain(GrainMesh& mesh, const Tessellation& cells, int g, int triangles_per_grain) {
+    const std::vector<Vec2> corners = corners_of_cell(cells, g);
+    const Vec2 centre = centre_of(corners, g);
+    OneGrain grain =
+        triangles_per_grain > 0 ? mesh_finely(corners, centre, triangles_per_grain) : mesh_with_ring(corners, centre);
+    if (triangles_per_grain > 0 && has_flat_triangle(grain, signed_area(corners))) grain = mesh_with_ring(corners, centre);
+
+    const int first_node = static_cast<int>(mesh.nodes.size());
+    const int first_triangle = static_cast<int>(mesh.triangles.size());
+    mesh.nodes.insert(mesh.nodes.end(), grain.nodes.begin(), grain.nodes.end());
+    for (const auto& t : grain.triangles) {
+        if (triangle_area(grain, t) <= 0.0) throw NumericalError(fmt::format("grain {} has a triangle without area", g));
+        mesh.triangles.push_back({first_node + t[0], first_node + t[1], first_node + t[2]});
     }
-    return mesh;
+    for (const int t : grain.edge_triangle) {
+        if (t < 0) throw NumericalError(fmt::format("an edge of grain {} has no triangle", g));
+        mesh.edge_triangle.push_back(first_triangle + t);
+    }
+    mesh.vertex_count.push_back(static_cast<int>(corners.size()));
+    mesh.centre_node.push_back(first_node + static_cast<int>(corners.size()));
+    mesh.node_begin.push_back(static_cast<int>(mesh.nodes.size()));
+    mesh.triangle_begin.push_back(static_cast<int>(mesh.triangles.size()));
+    mesh.edge_begin.push_back(static_cast<int>(mesh.edge_triangle.size()));
+}
+
+/// Puts the shares behind each other, and lets each go when it is in.
+GrainMesh in_one(std::vector<MeshPart>& parts) {
+    GrainMesh whole;
+    const auto reserve = [&](auto GrainMesh::*list) {
+        std::size_t count = 0;
+        for (const MeshPart& part : parts) count += (part.mesh.*list).size();
+        (whole.*list).reserve(count + 1);
+    };
+    reserve(&GrainMesh::nodes);
+    reserve(&GrainMesh::triangles);
+    for (const auto list : {&GrainMesh::node_begin, &GrainMesh::triangle_begin, &GrainMesh::vertex_count, &GrainMesh::centre_node,
+                            &GrainMesh::edge_begin, &GrainMesh::edge_triangle})
+        reserve(list);
+    for (const auto list : {&GrainMesh::node_begin, &GrainMesh::triangle_begin, &GrainMesh::edge_begin})
+        (whole.*list).push_back(0);
+    for (MeshPart& part : parts) {
+        const int nodes = static_cast<int>(whole.nodes.size()), triangles = static_cast<int>(whole.triangles.size()),
+                  edges = static_cast<int>(whole.edge_triangle.size());
+        const auto add = [&](std::vector<int> GrainMesh::*list, int more) {
+            for (const int number : part.mesh.*list) (whole.*list).push_back(more + number);
+        };
+        whole.nodes.insert(whole.nodes.end(), part.mesh.nodes.begin(), part.mesh.nodes.end());
+        for (const auto& [a, b, c] : part.mesh.triangles) whole.triangles.push_back({nodes + a, nodes + b, nodes + c});
+        add(&GrainMesh::node_begin, nodes);
+        add(&GrainMesh::triangle_begin, triangles);
+        add(&GrainMesh::edge_begin, edges);
+        add(&GrainMesh::vertex_count, 0);
+        add(&GrainMesh::centre_node, nodes);
+        add(&GrainMesh::edge_triangle, triangles);
+        part = {};
+    }
+    return whole;
+}
+
+}  // namespace
+
+GrainMesh mesh_grains(const Tessellation& cells, int triangles_per_grain, const StageControl& control) {
+    const int count = static_cast<int>(cells.cells.size());
+    std::vector<MeshPart> parts(static_cast<std::size_t>(control.team ? control.team->size() : 1));
+    in_shares(control.team, count, [&](IndexRange grains, int thread) {
+        MeshPart& part = parts[static_cast<std::size_t>(thread)];
+        try {
+            for (int g = grains.begin; g < grains.end; ++g) {
+                if (thread == 0 && g % 1000 == 0) control.done(static_cast<double>(g) / static_cast<double>(grains.end));
+                add_grain(part.mesh, cells, g, triangles_per_grain);
+            }
+        } catch (...) {
+            part.problem = std::current_exception();
+        }
+    });
+    for (const MeshPart& part : parts)  // the first share that failed has the first grain that does, however many there are
+        if (part.problem) std::rethrow_exception(part.problem);
+    return in_one(parts);
 }
 
 }  // namespace feldspar

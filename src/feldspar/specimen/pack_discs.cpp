@@ -63,8 +63,8 @@ void sort_in_rows(Packing& packing, const Box& box) {
 
 }  // namespace
 
-Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control,
-                   std::span<const int> phases) {
+Packing place_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random,
+                    std::span<const int> phases) {
     Packing packing;
     for (const double d : diameters_m) packing.radii_m.push_back(0.5 * d);
     if (!phases.empty()) {
@@ -86,6 +86,12 @@ Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, 
         grid.insert(i, packing.centres[i]);
     }
     if (!packing.centres.empty()) sort_in_rows(packing, box);
+    return packing;
+}
+
+Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random, const StageControl& control,
+                   std::span<const int> phases) {
+    Packing packing = place_discs(outline, diameters_m, random, phases);
     relax_discs(packing, outline, {}, control);
     return packing;
 }

@@ -10,10 +10,14 @@
 namespace feldspar {
 
 /// Inserts discs of the given diameters at random without overlap, at half their radius and largest first, then gives them
-/// their full radius and relaxes them (relax_discs). The discs come out sorted in rows from the bottom, so that neighbours
-/// are near each other in memory.
+/// their full radius. The discs come out sorted in rows from the bottom, so that neighbours are near each other in memory.
 /// @param phases  of each disc its mineral, which stays with it; may be empty
-/// @throws InputError      if a disc finds no room: the grains are too large for the outline
+/// @throws InputError  if a disc finds no room: the grains are too large for the outline
+Packing place_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random,
+                    std::span<const int> phases = {});
+
+/// Places discs and relaxes them (relax_discs).
+/// @throws InputError      as place_discs
 /// @throws NumericalError  from the relaxation
 Packing pack_discs(const Outline& outline, std::span<const double> diameters_m, RandomStream& random,
                    const StageControl& control = {}, std::span<const int> phases = {});

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/sort_in_buckets.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/specimen/clip_cells.hpp"
 #include "feldspar/specimen/cut_cells.hpp"
@@ -29,6 +30,7 @@ Cell make_cell(const Face& face, const std::vector<Vec2>& vertices) {
         if (length(k) < length(shortest)) shortest = k;
     }
     Cell cell;
+    for (std::vector<int>* list : {&cell.vertices, &cell.neighbours, &cell.outline_edges}) list->reserve(n);
     for (std::size_t step = 0; step < n; ++step) {
         const std::size_t k = (shortest + 1 + step) % n;
         cell.vertices.push_back(face.vertices[k]);
@@ -40,14 +42,15 @@ Cell make_cell(const Face& face, const std::vector<Vec2>& vertices) {
 
 }  // namespace
 
-Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline, double merge_length_m) {
+Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline, double merge_length_m,
+                                 const StageControl& control) {
     double mean_diameter = 0.0;
     std::vector<double> weights;
     for (const double r : packing.radii_m) {
         weights.push_back(r * r);
         mean_diameter += 2.0 * r / static_cast<double>(packing.radii_m.size());
     }
-    CellGraph graph = clip_cells(packing.centres, weights, outline);
+    CellGraph graph = clip_cells(packing.centres, weights, outline, control);
     if (!outline.is_disc && !is_convex_polygon(outline.vertices)) join_pieces(graph, packing.centres, outline);
     return tessellation_of(std::move(graph), outline, mean_diameter, merge_length_m);
 }
@@ -65,7 +68,11 @@ Tessellation tessellation_of(CellGraph graph, const Outline& outline, double mea
     result.merged_edges += merge_short_edges(graph, outline, least_length);
     drop_unused_vertices(graph);
     result.vertices = std::move(graph.vertices);
-    for (const Face& face : graph.faces) result.cells.push_back(make_cell(face, result.vertices));
+    result.cells.reserve(graph.faces.size());
+    for (Face& face : graph.faces) {
+        result.cells.push_back(make_cell(face, result.vertices));
+        face = {};  // its memory is enough for the next
+    }
     if (!outline.cutouts.empty()) result.crossings = join_faces(result, outline, 0.5 * least_length);
     check_conforming(result);
     return result;
@@ -84,6 +91,9 @@ void check_conforming(const Tessellation& cells) {
         bool forward;
     };
     std::vector<Side> sides;
+    std::size_t count = 0;
+    for (const Cell& cell : cells.cells) count += cell.vertices.size();
+    sides.reserve(count);
     for (int i = 0; i < std::ssize(cells.cells); ++i) {
         const Cell& cell = cells.cells[i];
         const std::size_t n = cell.vertices.size();
@@ -92,9 +102,9 @@ void check_conforming(const Tessellation& cells) {
             sides.push_back({std::min(a, b), std::max(a, b), i, cell.neighbours[k], a < b});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& l, const Side& r) {
-        return std::tie(l.low, l.high, l.forward, l.cell) < std::tie(r.low, r.high, r.forward, r.cell);
-    });
+    sort_in_buckets(
+        sides, cells.vertices.size(), [](const Side& side) { return side.low; },
+        [](const Side& l, const Side& r) { return std::tie(l.high, l.forward, l.cell) < std::tie(r.high, r.forward, r.cell); });
     for (std::size_t k = 0; k < sides.size();) {
         std::size_t end = k + 1;
         while (end < sides.size() && sides[end].low == sides[k].low && sides[end].high == sides[k].high) ++end;

@@ -3,6 +3,7 @@
 
 #include "feldspar/specimen/cell_graph.hpp"
 #include "feldspar/specimen/specimen.hpp"
+#include "feldspar/specimen/stage_control.hpp"
 
 namespace feldspar {
 
@@ -13,7 +14,8 @@ namespace feldspar {
 /// @throws InputError      for equal centres, discs hidden by their neighbours or outside the outline, and an outline too
 ///                         narrow for its grains
 /// @throws NumericalError  if the result is not a partition: an edge inside that two cells do not share
-Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline, double merge_length_m);
+Tessellation tessellate_laguerre(const Packing& packing, const Outline& outline, double merge_length_m,
+                                 const StageControl& control = {});
 
 /// What follows the clipping, of cells of any origin: holes and notches are cut out, short edges merged. @param mean_diameter_m
 /// of the grains

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/sort_in_buckets.hpp"
 #include "feldspar/geometry/cell_grid.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/attachment.hpp"
@@ -26,13 +28,29 @@ void expect_finite(double length, std::size_t body) {
     if (!std::isfinite(length)) throw NumericalError(fmt::format("the position of body {} is not a finite number", body));
 }
 
-std::vector<Pair> pairs_in_contact(const Assembly& assembly) {
+// Pairs of bodies, the smaller number first, sorted.
+class KnownPairs {
+public:
+    KnownPairs(std::vector<Pair> pairs, std::size_t bodies) : pairs_(std::move(pairs)) {
+        begin_ = sort_in_buckets(
+            pairs_, bodies, [](const Pair& pair) { return pair[0]; }, std::less<>());
+    }
+    bool contains(int a, int b) const {
+        const auto at = [&](std::size_t n) { return pairs_.begin() + static_cast<std::ptrdiff_t>(begin_[n]); };
+        return std::binary_search(at(static_cast<std::size_t>(a)), at(static_cast<std::size_t>(a) + 1), Pair{a, b});
+    }
+
+private:
+    std::vector<Pair> pairs_;
+    std::vector<std::size_t> begin_;  // of those of each first body
+};
+
+KnownPairs pairs_in_contact(const Assembly& assembly) {
     std::vector<Pair> pairs;
     for (const Contact& contact : assembly.contacts)
         if (!contact.dropped && !contact.plate)
             pairs.push_back({std::min(contact.a.body, contact.b.body), std::max(contact.a.body, contact.b.body)});
-    std::sort(pairs.begin(), pairs.end());
-    return pairs;
+    return {std::move(pairs), assembly.bodies.size()};
 }
 
 // Every bond of the contact is broken and open by more than the skin.
@@ -64,11 +82,11 @@ void ContactFinder::search(const Assembly& assembly) {
     double largest = 0.0;
     for (const Body& body : assembly.bodies) largest = std::max(largest, body.radius_m);
     CellGrid grid(bounding_box(centres_at_search_), 2.0 * largest + skin_m_, centres_at_search_.size());
-    const std::vector<Pair> known = pairs_in_contact(assembly);
+    const KnownPairs known = pairs_in_contact(assembly);
     const auto consider = [&](int a, int b) {
         const double reach = assembly.bodies[a].radius_m + assembly.bodies[b].radius_m + skin_m_;
         const Vec2 line = centres_at_search_[b] - centres_at_search_[a];
-        if (dot(line, line) > reach * reach || std::binary_search(known.begin(), known.end(), Pair{a, b})) return;
+        if (dot(line, line) > reach * reach || known.contains(a, b)) return;
         const auto at = std::lower_bound(overlapping_at_start_.begin(), overlapping_at_start_.end(), Pair{a, b});
         const bool overlapped = at != overlapping_at_start_.end() && *at == Pair{a, b};
         candidates_.push_back(
@@ -80,9 +98,9 @@ void ContactFinder::search(const Assembly& assembly) {
         grid.for_each_near(centres_at_search_[b], reach, [&](int a) { consider(a, b); });
         grid.insert(b, centres_at_search_[b]);
     }
-    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& l, const Candidate& r) {
-        return Pair{l.a, l.b} < Pair{r.a, r.b};
-    });
+    sort_in_buckets(
+        candidates_, assembly.bodies.size(), [](const Candidate& pair) { return pair.a; },
+        [](const Candidate& l, const Candidate& r) { return l.b < r.b; });
 }
 
 ContactFinder::Changes ContactFinder::update(Assembly& assembly, double mass_factor) {
