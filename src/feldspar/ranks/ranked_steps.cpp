@@ -25,22 +25,27 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// Into memory that stays from one time to the next.
 class Writer {
 public:
-    explicit Writer(std::vector<char>& bytes) : bytes_(bytes) { bytes_.clear(); }
+    explicit Writer(std::vector<char>& bytes) : bytes_(bytes) {}
     template <class T>
     void put(const T* from, std::size_t count) {
         static_assert(std::is_trivially_copyable_v<T>);
-        const char* at = reinterpret_cast<const char*>(from);
-        bytes_.insert(bytes_.end(), at, at + sizeof(T) * count);
+        const std::size_t bytes = sizeof(T) * count;
+        if (bytes > bytes_.size() - at_) bytes_.resize(2 * bytes_.size() + bytes);
+        if (bytes > 0) std::memcpy(bytes_.data() + at_, from, bytes);
+        at_ += bytes;
     }
     template <class T>
     void put(const T& value) {
         put(&value, 1);
     }
+    std::span<const char> written() const { return {bytes_.data(), at_}; }
 
 private:
     std::vector<char>& bytes_;
+    std::size_t at_ = 0;
 };
 
 class Reader {
@@ -119,13 +124,13 @@ public:
         share_out(assembly);
         make_steps(assembly, team, settings, first_step, count);
         const Clock::time_point behind = Clock::now();
-        leave(assembly, first_step);
-        ranks_.gather(left_, all_);
+        const std::span<const char> left = leave(assembly, first_step);
+        ranks_.gather(left, all_);
         take(assembly, count);
         add_up_work(assembly, settings, count, work);
         traffic_.gather_s += seconds_since(behind);
         traffic_.all_s += seconds_since(start);
-        traffic_.bytes_in_blocks += static_cast<double>(left_.size());
+        traffic_.bytes_in_blocks += static_cast<double>(left.size());
         traffic_.steps += count;
         ++traffic_.blocks;
     }
@@ -327,7 +332,7 @@ private:
     }
 
     // What this rank has changed of its part, for the others; take() reads it in the same order.
-    void leave(const Assembly& s, long long first_step) {
+    std::span<const char> leave(const Assembly& s, long long first_step) {
         Writer out(left_);
         for (const IndexRange n : own().nodes)
             for (const auto* quantity : {&s.nodes.displacement, &s.nodes.velocity, &s.nodes.force})
@@ -357,6 +362,7 @@ private:
         out.put(breaks_.size());
         out.put(breaks_.data(), breaks_.size());
         out.put(loading_forces_.data(), loading_forces_.size());
+        return out.written();
     }
 
     // What the others have changed of theirs.
