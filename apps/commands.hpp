@@ -150,6 +150,18 @@ struct ClaimsOptions {
 /// Holds the claims of a folder against what its studies' ledgers have, and prints the verdicts. Runs nothing.
 ExitCode claims_command(const ClaimsOptions& options);
 
+/// What stands on the command line of `verify`.
+struct VerifyOptions {
+    std::optional<std::string> only;  ///< regular expression for the names of checks
+    bool list = false;
+    std::optional<std::string> out;  ///< a new directory
+    int threads = 0;                 ///< 0: one for each core
+    std::string command_line;        ///< for provenance
+};
+
+/// Runs the closed forms, prints a table, and leaves a page. Exit code 3 if one lies outside of its bound.
+ExitCode verify_command(const VerifyOptions& options);
+
 /// What stands on the command line of `envelope` beside the job file.
 struct EnvelopeCommandOptions : JobOptions {
     std::optional<int> packings;      ///< how many

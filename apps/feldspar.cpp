@@ -97,6 +97,11 @@ constexpr const char* claims_examples = R"(  feldspar claims studies/paper
   feldspar claims studies/paper --claim T3 --csv comparisons.csv
 )";
 
+constexpr const char* verify_examples = R"(  feldspar verify                        results/verify-1/verify.html has the table
+  feldspar verify --list
+  feldspar verify --only "two-grains|beams"
+)";
+
 constexpr const char* calibrate_examples = R"(  feldspar new calibration --UCS 120MPa --E 30GPa --BTS 9MPa --out targets.toml
   feldspar calibrate targets.toml
   feldspar calibrate targets.toml --budget 400 --threads 8
@@ -530,6 +535,22 @@ void add_calibrate(CommandLine& line) {
     line.does(command, [options] { return calibrate_command(*options); });
 }
 
+void add_verify(CommandLine& line) {
+    const auto options = line.options<VerifyOptions>();
+    CLI::App& command = line.add(
+        "verify", "hold the program against closed forms on this machine, and print what was expected and what was found",
+        verify_examples);
+    command.add_option("--only", options->only, "only checks whose name matches this regular expression")->type_name("REGEX");
+    command.add_flag("--list", options->list, "print what there is to check, and run nothing");
+    command
+        .add_option("--out", options->out, "a new directory for the page, JSON and Markdown (default: results/verify-1, -2, ...)")
+        ->type_name("DIR");
+    command.add_option("--threads", options->threads, "checks side by side (default: one for each core)")
+        ->type_name("N")
+        ->check(CLI::Range(0, 256));
+    line.does(command, [options] { return verify_command(*options); });
+}
+
 struct NewOptions {
     std::string kind;
     std::optional<std::string> file;
@@ -641,7 +662,7 @@ int main(int argc, char** argv) {
     using namespace feldspar;
     CommandLine line(joined(argc, argv), examples, version_text);
     for (auto* add : {add_run, add_check, add_view, add_export, add_export_cells, add_new, add_schema, add_study, add_envelope,
-                      add_converge, add_claims, add_calibrate, add_pages})
+                      add_converge, add_claims, add_calibrate, add_verify, add_pages})
         add(line);
     if (started_ranks() > 1 && (argc < 2 || std::string_view(argv[1]) != "run"))
         return complain(ExitCode::input, fmt::format("{} programs were started together, which share out the steps of 'feldspar "

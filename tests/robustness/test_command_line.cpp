@@ -15,7 +15,7 @@ TEST(CommandLine, HelpAndVersion) {
     EXPECT_NE(help.out.find("Examples:"), std::string::npos);
     EXPECT_NE(help.out.find("feldspar run"), std::string::npos);
     for (const char* command : {"run", "check", "view", "export", "new", "schema", "study", "envelope", "converge", "claims",
-                                "calibrate", "export-cells"}) {
+                                "calibrate", "export-cells", "verify"}) {
         const Outcome own = run_program(place.path(), {command, "--help"});
         EXPECT_EQ(own.code, 0);
         EXPECT_NE(own.out.find(std::string("Examples:\n  feldspar ")), std::string::npos) << own.out;
@@ -552,6 +552,27 @@ TEST(CommandLine, PagesAndCompletionsKnowEveryCommand) {
     EXPECT_EQ(names.find("element"), std::string::npos);  // not the user's to call
     EXPECT_NE(run_program(place.path(), {"manual", "study", "status"}).out.find("feldspar study status"), std::string::npos);
     EXPECT_NE(run_program(place.path(), {"new", "UCS"}).out.find("uniaxial-compression"), std::string::npos);
+}
+
+TEST(CommandLine, VerifyRunsTheChecksThatAreAskedForAndLeavesAPage) {
+    const TemporaryFolder place;
+    for (const char* wrong : {"(", "no-such-check"}) {
+        const Outcome outcome = run_program(place.path(), {"verify", "--only", wrong});
+        EXPECT_EQ(outcome.code, 2) << outcome.err;
+        EXPECT_NE(outcome.err.find("--only"), std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.err.find("verify --list"), std::string::npos) << outcome.err;
+    }
+    const Outcome list = run_program(place.path(), {"verify", "--list", "--only", "^laws"});
+    EXPECT_EQ(list.code, 0) << list.err;
+    EXPECT_NE(list.out.find("laws.work-in-shear: "), std::string::npos) << list.out;
+    EXPECT_EQ(list.out.find("two-grains"), std::string::npos) << list.out;
+    EXPECT_TRUE(place.entries().empty());
+    const Outcome run = run_program(place.path(), {"verify", "--only", "laws.work-in", "--threads", "1"});
+    EXPECT_EQ(run.code, 0) << run.err;
+    EXPECT_NE(run.out.find("2 of 2 within their bounds"), std::string::npos) << run.out;
+    for (const char* file : {"verify.html", "verify.json", "verify.md"})
+        EXPECT_TRUE(fs::exists(place / "results/verify-1" / file)) << file;
+    EXPECT_EQ(run_program(place.path(), {"verify", "--only", "laws.work-in", "--out", "results"}).code, 2);
 }
 
 TEST(CommandLine, AnExistingDirectoryIsRefused) {

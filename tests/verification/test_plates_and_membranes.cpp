@@ -15,60 +15,6 @@
 namespace feldspar {
 namespace {
 
-constexpr double kSide = 0.003, kArea = kSide * 0.08, kKn = 1.08e13, kEta = 0.3;
-
-struct PlateForce {
-    double pressed_N = 0.0, dragged_N = 0.0;  // on the grain: away from the plate, against the grain's motion along it
-    double reaction_N = 0.0;                  // on the plate
-};
-
-// The upper of two rigid grains moves by `towards_m` towards the top plate, then by `along_m` along it.
-PlateForce push(const PlateContact& plates, double towards_m, double along_m) {
-    const auto specimen = fixtures::two_grain_bar(kSide);
-    Assembly assembly =
-        assemble(*specimen, fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table1(GrainKind::rigid));
-    attach(assembly, *specimen, fixtures::end_plates(plates));
-    const int top = assembly.fixtures[0].plate, centre = assembly.bodies[1].centre_node;
-    const auto at =
-        std::find_if(assembly.contacts.begin(), assembly.contacts.end(), [&](const Contact& c) { return c.b.body == top; });
-    const int c = static_cast<int>(at - assembly.contacts.begin());
-    for (const Vec2 move : {Vec2{0.0, towards_m}, Vec2{along_m, 0.0}}) {
-        assembly.nodes.velocity[centre] = move;
-        assembly.nodes.displacement[centre] += move;
-        contact_forces(assembly, {c, c + 1}, StepSettings{}, 0);
-    }
-    assembly.nodes.velocity[centre] = {};
-    const SlotForces on_grain = assembly.slots[2 * c];
-    const double arm = 0.5 * kSide;  // of the force along the plate about the grain's centre, once the grain has moved towards it
-    EXPECT_NEAR(turning_moment(on_grain), -on_grain.force.x * arm, 1e-6 * std::abs(on_grain.force.y) * arm + 1e-12);
-    Team team(1);
-    evaluate_forces(assembly, team, Strength::real);
-    return {-on_grain.force.y, -on_grain.force.x, loading_reaction(assembly)};
-}
-
-TEST(Plates, PressByTheirStiffnessAndDragByItUpToTheFriction) {
-    const double towards = 1e-9, kn = kKn * kArea, Fn = kn * towards;
-    const PlateContact rough{kKn, kEta, 0.25, false};
-    const PlateForce stuck = push(rough, towards, 1e-10);
-    EXPECT_NEAR(stuck.pressed_N / Fn, 1.0, 1e-9);
-    EXPECT_NEAR(stuck.dragged_N / (kEta * kn * 1e-10), 1.0, 1e-9);  // below mu Fn = 0.25 Fn
-    EXPECT_NEAR(stuck.reaction_N / Fn, 1.0, 1e-9);
-    const PlateForce sliding = push(rough, towards, 2e-9);  // 0.6 Fn without the limit
-    EXPECT_NEAR(sliding.dragged_N / (0.25 * Fn), 1.0, 1e-9);
-    const PlateForce smooth = push({kKn, kEta, 0.0, false}, towards, 2e-9);
-    EXPECT_NEAR(smooth.pressed_N / Fn, 1.0, 1e-9);
-    EXPECT_EQ(smooth.dragged_N, 0.0);
-}
-
-TEST(Plates, LetGoInTensionUnlessTheyAreGlued) {
-    const double away = -1e-7, kn = kKn * kArea;
-    EXPECT_EQ(push({kKn, kEta, 0.25, false}, away, 1e-9).pressed_N, 0.0);
-    const PlateForce glued = push({kKn, kEta, 0.0, true}, -1e-3, 1e-9);  // however far
-    EXPECT_NEAR(glued.pressed_N / (-kn * 1e-3), 1.0, 1e-9);
-    EXPECT_NEAR(glued.reaction_N / (-kn * 1e-3), 1.0, 1e-9);
-    EXPECT_EQ(glued.dragged_N, 0.0);  // free along the plate
-}
-
 std::vector<ModelSpec> plate_models() { return {fixtures::model(GrainKind::rigid), fixtures::model(GrainKind::inner_particles)}; }
 
 class PlatesOf : public testing::TestWithParam<ModelSpec> {};

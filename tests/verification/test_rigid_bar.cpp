@@ -1,4 +1,4 @@
-// Two rigid grains, pulled, sheared and pressed: every number is known beforehand.
+// Two rigid grains: how they break and return. Their numbers are checks of verify/two_grains.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,55 +14,6 @@ namespace {
 
 constexpr double kSide = 0.003, kArea = kSide * 0.08;
 
-struct Torn {
-    double work_J = 0.0, peak_N = 0.0;
-    double damage = 0.0;
-    double fracture_J = 0.0;
-};
-
-// The upper grain moves by `travel_m` in equal steps, along the normal or across it, and the contact tears.
-Torn tear(ContactKind kind, bool shear, double travel_m) {
-    Assembly assembly = assemble(*fixtures::two_grain_bar(kSide), fixtures::model(GrainKind::rigid, kind), fixtures::granite(),
-                                 fixtures::table1(GrainKind::rigid));
-    const int centre = assembly.bodies[1].centre_node;
-    constexpr int kSteps = 300000;
-    Torn torn;
-    Vec2 before{};
-    for (int k = 0; k < kSteps; ++k) {
-        const Vec2 n = contact_frame(assembly, assembly.contacts[0]).n;
-        const Vec2 move = (travel_m / kSteps) * (shear ? rot90(n) : n);
-        assembly.nodes.velocity[centre] = move;
-        assembly.nodes.displacement[centre] += move;
-        contact_forces(assembly, {0, 1}, StepSettings{}, k);
-        const Vec2 force = assembly.slots[1].force;
-        torn.work_J -= 0.5 * dot(before + force, move);
-        torn.peak_N = std::max(torn.peak_N, norm(force));
-        before = force;
-    }
-    torn.damage = 1.0;
-    for (int p = 0; p < std::ssize(assembly.points); ++p) {
-        torn.damage = std::min(torn.damage, assembly.bond(p).damage);
-        torn.fracture_J += assembly.bond(p).fracture_J;
-    }
-    return torn;
-}
-
-TEST(TwoRigidGrains, TornApartOrShearedOffTheyTakeTheFractureEnergyAndHaveTheStrength) {
-    const ContactMaterial c = fixtures::table1(GrainKind::rigid);
-    for (const ContactKind kind : {ContactKind::lobatto3, ContactKind::point}) {
-        const Torn pulled = tear(kind, false, 4e-5);  // x_f = x0 + 2.5 L = 2.7e-5 m
-        EXPECT_EQ(pulled.damage, 1.0) << name(kind);
-        EXPECT_NEAR(pulled.work_J / (c.Gfn_J_m2 * kArea), 1.0, 1e-3) << name(kind);
-        EXPECT_NEAR(pulled.fracture_J / (c.Gfn_J_m2 * kArea), 1.0, 1e-3) << name(kind);
-        EXPECT_NEAR(pulled.peak_N / (c.sigma_nt_Pa * kArea), 1.0, 1e-4) << name(kind);
-        const Torn sheared = tear(kind, true, 4e-4);  // x_f = 3.0e-4 m; the normal turns by a tenth on the way
-        EXPECT_EQ(sheared.damage, 1.0) << name(kind);
-        EXPECT_NEAR(sheared.work_J / (c.Gfs_J_m2 * kArea), 1.0, 1e-3) << name(kind);
-        EXPECT_NEAR(sheared.fracture_J / (c.Gfs_J_m2 * kArea), 1.0, 1e-3) << name(kind);
-        EXPECT_NEAR(sheared.peak_N / (c.tau_Pa * kArea), 1.0, 1e-4) << name(kind);
-    }
-}
-
 TestSetup bar(MethodId kind, ContactKind contact) {
     TestSetup s = fixtures::setup(fixtures::two_grain_bar(kSide), kind);
     s.model = fixtures::model(GrainKind::rigid, contact);
@@ -72,50 +23,15 @@ TestSetup bar(MethodId kind, ContactKind contact) {
     return s;
 }
 
-TEST(TwoRigidGrains, BetweenPlatesTheyHaveThreeContactsInSeries) {
-    for (const ContactKind kind : {ContactKind::lobatto3, ContactKind::point}) {
-        TestSetup s = bar(methods::direct_tension, kind);
-        s.test.maximum_strain = 0.006;  // 3.6e-5 m, beyond x_f = 2.7e-5 m
-        const TestResult r = run_test(s, fixtures::threads(1));
-        const HistoryRow& elastic = r.history[10];
-        ASSERT_EQ(elastic.phase, Phase::elastic);
-        const double stiffness = elastic.axial_stress_Pa / elastic.platen_displacement_m;
-        EXPECT_NEAR(stiffness * 3.0 / s.contact.Kn_Pa_m, 1.0, 1e-3) << name(kind);  // the relaxation's residual
-        EXPECT_NEAR(r.properties.peak_stress_Pa / s.contact.sigma_nt_Pa, 1.0, 5e-3) << name(kind);
-        for (const Crack& crack : r.cracks) EXPECT_EQ(crack.mode, CrackMode::tensile);
-        // The plates hold each grain at one point, about which it may turn: once three points soften, pulling evenly is unstable
-        // and one end of the edge opens before the other. One point knows no turning, and tears for the whole fracture energy.
-        if (kind == ContactKind::lobatto3) {
-            EXPECT_GE(r.cracks.size(), 1U);
-            EXPECT_LE(r.energy_at_end.fracture / (s.contact.Gfn_J_m2 * kArea), 1.005);
-            continue;
-        }
-        EXPECT_EQ(r.cracks.size(), 1U);
-        EXPECT_NEAR(r.energy_at_end.supplied() / (s.contact.Gfn_J_m2 * kArea), 1.0, 5e-3);
-        EXPECT_NEAR(r.energy_at_end.fracture / (s.contact.Gfn_J_m2 * kArea), 1.0, 5e-3);
-        EXPECT_LT(std::abs(r.history.back().axial_stress_Pa), 5e-3 * s.contact.sigma_nt_Pa);  // what still rings
-    }
-}
-
-TEST(TwoRigidGrains, TheStepOfABodyThatAttainsTheBoundKeepsAMargin) {
-    // All stiffness of the two grains lies in one direction, where the bound behind the masses is exact.
-    for (const NumericsKind kind : {NumericsKind::adaptive, NumericsKind::paper}) {
-        TestSetup s = bar(methods::direct_tension, ContactKind::point);
-        s.numerics.kind = kind;
-        const TestPreview preview = preview_test(s, fixtures::threads(1));
-        EXPECT_NEAR(preview.omega2 / preview.omega2_limit, 0.99, 1e-6) << name(kind);
-    }
-}
-
-TEST(TwoRigidGrains, PressedBetweenPlatesTheyHaveThreeContactsInSeriesToo) {
-    TestSetup s = bar(methods::uniaxial_compression, ContactKind::lobatto3);
-    s.numerics.kind = NumericsKind::paper;
-    s.numerics.speed_m = 3e-10;  // many travel times of a wave over 6 mm
-    s.test.maximum_strain = 0.0001;
+// The plates hold each grain at one point, about which it may turn: once three points soften, pulling evenly is unstable and one
+// end of the edge opens before the other.
+TEST(TwoRigidGrains, BetweenPlatesTheyOpenFromOneEnd) {
+    TestSetup s = bar(methods::direct_tension, ContactKind::lobatto3);
+    s.test.maximum_strain = 0.006;  // 3.6e-5 m, beyond x_f = 2.7e-5 m
     const TestResult r = run_test(s, fixtures::threads(1));
-    EXPECT_TRUE(r.cracks.empty());
-    const HistoryRow& end = r.history.back();
-    EXPECT_NEAR(end.axial_stress_Pa / end.platen_displacement_m * 3.0 / s.contact.Kn_Pa_m, 1.0, 0.01);  // waves that are left
+    EXPECT_GE(r.cracks.size(), 1U);
+    for (const Crack& crack : r.cracks) EXPECT_EQ(crack.mode, CrackMode::tensile);
+    EXPECT_LE(r.energy_at_end.fracture / (s.contact.Gfn_J_m2 * kArea), 1.005);
 }
 
 constexpr double kSkin = 3e-4;
@@ -156,12 +72,10 @@ TEST(TwoRigidGrains, ABrokenOpenContactIsDroppedAndReturnsAsFrictionOnTheShorter
     Team team(1);
     evaluate_forces(assembly, team, Strength::real);
     EXPECT_EQ(assembly.bonds.at(point.state).fracture_J, 0.0);
-    EXPECT_NEAR(assembly.bonds.at(point.state).Fn_N / (1.08e13 * 0.8 * kArea * 1e-8), 1.0, 1e-6);
     EXPECT_NEAR(assembly.nodes.force[upper].x / assembly.bonds.at(point.state).Fn_N, 1.0, 1e-6);
-    // Sliding by 1e-6 m across: friction, limited by mu Fn.
+    // Sliding by 1e-6 m across: friction.
     assembly.nodes.velocity[upper] = {0.0, 1e-6};
     contact_forces(assembly, {1, 2}, StepSettings{}, 0);
-    EXPECT_NEAR(std::abs(assembly.bonds.at(point.state).Fs_N) / (0.5 * assembly.bonds.at(point.state).Fn_N), 1.0, 1e-12);
     EXPECT_LT(assembly.slots[3].force.y, 0.0);  // against the motion
 }
 

@@ -63,17 +63,11 @@ Gaps gaps_after_turning(Assembly assembly, int steps) {
     return largest;
 }
 
-TEST_P(RigidModels, RigidRotationOpensContactsOnlyByTheStepsOwnErrorWhichVanishesWithTheStep) {
-    const Assembly assembly = bodies(*specimen());
-    const Gaps coarse = gaps_after_turning(assembly, 1000), fine = gaps_after_turning(assembly, 2000);
-    EXPECT_LT(coarse.un, 5e-7);
-    EXPECT_LT(coarse.us, 5e-7);
-    EXPECT_GT(coarse.un, 0.0);
-    // The turn moves a point by its arc, the centre by its chord: of first order in the step, along the line of centres. Across
-    // it the line turns with the bodies, and what is left is of second order; across the edge's normal it is of first order too.
-    const bool along_centres = GetParam().normal == ContactNormal::centres;
-    EXPECT_NEAR(coarse.un / fine.un, 2.0, 0.02);
-    EXPECT_NEAR(coarse.us / fine.us, along_centres ? 4.0 : 2.0, along_centres ? 0.04 : 0.02);
+TEST_P(RigidModels, RigidRotationOpensContactsOnlyByTheStepsOwnError) {
+    const Gaps gaps = gaps_after_turning(bodies(*specimen()), 1000);
+    EXPECT_LT(gaps.un, 5e-7);
+    EXPECT_LT(gaps.us, 5e-7);
+    EXPECT_GT(gaps.un, 0.0);
 }
 
 TEST_P(RigidModels, ContactForcesConserveLinearAndAngularMomentum) {
@@ -259,47 +253,6 @@ TEST(InnerParticles, ContactsAcrossAnEdgeShareItsAreaAndThoseInsideHaveTheSmalle
                     edges += 0.5 * norm(s->cells.vertices[cell.vertices[(k + 1) % cell.vertices.size()]] -
                                         s->cells.vertices[cell.vertices[k]]);
         EXPECT_NEAR(across / (edges * assembly.thickness_m), 1.0, 1e-12);
-    }
-}
-
-TEST(RigidGrains, ASquareHasTheClosedFormsMassAndMomentOfInertia) {
-    const double h = 0.003, mass = 2650.0 * h * h * 0.08;
-    Assembly assembly = assemble(*fixtures::two_grain_bar(h, 0.5 * h), fixtures::model(GrainKind::rigid), fixtures::granite(),
-                                 fixtures::table1(GrainKind::rigid));
-    set_real_masses(assembly);
-    EXPECT_NEAR(assembly.nodes.mass[0] / mass, 1.0, 1e-12);
-    EXPECT_NEAR(assembly.nodes.mass[1] * 0.25 * h * h / (mass * h * h / 6.0), 1.0, 1e-12);  // m (h^2 + h^2) / 12
-    EXPECT_NEAR(assembly.nodes.mass[3] * h * h / 16.0 / (0.5 * mass * 1.25 * h * h / 12.0), 1.0,
-                1e-12);  // m (h^2 + (h/2)^2) / 12
-    EXPECT_NEAR(assembly.nodes.inverse_mass[0].x * mass, 1.0, 1e-12);
-    EXPECT_EQ(assembly.nodes.inverse_mass[1].y, 0.0);  // of a turn only x moves
-}
-
-// Moment about the middle of the edge between two square grains when the upper one turns about it by a small angle, over
-// Kn t L^3 / 12 times the angle.
-double bending_moment(const ModelSpec& model) {
-    constexpr double kSide = 0.003, kAngle = 1e-9;
-    const ContactMaterial material = fixtures::material(model);
-    Assembly assembly = assemble(*fixtures::two_grain_bar(kSide), model, fixtures::granite(), material);
-    const Vec2 middle = {0.5 * kSide, kSide};
-    const Body& upper = assembly.bodies[1];
-    for (const int n : upper.nodes()) {
-        Vec2& u = assembly.nodes.displacement[n];
-        u = kAngle * rot90(assembly.nodes.reference[n] - middle);
-        if (upper.kind == BodyKind::rigid && n > upper.centre_node) u = {kAngle * upper.radius_m, 0.0};
-    }
-    assembly.nodes.velocity = assembly.nodes.displacement;
-    contact_forces(assembly, {0, 1}, StepSettings{}, 0);
-    const SlotForces& on_upper = assembly.slots[1];
-    const double moment = cross(assembly.centre(1) - middle, on_upper.force) + turning_moment(on_upper);
-    return -moment / (material.Kn_Pa_m * assembly.thickness_m * kSide * kSide * kSide / 12.0 * kAngle);
-}
-
-TEST(Bending, ThreePointsCarryTheClosedFormsMomentAndOnePointCarriesNone) {
-    for (const GrainKind grains : {GrainKind::rigid, GrainKind::flexible}) {
-        // Lobatto's rule is exact for W^2: 2 (1/6) (L/2)^2 = L^2 / 12. Gaps of 1e-12 m leave the angle's square and rounding.
-        EXPECT_NEAR(bending_moment(fixtures::model(grains)), 1.0, 1e-6) << name(grains);
-        EXPECT_NEAR(bending_moment(fixtures::model(grains, ContactKind::point)), 0.0, 1e-6) << name(grains);
     }
 }
 

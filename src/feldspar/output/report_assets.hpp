@@ -15,6 +15,7 @@ extern const char* const asset_envelope_js;     ///< strength envelopes (finding
 extern const char* const asset_converge_js;     ///< convergence (findings/converge_files.cpp)
 extern const char* const asset_study_js;        ///< points of a study (study/study_report.cpp)
 extern const char* const asset_calibration_js;  ///< calibration (calibration/calibration_report.cpp)
+extern const char* const asset_verify_js;       ///< closed forms (verify/write_checks.cpp)
 extern const char* const asset_paraview_py;     ///< by which ParaView shows a test, with marks such as {{stem}}
 extern const char* const asset_live_js;         ///< what is going on in a run, above its report (live/live_page.cpp)
 extern const char* const asset_live_css;

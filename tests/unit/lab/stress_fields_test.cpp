@@ -60,24 +60,6 @@ TEST(StressFields, AroundATipAreElasticAndFreeOfTractionOnItsFaces) {
     EXPECT_NEAR(std::abs(fields[1]({0.0, r}).xy), expected, 1e-9 * expected);
 }
 
-TEST(StressFields, OfAHoleUnderUniaxialStressAreKirschs) {
-    const double radius = 5e-3;
-    const std::vector<StressField> fields = fields_around_hole(radius, true);  // equal on all sides, across against along, shear
-    ASSERT_EQ(fields.size(), 3U);
-    const auto stress =
-        [&](double r,
-            double angle) {  // 1 along y: half of the first, and a quarter of the second, which has 2 along y and -2 along x
-            const Vec2 at = r * radius * turned({1.0, 0.0}, angle);
-            const Mat2 a = fields[0](at), b = fields[1](at);
-            return Mat2{0.5 * a.xx + 0.25 * b.xx, 0.0, 0.0, 0.5 * a.yy + 0.25 * b.yy};
-        };
-    for (const auto& [r, tangential] : {std::pair{1.0, 3.0}, {1.25, 1.934}, {1.5, 1.519}, {2.0, 1.219}, {3.0, 1.074}})
-        EXPECT_NEAR(stress(r, 0.0).yy, tangential, 5e-4);
-    EXPECT_NEAR(stress(1.0, 0.5 * M_PI).xx, -1.0, 1e-12);
-    EXPECT_NEAR(stress(1e4, 1.0).yy, 1.0, 1e-7);
-    EXPECT_NEAR(stress(1e4, 1.0).xx, 0.0, 1e-7);
-}
-
 TEST(StressFields, AFitFindsTheFactors) {
     const double radius = 5e-3;
     const std::vector<StressField> fields = fields_around_hole(radius);
