@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -160,6 +161,21 @@ TEST(Conventions, SharedVocabularyIncludesNothing) {
                                << at(in, line) << "the shared vocabulary is plain data and depends on no room";
                        });
     }
+}
+
+/// Two types of one name in the program's only namespace: their constructors, or vectors of them, have one name for the linker,
+/// which takes either. Texts that are compiled anew for each set of instructions stand in namespaces of their own.
+TEST(Conventions, ATypeHasANameOfItsOwn) {
+    std::map<std::string, std::string> places;
+    const std::regex type(R"re(^(?:struct|class|enum|enum class) (\w+)(?: final)?(?: :[^:;][^;]*)? \{)re");
+    std::vector<SourceFile> headers;
+    for (SourceFile& file : files_under("src/feldspar", {".hpp"}))
+        if (file.name.rfind("src/feldspar/fast/", 0) != 0) headers.push_back(std::move(file));
+    for_each_match(headers, type, [&](const SourceFile& file, std::size_t line, const std::smatch& match) {
+        const auto [there, first] = places.emplace(match[1], at(file, line));
+        EXPECT_TRUE(first) << at(file, line) << match[1] << " is the name of a type at " << there->second;
+    });
+    EXPECT_GT(places.size(), 100u) << "no types found: is this test looking at the right folder?";
 }
 
 TEST(Conventions, EveryRoomIsInTheList) {

@@ -50,7 +50,7 @@ TEST(ListOfChecks, IsWhole) {
     EXPECT_GT(names.size(), 60U);
 }
 
-Check sample(Bound bound, double expected, double found) {
+Check sample(CheckBound bound, double expected, double found) {
     return {.name = "sample.check",
             .sentence = "Two | three <b>.",
             .formula = "a | b",
@@ -59,7 +59,7 @@ Check sample(Bound bound, double expected, double found) {
             .bound = bound,
             .reason = "none",
             .compare = [=] {
-                return std::vector<Comparison>{{"case", expected, found}};
+                return std::vector<CheckedValue>{{"case", expected, found}};
             }};
 }
 
@@ -76,9 +76,9 @@ TEST(Judging, TellsWhatLiesOutside) {
     EXPECT_FALSE(within(sample(absolute(0.5), nan, 0.0)));
     EXPECT_FALSE(within(sample(relative(0.5), 0.0, 0.0))) << "relative to nothing";
     Check empty = sample(absolute(1.0), 0.0, 0.0), throws = empty;
-    empty.compare = [] { return std::vector<Comparison>{}; };
+    empty.compare = [] { return std::vector<CheckedValue>{}; };
     EXPECT_FALSE(within(empty)) << "it compares nothing";
-    throws.compare = []() -> std::vector<Comparison> { throw std::runtime_error("no"); };
+    throws.compare = []() -> std::vector<CheckedValue> { throw std::runtime_error("no"); };
     EXPECT_FALSE(within(throws));
     EXPECT_EQ(run_check(throws, "sample").failure, "no");
 }
@@ -86,8 +86,9 @@ TEST(Judging, TellsWhatLiesOutside) {
 TEST(Judging, AnyCheckFailsIfItsExpectedValueWereAnother) {
     for (const auto& [check, topic] : all_checks()) {
         if (check->name.rfind("laws.", 0) != 0 && check->name.rfind("statistics.", 0) != 0) continue;  // the quick ones
-        std::vector<Comparison> moved = check->compare();
-        for (Comparison& c : moved) c.expected += 2.1 * check->bound.size * (check->bound.relative ? std::abs(c.expected) : 1.0);
+        std::vector<CheckedValue> moved = check->compare();
+        for (CheckedValue& c : moved)
+            c.expected += 2.1 * check->bound.size * (check->bound.relative ? std::abs(c.expected) : 1.0);
         for (const Judged& j : judge(*check, topic, moved).judged)
             EXPECT_FALSE(j.within) << check->name << " " << j.comparison.what;
     }

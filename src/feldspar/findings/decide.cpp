@@ -9,7 +9,7 @@
 namespace feldspar {
 namespace {
 
-using Kind = Target::Kind;
+using Kind = MeanLimit::Kind;
 
 constexpr double one_side = 0.025;  // of an interval of 95 %
 constexpr double power = 0.8;
@@ -32,18 +32,18 @@ double chance_of_below(const MeanInterval& i, double limit) {
 }
 
 // How far the mean lies from the nearest limit of the target: as far as the interval must shrink.
-double distance(const MeanInterval& i, const Target& target) {
+double distance(const MeanInterval& i, const MeanLimit& target) {
     if (target.kind == Kind::above || target.kind == Kind::below) return std::abs(i.mean - target.limit);
     return std::abs(std::abs(i.mean) - target.limit);
 }
 
 }  // namespace
 
-Finding decide(const MeanInterval& i, const Target& target) {
-    if (!std::isfinite(i.low) || !std::isfinite(i.high)) return Finding::open;
+Decision decide(const MeanInterval& i, const MeanLimit& target) {
+    if (!std::isfinite(i.low) || !std::isfinite(i.high)) return Decision::open;
     const bool above = i.low > target.limit, below = i.high < target.limit;
     const bool inside = i.low > -target.limit && below, outside = above || i.high < -target.limit;
-    const auto finding = [](bool yes, bool no) { return yes ? Finding::yes : no ? Finding::no : Finding::open; };
+    const auto finding = [](bool yes, bool no) { return yes ? Decision::yes : no ? Decision::no : Decision::open; };
     switch (target.kind) {
         case Kind::above:
             return finding(above, below);
@@ -54,10 +54,10 @@ Finding decide(const MeanInterval& i, const Target& target) {
         case Kind::outside:
             return finding(outside, inside);
     }
-    return Finding::open;
+    return Decision::open;
 }
 
-double chance_of_no(const MeanInterval& i, const Target& target) {
+double chance_of_no(const MeanInterval& i, const MeanLimit& target) {
     switch (target.kind) {
         case Kind::above:
             return chance_of_below(i, target.limit);
@@ -87,7 +87,7 @@ bool is_nothing(const MeanInterval& i, double size) {
     return size > 0.0 && chance_of_below(i, size) < 2.0 * one_side && chance_of_above(i, -size) < 2.0 * one_side;
 }
 
-std::optional<int> packings_to_decide(const MeanInterval& i, const Target& target, double size) {
+std::optional<int> packings_to_decide(const MeanInterval& i, const MeanLimit& target, double size) {
     if (i.count < 2 || !(i.standard_deviation > 0.0)) return std::nullopt;
     const double to_limit = distance(i, target), to_nothing = size - std::abs(i.mean);
     for (int n = std::max(i.count + 1, 3); n <= most_packings; ++n) {

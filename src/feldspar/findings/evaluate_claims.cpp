@@ -205,7 +205,7 @@ private:
 
     /// Takes one number a packing to be judged. The points that it came from are those read since the last call.
     /// @param size_of_value  the value of which a bound is a share
-    void judge(const std::string& what, const BySeed& by_seed, const Shown& shown, Target target, double size_of_value = nan) {
+    void judge(const std::string& what, const BySeed& by_seed, const Shown& shown, MeanLimit target, double size_of_value = nan) {
         Comparison comparison{what, shown.unit, mean_interval(values_of(scaled(by_seed, shown.factor))), Verdict::undecided};
         target.limit *= shown.factor;
         const Bound& none = statement_.no_difference;
@@ -231,7 +231,7 @@ private:
         const std::vector<bool> hold = hold_together(chances, 0.025);
         for (std::size_t k = 0; k < enough.size(); ++k) {
             Comparison& comparison = result_.comparisons[enough[k]];
-            if (decide(comparison.interval, targets_[enough[k]]) == Finding::yes)
+            if (decide(comparison.interval, targets_[enough[k]]) == Decision::yes)
                 comparison.verdict = Verdict::reproduced;
             else if (hold[k])
                 comparison.verdict = Verdict::contradicted;
@@ -330,12 +330,12 @@ private:
         const std::string chosen = words(side.selection);
         const std::string what =
             words(base, fmt::format("{}{} {} to {}", chosen.empty() ? "" : chosen + ", ", side.axis, from, to));
-        using enum Target::Kind;
+        using enum MeanLimit::Kind;
         const Rule rule = statement_.rule;
         if (rule == Rule::rises_with || rule == Rule::falls_with)
             return judge(what, difference(after, before), shown_as(side.quantity),
                          {rule == Rule::rises_with ? above : below, 0.0}, middle(before, after));
-        const Target target{rule == Rule::negligible ? inside : outside, statement_.bound.size};
+        const MeanLimit target{rule == Rule::negligible ? inside : outside, statement_.bound.size};
         if (statement_.bound.relative)
             judge(what, relative_change(before, after), percent, target);
         else
@@ -375,7 +375,7 @@ private:
             const BySeed departure = difference(values(at(labels[i]), side.quantity), line);
             judge(words(base, fmt::format("{} {} from the line through {} and {}", side.axis, labels[i], labels.front(),
                                           labels.back())),
-                  scaled(departure, 1.0 / mean_of(change)), percent, {Target::Kind::inside, statement_.bound.size});
+                  scaled(departure, 1.0 / mean_of(change)), percent, {MeanLimit::Kind::inside, statement_.bound.size});
         }
     }
 
@@ -431,7 +431,7 @@ private:
             const bool above = statement_.rule == Rule::above;
             return judge(words(base, fmt::format("{}{}{} {:g}", what, what.empty() ? "" : ", ", above ? "above" : "below",
                                                  statement_.number * shown.factor)),
-                         value, shown, {above ? Target::Kind::above : Target::Kind::below, statement_.number});
+                         value, shown, {above ? MeanLimit::Kind::above : MeanLimit::Kind::below, statement_.number});
         }
         const bool stated = std::isfinite(statement_.number);
         const double reference =
@@ -441,16 +441,16 @@ private:
         BySeed departure;
         for (const auto& [seed, v] : value) departure[seed] = statement_.bound.relative ? v / reference - 1.0 : v - reference;
         judge(words(base, what), departure, statement_.bound.relative ? percent : unscaled(quantity),
-              {Target::Kind::inside, statement_.bound.size});
+              {MeanLimit::Kind::inside, statement_.bound.size});
     }
 
     const Statement& statement_;
     const StudyResults& results_;
     StatementResult result_;
     std::map<Labels, std::size_t> points_;
-    std::vector<Target> targets_;  // of the comparisons of result_
-    std::set<std::size_t> here_;   // points of the comparison in hand
-    std::set<std::size_t> seen_;   // of the statement
+    std::vector<MeanLimit> targets_;  // of the comparisons of result_
+    std::set<std::size_t> here_;      // points of the comparison in hand
+    std::set<std::size_t> seen_;      // of the statement
 };
 
 StatementResult not_evaluated(const Statement& statement) {

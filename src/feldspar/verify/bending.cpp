@@ -32,8 +32,8 @@ TestSetup bent(MethodId kind, const SpecimenSpec& spec, double span_m) {
     return s;
 }
 
-std::vector<Comparison> deflection() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> deflection() {
+    std::vector<CheckedValue> compared;
     for (const double slenderness : {4.0, 6.0}) {
         const double span = slenderness * kHeight;
         Started s(bent(methods::three_point_bend, beam(span), span));
@@ -71,7 +71,7 @@ const FourPoints& four_points() {
 }
 
 // A tip among grains of a thirteenth of the height: single packings differ by 2 %.
-std::vector<Comparison> mouth() {
+std::vector<CheckedValue> mouth() {
     double sum = 0.0;
     constexpr int kPackings = 3;
     constexpr double x = 0.3, h = kHeight;
@@ -109,7 +109,7 @@ std::vector<Check> bending_checks() {
          .reason = "ten grains between the points of the gauge",
          .compare =
              [] {
-                 return std::vector<Comparison>{{"", 1e-9 * modulus_Pa(), 1e-9 * four_points().by_strain_Pa}};
+                 return std::vector<CheckedValue>{{"", 1e-9 * modulus_Pa(), 1e-9 * four_points().by_strain_Pa}};
              },
          .run = "beams"},
         {.name = "beams.four-point-deflection",
@@ -121,7 +121,7 @@ std::vector<Check> bending_checks() {
          .reason = "thirteen grains over the height",
          .compare =
              [] {
-                 return std::vector<Comparison>{{"", 1e-9 * modulus_Pa(), 1e-9 * four_points().by_deflection_Pa}};
+                 return std::vector<CheckedValue>{{"", 1e-9 * modulus_Pa(), 1e-9 * four_points().by_deflection_Pa}};
              },
          .run = "beams"},
         {.name = "beams.mouth-of-a-notch",
@@ -141,7 +141,7 @@ std::vector<Check> bending_checks() {
          .reason = "the formula of ASTM E399 is 0.5 to 0.7 % above",
          .compare =
              [] {
-                 std::vector<Comparison> compared;
+                 std::vector<CheckedValue> compared;
                  for (const auto& [x, f] : {std::pair{3, 1.514}, {4, 1.971}, {5, 2.644}, {6, 3.748}})
                      compared.push_back({"a / h = 0." + std::to_string(x), f, notch_factor(0.1 * x, 0.25)});
                  return compared;
@@ -154,7 +154,7 @@ std::vector<Check> bending_checks() {
          .reason = "the formula of ASTM E399",
          .compare =
              [] {
-                 std::vector<Comparison> compared;
+                 std::vector<CheckedValue> compared;
                  for (const double h_S : {0.125, 0.25})
                      compared.push_back({h_S == 0.25 ? "span 4 h" : "span 8 h",
                                          1.1215 * std::sqrt(std::numbers::pi * 1e-6) * 1.5 * flexural_factor(h_S),
@@ -169,7 +169,7 @@ std::vector<Check> bending_checks() {
          .reason = "the digits of the finite elements",
          .compare =
              [] {
-                 std::vector<Comparison> compared;
+                 std::vector<CheckedValue> compared;
                  for (const auto& [S, expected] : {std::pair{3, 0.942}, {4, 0.956}, {6, 0.971}, {8, 0.978}})
                      compared.push_back({"span " + std::to_string(S) + " h", expected, flexural_factor(1.0 / S)});
                  return compared;
@@ -182,8 +182,8 @@ std::vector<Check> bending_checks() {
          .reason = "the formula is good to 1.6 %",
          .compare =
              [] {
-                 return std::vector<Comparison>{{"a / h = 0.3", 12.55, mouth_factor(0.3)},
-                                                {"a / h = 0.5", 35.61, mouth_factor(0.5)}};
+                 return std::vector<CheckedValue>{{"a / h = 0.3", 12.55, mouth_factor(0.3)},
+                                                  {"a / h = 0.5", 35.61, mouth_factor(0.5)}};
              }},
     };
 }

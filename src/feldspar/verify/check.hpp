@@ -10,16 +10,16 @@
 namespace feldspar {
 
 /// By how much a found value may differ from the expected one.
-struct Bound {
+struct CheckBound {
     double size = 0.0;      ///< greater than zero
     bool relative = false;  ///< of the expected value, which is then not zero; else in the unit of the check
 };
 
-inline Bound relative(double size) { return {size, true}; }
-inline Bound absolute(double size) { return {size, false}; }
+inline CheckBound relative(double size) { return {size, true}; }
+inline CheckBound absolute(double size) { return {size, false}; }
 
 /// An expected value and the one that was found, in the unit of the check.
-struct Comparison {
+struct CheckedValue {
     std::string what{};  ///< which case of the check: "span 6 h"; empty where there is one only
     double expected = 0.0;
     double found = std::numeric_limits<double>::quiet_NaN();
@@ -32,9 +32,9 @@ struct Check {
     std::string formula{};   ///< as text
     std::string source{};    ///< equation of docs/theory as "(C9)", paper or handbook
     std::string unit{};      ///< of all its values; empty for plain numbers
-    Bound bound{};
+    CheckBound bound{};
     std::string reason{};  ///< why the bound is what it is
-    std::function<std::vector<Comparison>()> compare{};
+    std::function<std::vector<CheckedValue>()> compare{};
     std::string run{};  ///< checks of the same name here, one after the other in the list, stand on one computation; empty: none
 };
 

@@ -47,8 +47,8 @@ double expected_work_J_m2(ContactLaw law, double strength, double stiffness, dou
     return Gf;
 }
 
-std::vector<Comparison> works(bool shear, bool brittle) {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> works(bool shear, bool brittle) {
+    std::vector<CheckedValue> compared;
     for (const ContactLaw law : kLaws) {
         if ((law == ContactLaw::brittle) != brittle) continue;
         const ContactMaterial m = material(law);
@@ -59,8 +59,8 @@ std::vector<Comparison> works(bool shear, bool brittle) {
     return compared;
 }
 
-std::vector<Comparison> peaks(bool shear) {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> peaks(bool shear) {
+    std::vector<CheckedValue> compared;
     for (const ContactLaw law : kLaws) {
         const ContactMaterial m = material(law);
         compared.push_back(
@@ -70,7 +70,7 @@ std::vector<Comparison> peaks(bool shear) {
 }
 
 // (C9): half of 0.75 from each direction.
-std::vector<Comparison> damage_of_both_directions() {
+std::vector<CheckedValue> damage_of_both_directions() {
     const BondLaw law = BondLaw::make(material(ContactLaw::bilinear));
     BondState s;
     const double un = 0.5 * (law.normal.x0 + law.normal.x_y), us = 0.5 * (law.shear.x0 + law.shear.x_y);
@@ -80,8 +80,8 @@ std::vector<Comparison> damage_of_both_directions() {
     return {{"pulled", 0.375, pulled}, {"and sheared", 0.75, s.damage}};
 }
 
-std::vector<Comparison> break_points() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> break_points() {
+    std::vector<CheckedValue> compared;
     for (const ContactLaw law : {ContactLaw::bilinear, ContactLaw::bilinear_literal, ContactLaw::linear}) {
         const SofteningEnvelope e = SofteningEnvelope::make(law, 8.5e6, 18e13, 20.0);
         compared.push_back({std::string(name(law)) + ", break point", 0.75, e.damage(e.x_y)});
@@ -92,7 +92,7 @@ std::vector<Comparison> break_points() {
 
 constexpr double kPressure = 54e6;
 
-std::vector<Comparison> brittle_strength_under_pressure() {
+std::vector<CheckedValue> brittle_strength_under_pressure() {
     const ContactMaterial m = material(ContactLaw::brittle);
     const BondLaw law = BondLaw::make(m);
     const double limit = m.tau_Pa + m.mu * kPressure, dus = 1e-4 * limit / law.Ks_Pa_m;  // 10000 steps to the limit
@@ -106,8 +106,8 @@ std::vector<Comparison> brittle_strength_under_pressure() {
             {"after", 1e-6 * m.mu * kPressure, 1e-6 * std::abs(s.Fs_N) / kArea}};
 }
 
-std::vector<Comparison> friction_and_fracture(bool fracture) {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> friction_and_fracture(bool fracture) {
+    std::vector<CheckedValue> compared;
     for (const ContactLaw law_name : kLaws) {
         const ContactMaterial m = material(law_name);
         const BondLaw law = BondLaw::make(m);
@@ -134,8 +134,8 @@ std::vector<Comparison> friction_and_fracture(bool fracture) {
     return compared;
 }
 
-std::vector<Comparison> unloading_slopes() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> unloading_slopes() {
+    std::vector<CheckedValue> compared;
     for (const TensionUnloading option : {TensionUnloading::elastic, TensionUnloading::secant}) {
         ContactMaterial m = material(ContactLaw::bilinear);
         m.tension_unloading = option;
@@ -151,8 +151,8 @@ std::vector<Comparison> unloading_slopes() {
     return compared;
 }
 
-std::vector<Comparison> broken_point() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> broken_point() {
+    std::vector<CheckedValue> compared;
     const BondLaw law = BondLaw::make(material(ContactLaw::bilinear));
     BondState s;
     s.damage = 1.0;
@@ -212,8 +212,8 @@ std::vector<Check> contact_law_checks() {
          .reason = "the drop happens within one step, 1 % of the elastic limit, whose square counts",
          .compare =
              [] {
-                 std::vector<Comparison> both = works(false, true);
-                 for (const Comparison& c : works(true, true)) both.push_back(c);
+                 std::vector<CheckedValue> both = works(false, true);
+                 for (const CheckedValue& c : works(true, true)) both.push_back(c);
                  both[0].what = "pulled";
                  both[1].what = "sheared";
                  return both;

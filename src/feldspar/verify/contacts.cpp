@@ -26,7 +26,7 @@ Assembly small_body(ContactKind kind = ContactKind::lobatto3) {
 
 IndexRange all_contacts(const Assembly& assembly) { return {0, static_cast<int>(assembly.contacts.size())}; }
 
-std::vector<Comparison> rotation_in_steps() {
+std::vector<CheckedValue> rotation_in_steps() {
     Assembly assembly = small_body();
     constexpr int kSteps = 1000;
     for (int k = 1; k <= kSteps; ++k) {
@@ -46,7 +46,7 @@ std::vector<Comparison> rotation_in_steps() {
 }
 
 // Opening and sliding of all points when one side moves along the line of centres, and across it: the values farthest off.
-std::vector<Comparison> directions() {
+std::vector<CheckedValue> directions() {
     Assembly assembly = small_body();
     constexpr double kBy = 1e-9;
     double worst[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
@@ -74,7 +74,7 @@ std::vector<Comparison> directions() {
             {"across: sliding", 1.0, worst[1][1]}};
 }
 
-std::vector<Comparison> lobatto_moments() {
+std::vector<CheckedValue> lobatto_moments() {
     const Assembly assembly = small_body();
     double worst[4] = {1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0}, off = 0.0;
     for (const Contact& contact : assembly.contacts) {
@@ -93,13 +93,13 @@ std::vector<Comparison> lobatto_moments() {
             if (std::abs(moments[power] - 1.0 / (power + 1)) > std::abs(worst[power] - 1.0 / (power + 1)))
                 worst[power] = moments[power];
     }
-    std::vector<Comparison> compared{{"distance from ends and middle, over the edge", 0.0, off}};
+    std::vector<CheckedValue> compared{{"distance from ends and middle, over the edge", 0.0, off}};
     for (int power = 0; power < 4; ++power)
         compared.push_back({"mean of x^" + std::to_string(power), 1.0 / (power + 1), worst[power]});
     return compared;
 }
 
-std::vector<Comparison> depth_of_one_point() {
+std::vector<CheckedValue> depth_of_one_point() {
     Assembly assembly = small_body(ContactKind::point);
     const int bonded = static_cast<int>(assembly.contacts.size());
     for (int c = 0; c < bonded; ++c)
@@ -116,7 +116,7 @@ std::vector<Comparison> depth_of_one_point() {
 }
 
 // Sum of the forces on both sides of each contact, and of their moments, over their sizes: the largest of all contacts.
-std::vector<Comparison> momentum() {
+std::vector<CheckedValue> momentum() {
     Assembly assembly = small_body();
     RandomStream random(7, "momentum");
     for (int n = 0; n < assembly.nodes.count(); ++n) {
@@ -148,7 +148,7 @@ std::vector<Comparison> momentum() {
 }
 
 // Largest departure of forces and moments from those turned by 0.3 rad, over their sizes.
-std::vector<Comparison> turned_forces() {
+std::vector<CheckedValue> turned_forces() {
     Assembly assembly = small_body();
     RandomStream random(9, "turned forces");
     for (int n = 0; n < assembly.nodes.count(); ++n)
@@ -196,8 +196,8 @@ double bending_moment(const ModelSpec& model) {
     return -moment / (contact.Kn_Pa_m * assembly.thickness_m * kSide * kSide * kSide / 12.0 * kAngle);
 }
 
-std::vector<Comparison> bending_moments() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> bending_moments() {
+    std::vector<CheckedValue> compared;
     for (const GrainKind grains : {GrainKind::rigid, GrainKind::flexible}) {
         compared.push_back({std::string(name(grains)) + ", three points", 1.0, bending_moment(model(grains))});
         compared.push_back({std::string(name(grains)) + ", one point", 0.0, bending_moment(model(grains, ContactKind::point))});
@@ -206,7 +206,7 @@ std::vector<Comparison> bending_moments() {
 }
 
 // The pressure on the sides of a body that is turned by 0.2 and stretched by 1.1.
-std::vector<Comparison> pressure_on_faces() {
+std::vector<CheckedValue> pressure_on_faces() {
     const auto specimen = make(rectangle(0.02, 0.04));
     Assembly assembly = assemble(*specimen, ModelSpec{}, granite(), table7());
     constexpr double pressure = 5e6;
@@ -254,7 +254,7 @@ PlateForce push(const PlateContact& plates, double towards_m, double along_m) {
     return {-assembly.slots[2 * c].force.y, -assembly.slots[2 * c].force.x};
 }
 
-std::vector<Comparison> plates() {
+std::vector<CheckedValue> plates() {
     constexpr double towards = 1e-9, kn = kKn * kArea, Fn = kn * towards, mu = 0.25;
     const PlateForce stuck = push({kKn, kEta, mu, false}, towards, 1e-10), sliding = push({kKn, kEta, mu, false}, towards, 2e-9),
                      open = push({kKn, kEta, mu, false}, -1e-7, 1e-9), glued = push({kKn, kEta, 0.0, true}, -1e-3, 1e-9);
@@ -265,7 +265,7 @@ std::vector<Comparison> plates() {
             {"pulled by 1 mm, glued, over a million", -1e-6 * kn * 1e-3, 1e-6 * glued.pressed_N}};
 }
 
-std::vector<Comparison> new_contact() {
+std::vector<CheckedValue> new_contact() {
     constexpr double kSkin = 3e-4;
     Assembly assembly =
         assemble(*two_grain_bar(kSide, 0.8 * kSide), model(GrainKind::rigid), granite(), table1(GrainKind::rigid));
@@ -289,7 +289,7 @@ std::vector<Comparison> new_contact() {
     return {{"pressure", expected, Fn}, {"friction", 0.5 * expected, std::abs(assembly.bonds.at(state).Fs_N)}};
 }
 
-std::vector<Comparison> masses_of_squares() {
+std::vector<CheckedValue> masses_of_squares() {
     constexpr double h = kSide, mass = 2650.0 * h * h * 0.08;
     Assembly assembly = assemble(*two_grain_bar(h, 0.5 * h), model(GrainKind::rigid), granite(), table1(GrainKind::rigid));
     set_real_masses(assembly);
@@ -324,8 +324,8 @@ Vec2 gaps_of_a_rotation(Assembly assembly, int steps) {
 
 // The turn moves a point by its arc, the centre by its chord: of first order in the step, along the line of centres. Across it
 // the line turns with the bodies, and what is left is of second order; across the edge's normal it is of first order too.
-std::vector<Comparison> order_of_rigid_rotation() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> order_of_rigid_rotation() {
+    std::vector<CheckedValue> compared;
     for (const ModelSpec& m : rigid_models()) {
         const bool inner = m.kind == GrainKind::inner_particles;  // ten times as many bodies: a smaller specimen
         const Assembly start =
@@ -338,7 +338,7 @@ std::vector<Comparison> order_of_rigid_rotation() {
     return compared;
 }
 
-std::vector<Comparison> viscous_damping() {
+std::vector<CheckedValue> viscous_damping() {
     Assembly assembly = small_body();
     set_scaled_masses(assembly, MassBound::tensor, 1.0);
     Team team(1);
@@ -360,7 +360,7 @@ std::vector<Comparison> viscous_damping() {
             {"energy booked", 1.0 - left * left, stored_energy(assembly, 0.0).damping_J / before}};
 }
 
-std::vector<Comparison> local_damping() {
+std::vector<CheckedValue> local_damping() {
     constexpr double alpha = 0.7, loading = 2e-9, F = 30.0;
     return {{"as the loading moves", 0.0, local_drag(loading, loading, F, alpha)},
             {"twice as fast", alpha * F, local_drag(2.0 * loading, loading, F, alpha)},

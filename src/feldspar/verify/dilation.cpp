@@ -65,7 +65,7 @@ std::vector<Check> dilation_checks() {
          .reason = "the shear spring, which is stretched before it slides",
          .compare =
              [] {
-                 return std::vector<Comparison>{
+                 return std::vector<CheckedValue>{
                      {"", kTanPsi, (shear(0.7 * kLimit, 0.0).opening_m - shear(0.5 * kLimit, 0.0).opening_m) / (0.2 * kLimit)}};
              }},
         {.name = "dilation.limit",
@@ -78,9 +78,9 @@ std::vector<Check> dilation_checks() {
          .compare =
              [] {
                  const double expected = 1e6 * kTanPsi * kLimit;
-                 return std::vector<Comparison>{{"slip 2 L", expected, 1e6 * shear(2.0 * kLimit, 0.0).opening_m},
-                                                {"slip 2.5 L", expected, 1e6 * shear(2.5 * kLimit, 0.0).opening_m},
-                                                {"slip 3 L in 7 steps", expected, 1e6 * shear(3.0 * kLimit, 0.0, 7).opening_m}};
+                 return std::vector<CheckedValue>{{"slip 2 L", expected, 1e6 * shear(2.0 * kLimit, 0.0).opening_m},
+                                                  {"slip 2.5 L", expected, 1e6 * shear(2.5 * kLimit, 0.0).opening_m},
+                                                  {"slip 3 L in 7 steps", expected, 1e6 * shear(3.0 * kLimit, 0.0, 7).opening_m}};
              }},
         {.name = "dilation.strength",
          .sentence = "While it dilates the strength of a joint is that of its whole friction, under a constant stress and behind "
@@ -91,7 +91,7 @@ std::vector<Check> dilation_checks() {
          .reason = "rounding",
          .compare =
              [] {
-                 std::vector<Comparison> compared;
+                 std::vector<CheckedValue> compared;
                  for (const double K : {0.0, 2e9}) {
                      const Sheared r = shear(0.7 * kLimit, K);
                      compared.push_back({K == 0.0 ? "constant stress" : "spring", kMu, r.shear_N / r.normal_N});
@@ -109,7 +109,7 @@ std::vector<Check> dilation_checks() {
              [] {
                  constexpr double K = 2e9;
                  const double grown = (shear(0.7 * kLimit, K).normal_N - shear(0.3 * kLimit, K).normal_N) / kArea;
-                 return std::vector<Comparison>{{"", 1e-9 * K * kTanPsi, 1e-9 * grown / (0.4 * kLimit)}};
+                 return std::vector<CheckedValue>{{"", 1e-9 * K * kTanPsi, 1e-9 * grown / (0.4 * kLimit)}};
              }},
         {.name = "dilation.work",
          .sentence = "What is done on a dilating joint is stored or dissipated, and nothing is lost.",
@@ -119,7 +119,7 @@ std::vector<Check> dilation_checks() {
          .reason = "rounding of 4000 steps",
          .compare =
              [] {
-                 std::vector<Comparison> compared;
+                 std::vector<CheckedValue> compared;
                  for (const double K : {0.0, 2e9, 2e12}) {
                      const Sheared r = shear(1.5 * kLimit, K);
                      compared.push_back({K == 0.0   ? "constant stress"
@@ -139,7 +139,7 @@ std::vector<Check> dilation_checks() {
          .compare =
              [] {
                  const Sheared r = shear(0.9 * kLimit, 0.0);
-                 return std::vector<Comparison>{{"", (kMu - kTanPsi) * kStress * r.slip_m, r.state.friction_J / kArea}};
+                 return std::vector<CheckedValue>{{"", (kMu - kTanPsi) * kStress * r.slip_m, r.state.friction_J / kArea}};
              }},
     };
 }

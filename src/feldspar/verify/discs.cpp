@@ -60,7 +60,7 @@ Vec2 stress_in_the_centre(const TestSetup& setup) {
     return {sxx / volume / unit, syy / volume / (-3.0 * unit)};
 }
 
-std::vector<Comparison> point_loads() {
+std::vector<CheckedValue> point_loads() {
     const Vec2 expected = closed_form_mean(kAround),
                found = stress_in_the_centre(setup(make(disc(kDiameter)), methods::brazilian));
     return {{"tension across, over 2 P / (pi D t)", expected.x, found.x},
@@ -81,8 +81,8 @@ HistoryRow start_of_disc(const TestSpec& test, double softer, std::uint64_t seed
 // Where an arc ends on the edges of grains is even chance, an edge (4.3 degrees) inside or outside of it, so single arcs say
 // little.
 template <class HalfWidth>
-Comparison mean_arc(const char* what, const TestSpec& test, double softer, int packings, const HalfWidth& half_width_m) {
-    Comparison mean{what, 0.0, 0.0};
+CheckedValue mean_arc(const char* what, const TestSpec& test, double softer, int packings, const HalfWidth& half_width_m) {
+    CheckedValue mean{what, 0.0, 0.0};
     for (int seed = 1; seed <= packings; ++seed) {
         const HistoryRow row = start_of_disc(test, softer, static_cast<std::uint64_t>(seed));
         const double P_per_t = 0.5 * std::numbers::pi * kDiameter * row.axial_stress_Pa;  // N/m
@@ -94,7 +94,7 @@ Comparison mean_arc(const char* what, const TestSpec& test, double softer, int p
 
 // docs/validation/brazilian-plates.md: an elastic foundation k between a disc that is stiff beside it and a plate or jaw has
 // P/t = 4/3 k delta a with a^2 = D delta / (1 - R/R_jaw). Here the disc gives a twentieth of what the strips give.
-std::vector<Comparison> arcs_on_strips() {
+std::vector<CheckedValue> arcs_on_strips() {
     constexpr double k = 4e11;
     const auto of = [](double slenderness) {
         return [slenderness](double P_per_t) { return std::cbrt(0.75 * P_per_t / k * slenderness * kDiameter); };
@@ -103,7 +103,7 @@ std::vector<Comparison> arcs_on_strips() {
             mean_arc("curved jaws", brazilian(PlateShape::curved, k), 1.0, 2, of(3.0))};
 }
 
-std::vector<Comparison> arcs_of_hertz() {
+std::vector<CheckedValue> arcs_of_hertz() {
     constexpr double softer = 50.0, E = 24.3e9 / softer;  // of the specimen, not of its grains
     const auto of = [](double slenderness) {
         return
@@ -113,7 +113,7 @@ std::vector<Comparison> arcs_of_hertz() {
             mean_arc("curved jaws", brazilian(PlateShape::curved, {}), softer, 3, of(3.0))};
 }
 
-std::vector<Comparison> under_jaws() {
+std::vector<CheckedValue> under_jaws() {
     TestSetup s = setup(make(disc(kDiameter)), methods::brazilian);
     s.test = brazilian(PlateShape::curved, 1.6e12);
     const HistoryRow row = start_of_disc(s.test, 1.0, 1);
@@ -122,8 +122,8 @@ std::vector<Comparison> under_jaws() {
 }
 
 // Finite elements of a flattened disc have 0.956 to 0.961 times k as the mean within 0.2 R.
-std::vector<Comparison> flattened() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> flattened() {
+    std::vector<CheckedValue> compared;
     for (const auto& [degrees, plate_Kn] : {std::pair{20.0, std::optional<double>{}}, std::pair{30.0, std::optional(1.6e12)}}) {
         SpecimenSpec spec = disc(kDiameter);
         spec.grain_sizes.minimum_m = 0.001;  // so that the flats have 9 and 14 edges
@@ -140,7 +140,7 @@ std::vector<Comparison> flattened() {
 
 double k(double degrees, FlatLoading loading) { return flat_coefficient(degrees * std::numbers::pi / 180.0, loading); }
 
-std::vector<Comparison> section() {
+std::vector<CheckedValue> section() {
     const RunControl control;
     const TestSetup on_disc = setup(make(disc(0.03)), methods::brazilian),
                     on_column = setup(make(rectangle(0.02, 0.04)), methods::uniaxial_compression);
@@ -200,7 +200,7 @@ std::vector<Check> disc_checks() {
          .reason = "the digits that are published",
          .compare =
              [] {
-                 return std::vector<Comparison>{
+                 return std::vector<CheckedValue>{
                      {"no flats", 1.0, k(0.0, {})}, {"20 degrees", 0.9644, k(20.0, {})}, {"30 degrees", 0.9208, k(30.0, {})}};
              }},
         {.name = "discs.flattened-rigid-plate",
@@ -211,7 +211,7 @@ std::vector<Check> disc_checks() {
          .reason = "what the fit leaves",
          .compare =
              [] {
-                 std::vector<Comparison> compared;
+                 std::vector<CheckedValue> compared;
                  for (const auto& [degrees, expected] :
                       {std::pair{10, 0.985}, {15, 0.966}, {20, 0.940}, {25, 0.908}, {30, 0.870}})
                      compared.push_back({std::to_string(degrees) + " degrees", expected, k(degrees, {1e4})});

@@ -23,7 +23,7 @@ double residual(MethodId kind, NumericsKind numerics, ContactLaw law, GrainKind 
     return r.properties.peak_reached && !r.cracks.empty() ? r.energy_residual : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::vector<Comparison> flexible() {
+std::vector<CheckedValue> flexible() {
     using enum ContactLaw;
     return {{"compression", 0.0, residual(methods::uniaxial_compression, NumericsKind::adaptive, bilinear, GrainKind::flexible)},
             {"compression, brittle", 0.0,
@@ -34,7 +34,7 @@ std::vector<Comparison> flexible() {
             {"direct tension", 0.0, residual(methods::direct_tension, NumericsKind::adaptive, bilinear, GrainKind::flexible)}};
 }
 
-std::vector<Comparison> rigid() {
+std::vector<CheckedValue> rigid() {
     using enum ContactLaw;
     return {{"compression", 0.0, residual(methods::uniaxial_compression, NumericsKind::adaptive, bilinear, GrainKind::rigid)},
             {"direct tension", 0.0, residual(methods::direct_tension, NumericsKind::adaptive, bilinear, GrainKind::rigid)},

@@ -27,12 +27,12 @@ Vec2 at_the_edge(double radius_in_grains, double radius_over_half_width, const M
     return (1.0 / s.e.stress(reactions(s.e.assembly).loading)) * Vec2{read[0], read[1]};
 }
 
-std::vector<Comparison> narrow_plates() {
+std::vector<CheckedValue> narrow_plates() {
     struct Case {
         const char* what;
         double a_W, a_d, side, pole;
     };
-    std::vector<Comparison> compared;
+    std::vector<CheckedValue> compared;
     for (const Case& c :
          {Case{"a / W = 1/4, 3 grains", 0.25, 3.0, 3.251, -1.189}, Case{"a / W = 1/3, 3 grains", 1.0 / 3.0, 3.0, 3.488, -1.327},
           Case{"a / W = 1/3, 4.5 grains", 1.0 / 3.0, 4.5, 3.488, -1.327}}) {
@@ -44,7 +44,7 @@ std::vector<Comparison> narrow_plates() {
 }
 
 // Rigid grains have one stress each: single packings scatter by 4 and 8 %.
-std::vector<Comparison> rigid_grains() {
+std::vector<CheckedValue> rigid_grains() {
     constexpr int kPackings = 8;
     Vec2 mean;
     for (std::uint64_t seed = 1; seed <= kPackings; ++seed)
@@ -53,12 +53,12 @@ std::vector<Comparison> rigid_grains() {
 }
 
 // The boundary is so near that fields of higher order than (P43) matter: -4 % at the sides whatever the grains.
-std::vector<Comparison> half_of_the_width() {
+std::vector<CheckedValue> half_of_the_width() {
     const Vec2 found = at_the_edge(4.5, 0.5);
     return {{"sides", 4.370, found.x}, {"poles", -1.688, found.y}};
 }
 
-std::vector<Comparison> kirsch() {
+std::vector<CheckedValue> kirsch() {
     constexpr double radius = 5e-3;
     const std::vector<StressField> fields = fields_around_hole(radius, true);  // equal on all sides, across against along, shear
     const auto stress =
@@ -68,7 +68,7 @@ std::vector<Comparison> kirsch() {
             const Mat2 a = fields[0](at), b = fields[1](at);
             return Vec2{0.5 * a.xx + 0.25 * b.xx, 0.5 * a.yy + 0.25 * b.yy};
         };
-    std::vector<Comparison> compared;
+    std::vector<CheckedValue> compared;
     for (const double r : {1.0, 1.25, 1.5, 2.0, 3.0}) {
         std::string what = std::to_string(r);
         compared.push_back({"side, r = " + what.substr(0, 4) + " a", 0.5 * (2.0 + std::pow(r, -2.0) + 3.0 * std::pow(r, -4.0)),

@@ -12,9 +12,9 @@ namespace {
 
 using namespace bodies;
 
-std::vector<Comparison> jaeger() {
+std::vector<CheckedValue> jaeger() {
     constexpr double c = 5e6, mu = 0.57735;
-    std::vector<Comparison> compared;
+    std::vector<CheckedValue> compared;
     for (const int beta_deg : {45, 60, 75}) {
         TestSetup s = setup(make(with_joint(0.04, 0.08, beta_deg)), methods::uniaxial_compression);
         s.rock.joints = {smooth_joint(s.contact, mu, c, 3e6)};
@@ -57,7 +57,7 @@ double friction(const TestResult& r, double from_m) {
 }
 
 // The edges of flexible grains tilt as they deform, and with them the planes on which they slide: measured 0.9968 of mu.
-std::vector<Comparison> frictions() {
+std::vector<CheckedValue> frictions() {
     return {{"rigid grains", kMu, friction(sheared(GrainKind::rigid, 0.0, 0.0, 0.004), 4e-5)},
             {"flexible grains", kMu, friction(sheared(GrainKind::flexible, 0.0, 0.0, 0.004), 4e-5)}};
 }
@@ -69,7 +69,7 @@ const TestResult& dilating() {
     return r;
 }
 
-std::vector<Comparison> dilation() {
+std::vector<CheckedValue> dilation() {
     std::vector<double> u, v;
     for (const HistoryRow& row : dilating().history)
         if (const double slip = row.axial_strain * dilating().length_m;
@@ -80,7 +80,7 @@ std::vector<Comparison> dilation() {
     return {{"", kTanPsi, regression_line(u, v).slope}};
 }
 
-std::vector<Comparison> rise() {
+std::vector<CheckedValue> rise() {
     const TestResult& r = dilating();
     const auto first = std::ranges::find_if(r.history, [](const HistoryRow& row) { return row.phase == Phase::loading; });
     double highest = 0.0;  // the normal stress had pushed the plate down before
@@ -88,7 +88,7 @@ std::vector<Comparison> rise() {
     return {{"", 1e6 * kTanPsi * kLimit, 1e6 * highest}};
 }
 
-std::vector<Comparison> spring() {
+std::vector<CheckedValue> spring() {
     constexpr double kStiffness = 1e8;  // Pa/m; the specimen gives way 1e-4 of what the spring does
     const TestResult r = sheared(GrainKind::rigid, 1e-3, kStiffness, 0.01);
     std::vector<double> u, stress;
@@ -135,7 +135,7 @@ std::vector<Check> joint_checks() {
          .reason = "what still rings while it is sheared",
          .compare =
              [] {
-                 return std::vector<Comparison>{{"", kMu, friction(dilating(), 0.3 * kLimit)}};
+                 return std::vector<CheckedValue>{{"", kMu, friction(dilating(), 0.3 * kLimit)}};
              },
          .run = "dilating-joint"},
         {.name = "joints.rise",

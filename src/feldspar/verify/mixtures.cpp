@@ -28,7 +28,7 @@ Heterogeneity two_phases() {
 }
 
 // Layers of two minerals along the load and across it: means of the moduli that specimens of one mineral have, contacts included.
-Comparison layers(bool across) {
+CheckedValue layers(bool across) {
     constexpr int columns = 600, rows = 1200;
     TestSetup s = setup(make(rectangle(0.06, 0.12)), methods::uniaxial_compression);
     s.rock = two_phases();
@@ -52,7 +52,7 @@ Comparison layers(bool across) {
 
 // A round phase in the middle of a pulled plate, about four of its diameters wide: mean stress along the load within 0.6 of its
 // radius, over that of the load. Contacts are stiff, so that the minerals' own constants count.
-Comparison inclusion(double ratio, const char* what) {
+CheckedValue inclusion(double ratio, const char* what) {
     constexpr double W = 0.12, radius = 0.015, nu1 = 0.2, nu2 = 0.25, E2 = 40e9;
     TestSetup s = setup(make(rectangle(W, W)), methods::direct_tension);
     s.contact.Kn_Pa_m *= 100.0;
@@ -86,11 +86,11 @@ Heterogeneity weibull_strengths() {
     return rock;
 }
 
-std::vector<Comparison> weakest_links() {
+std::vector<CheckedValue> weakest_links() {
     constexpr int kColumns = 1500;
     const Heterogeneity rock = weibull_strengths();
     const ContactMaterial contact = table7();
-    std::vector<Comparison> compared;
+    std::vector<CheckedValue> compared;
     for (const int links : {1, 4, 16}) {
         double sum = 0.0;
         for (std::uint64_t seed = 1; seed <= kColumns; ++seed) {
@@ -159,15 +159,15 @@ const std::array<Chain, 3>& chains() {
     return all;
 }
 
-std::vector<Comparison> chain_strengths() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> chain_strengths() {
+    std::vector<CheckedValue> compared;
     for (std::size_t i = 0; i < 3; ++i)
         compared.push_back({"chain " + std::to_string(i + 1), chains()[i].weakest_MPa, chains()[i].strength_MPa});
     return compared;
 }
 
-std::vector<Comparison> chain_places() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> chain_places() {
+    std::vector<CheckedValue> compared;
     for (std::size_t i = 0; i < 3; ++i)
         compared.push_back({"chain " + std::to_string(i + 1), 1.0 + chains()[i].weakest_link, 1.0 + chains()[i].link});
     return compared;
@@ -190,8 +190,8 @@ Moments moments(const Distribution& d) {
     return m;
 }
 
-std::vector<Comparison> weibull() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> weibull() {
+    std::vector<CheckedValue> compared;
     for (const double m : {1.3, 2.0, 6.0, 20.0}) {
         const Distribution d{.kind = DistributionKind::weibull, .weibull_modulus = m};
         const double one = std::tgamma(1.0 + 1.0 / m), two = std::tgamma(1.0 + 2.0 / m);
@@ -204,8 +204,8 @@ std::vector<Comparison> weibull() {
     return compared;
 }
 
-std::vector<Comparison> log_normal() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> log_normal() {
+    std::vector<CheckedValue> compared;
     for (const double v : {0.1, 0.4}) {
         const Distribution d{.kind = DistributionKind::log_normal, .variation = v};
         const Moments found = moments(d);
@@ -228,7 +228,7 @@ std::vector<Check> mixture_checks() {
          .unit = "GPa",
          .bound = relative(1e-2),
          .reason = "the border of the layers follows the grains",
-         .compare = [] { return std::vector<Comparison>{layers(false)}; }},
+         .compare = [] { return std::vector<CheckedValue>{layers(false)}; }},
         {.name = "minerals.layers-across",
          .sentence = "Layers of two minerals across the load have the harmonic mean of these moduli.",
          .formula = "1 / E = sum f / E (Reuss)",
@@ -236,7 +236,7 @@ std::vector<Check> mixture_checks() {
          .unit = "GPa",
          .bound = relative(1e-2),
          .reason = "the border of the layers follows the grains",
-         .compare = [] { return std::vector<Comparison>{layers(true)}; }},
+         .compare = [] { return std::vector<CheckedValue>{layers(true)}; }},
         {.name = "minerals.round-phase",
          .sentence = "A round mineral in the middle of a plate bears the uniform stress of an elastic inclusion; along the load, "
                      "over the load's.",
@@ -246,7 +246,7 @@ std::vector<Check> mixture_checks() {
          .reason = "its border follows the grains, ten in its diameter; the plate is eight radii wide",
          .compare =
              [] {
-                 return std::vector<Comparison>{inclusion(0.38, "0.38 times as stiff"), inclusion(2.0, "twice as stiff")};
+                 return std::vector<CheckedValue>{inclusion(0.38, "0.38 times as stiff"), inclusion(2.0, "twice as stiff")};
              }},
         {.name = "scatter.weibull",
          .sentence = "Weibull factors have the mean 1, and the variation and median of their modulus.",

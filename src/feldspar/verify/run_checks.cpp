@@ -25,9 +25,9 @@ const Judged* CheckResult::worst() const {
     return worst;
 }
 
-CheckResult judge(const Check& check, const char* topic, const std::vector<Comparison>& comparisons) {
+CheckResult judge(const Check& check, const char* topic, const std::vector<CheckedValue>& comparisons) {
     CheckResult result{&check, topic, {}, {}, 0.0};
-    for (const Comparison& comparison : comparisons) {
+    for (const CheckedValue& comparison : comparisons) {
         const double difference = comparison.found - comparison.expected,
                      error = check.bound.relative ? difference / comparison.expected : difference;
         result.judged.push_back({comparison, error, std::isfinite(error) && std::abs(error) <= check.bound.size});

@@ -12,7 +12,7 @@ namespace feldspar {
 
 /// A comparison and whether it lies within the check's bound.
 struct Judged {
-    Comparison comparison;
+    CheckedValue comparison;
     double error = 0.0;  ///< found - expected, over the expected value where the bound is relative
     bool within = false;
 };
@@ -33,7 +33,7 @@ struct CheckResult {
 
 /// What the comparisons of a check are worth. A value that is not finite, and an expected zero under a relative bound, lie
 /// outside.
-CheckResult judge(const Check& check, const char* topic, const std::vector<Comparison>& comparisons);
+CheckResult judge(const Check& check, const char* topic, const std::vector<CheckedValue>& comparisons);
 
 /// Runs one check. Never throws because of what the check throws.
 CheckResult run_check(const Check& check, const char* topic);

@@ -16,7 +16,7 @@ namespace {
 
 using namespace bodies;
 
-std::vector<Comparison> constants_of_the_grains(bool ratio) {
+std::vector<CheckedValue> constants_of_the_grains(bool ratio) {
     // A small specimen, whose staircase of contacts shortens nothing.
     static const auto row = [] {
         TestSetup s = setup(make(rectangle(0.03, 0.06)), methods::uniaxial_compression);
@@ -73,8 +73,8 @@ const std::vector<Mean>& means() {
     return all;
 }
 
-std::vector<Comparison> of_all_models(double Mean::*value) {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> of_all_models(double Mean::*value) {
+    std::vector<CheckedValue> compared;
     const std::vector<ModelSpec> models = all_models();
     for (std::size_t m = 0; m < models.size(); ++m) compared.push_back({words(models[m]), 1.0, means()[m].*value});
     return compared;
@@ -92,8 +92,8 @@ GaugeSpec mean_gauge(Vec2 direction, Vec2 normal = {}) {
 
 std::vector<ModelSpec> three_models() { return {ModelSpec{}, model(GrainKind::rigid), model(GrainKind::inner_particles)}; }
 
-std::vector<Comparison> stress_tensor() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> stress_tensor() {
+    std::vector<CheckedValue> compared;
     for (const ModelSpec& m : three_models()) {
         Started s(setup(rectangle(0.03, 0.06), methods::uniaxial_compression, m));
         evaluate_forces(s.e.assembly, s.e.team, Strength::unlimited);
@@ -111,11 +111,11 @@ std::vector<Comparison> stress_tensor() {
     return compared;
 }
 
-std::vector<Comparison> consolidation() {
+std::vector<CheckedValue> consolidation() {
     TestSetup s = setup(make(rectangle(0.02, 0.04)), methods::biaxial);
     s.test.sigma3_Pa = 10e6;
     s.numerics.maximum_steps = 50;
-    std::vector<Comparison> compared;
+    std::vector<CheckedValue> compared;
     for (const NumericsKind kind : {NumericsKind::adaptive, NumericsKind::paper}) {
         s.numerics.kind = kind;
         const TestResult r = run_test(s, {});
@@ -192,16 +192,16 @@ const std::array<Column, 3>& columns() {
     return all;
 }
 
-std::vector<Comparison> of_columns(double expected, double factor, double Column::*value) {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> of_columns(double expected, double factor, double Column::*value) {
+    std::vector<CheckedValue> compared;
     for (std::size_t m = 0; m < 3; ++m)
         compared.push_back({name(three_models()[m].kind), expected, factor * (columns()[m].*value)});
     return compared;
 }
 
 // A block is pushed along a table by a plate behind it, under its own weight or under a plate with a given force.
-std::vector<Comparison> sliding_block() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> sliding_block() {
+    std::vector<CheckedValue> compared;
     for (const ModelSpec& m : three_models())
         for (const bool weighs : {true, false}) {
             if (!weighs && m.kind == GrainKind::inner_particles) continue;  // the costliest, and no other law
@@ -224,9 +224,9 @@ std::vector<Comparison> sliding_block() {
     return compared;
 }
 
-std::vector<Comparison> spring() {
+std::vector<CheckedValue> spring() {
     constexpr double force_N = 20e3, spring_Pa_m = 2e12;
-    std::vector<Comparison> compared;
+    std::vector<CheckedValue> compared;
     for (const ModelSpec& m : {three_models()[0], three_models()[1]}) {
         // Pressed from the left, the specimen widens upwards against the lid.
         TestSetup s = own_test(m, kHeight,

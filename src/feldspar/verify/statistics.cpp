@@ -11,7 +11,7 @@
 namespace feldspar {
 namespace {
 
-std::vector<Comparison> mohr_coulomb() {
+std::vector<CheckedValue> mohr_coulomb() {
     constexpr double c = 21e6;
     const double s = std::sin(53.0 * std::numbers::pi / 180.0), N = (1.0 + s) / (1.0 - s), ucs = 2.0 * c * std::sqrt(N);
     const EnvelopeFit fit = fit_envelopes({0.0, 4e6, 10e6}, {ucs, ucs + N * 4e6, ucs + N * 10e6});
@@ -20,7 +20,7 @@ std::vector<Comparison> mohr_coulomb() {
             {"UCS of the line, MPa", 1e-6 * ucs, 1e-6 * fit.UCS_fitted_Pa}};
 }
 
-std::vector<Comparison> hoek_brown() {
+std::vector<CheckedValue> hoek_brown() {
     constexpr double mi = 28.0, sci = 120e6;
     const std::vector<double> s3{0.0, 4e6, 10e6, 20e6};
     std::vector<double> s1;
@@ -29,13 +29,13 @@ std::vector<Comparison> hoek_brown() {
     return {{"mi", mi, fit.hoek_brown_mi}, {"sigma_ci, MPa", 120.0, 1e-6 * fit.hoek_brown_UCS_Pa}};
 }
 
-std::vector<Comparison> b_of_an_example() {
+std::vector<CheckedValue> b_of_an_example() {
     const std::vector<double> m{2.0, 2.5, 2.1, 2.2, 2.5, 2.2, 2.6, 2.3, 2.7, 2.2, 2.4, 2.0,
                                 2.7, 2.2, 2.3, 2.1, 2.4, 2.6, 2.2, 2.2, 2.7, 2.4, 2.2, 2.5};
     return {{"", 1.114920, b_value(m, 2.0, 0.1).b}};
 }
 
-std::vector<Comparison> b_of_many() {
+std::vector<CheckedValue> b_of_many() {
     RandomStream random(11, "magnitudes");
     std::vector<double> m;
     for (int i = 0; i < 20000; ++i) m.push_back(-6.0 - std::log(1.0 - random.uniform()) / (1.3 * std::log(10.0)));
@@ -78,7 +78,7 @@ AcousticEvent sliding() {
     return event_of(c);
 }
 
-std::vector<Comparison> moment_tensors() {
+std::vector<CheckedValue> moment_tensors() {
     const AcousticEvent open = opening(), slide = sliding();
     return {{"opens: across", 1e-4 * (kLambda + 2.0 * kG) * 1e-6, open.moment_Nm.yy},
             {"opens: along", 1e-4 * kLambda * 1e-6, open.moment_Nm.xx},
@@ -86,17 +86,17 @@ std::vector<Comparison> moment_tensors() {
             {"slides: across", 0.0, slide.moment_Nm.yy}};
 }
 
-std::vector<Comparison> isotropies() {
+std::vector<CheckedValue> isotropies() {
     return {{"opens", 100.0 * (2.0 * kLambda + 2.0 * kG) / (2.0 * kLambda + 4.0 * kG), opening().isotropy},
             {"slides", 0.0, sliding().isotropy}};
 }
 
-std::vector<Comparison> magnitudes() {
+std::vector<CheckedValue> magnitudes() {
     return {{"energy of 2.4 mJ", 2.0 / 3.0 * (std::log10(2.4e-3) - 4.8), event_of(with_energy(2.4e-3)).magnitude},
             {"moment of 2.4 N m", 2.0 / 3.0 * std::log10(1e-4 * kG * 1e-6) - 6.07, sliding().moment_magnitude}};
 }
 
-std::vector<Comparison> dimensions() {
+std::vector<CheckedValue> dimensions() {
     RandomStream random(5, "places");
     std::vector<Vec2> plane, line;
     for (int i = 0; i < 5000; ++i) {

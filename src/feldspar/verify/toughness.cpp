@@ -63,8 +63,8 @@ double mean_factor(const Setup& setup_of, Vec2 tip, Vec2 ahead, double shorter_m
     return sum;
 }
 
-std::vector<Comparison> edge_notch() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> edge_notch() {
+    std::vector<CheckedValue> compared;
     constexpr double W = 16.0 * kGrain, H = 6.0 * W;
     for (const auto& [x, Y] : {std::pair{0.3, 1.455}, {0.5, 1.940}}) {
         const double a = x * W;
@@ -79,8 +79,8 @@ std::vector<Comparison> edge_notch() {
     return compared;
 }
 
-std::vector<Comparison> bent_beam() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> bent_beam() {
+    std::vector<CheckedValue> compared;
     constexpr double h = 16.0 * kGrain, S = 4.0 * h;
     for (const auto& [x, f] : {std::pair{0.3, 1.514}, {0.5, 2.644}}) {
         SpecimenSpec spec = rectangle(4.4 * h, h);
@@ -98,8 +98,8 @@ std::vector<Comparison> bent_beam() {
     return compared;
 }
 
-std::vector<Comparison> half_disc() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> half_disc() {
+    std::vector<CheckedValue> compared;
     constexpr double R = 20.0 * kGrain;
     struct Case {
         const char* what;
@@ -127,8 +127,8 @@ std::vector<Comparison> half_disc() {
     return compared;
 }
 
-std::vector<Comparison> isrm_factor() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> isrm_factor() {
+    std::vector<CheckedValue> compared;
     const double q[] = {0.5, 0.6, 0.8},
                  Y[][4] = {{0.4, 2.924, 3.759, 5.433}, {0.5, 3.612, 4.583, 6.534}, {0.6, 4.847, 6.064, 8.505}};
     for (const auto& row : Y)
@@ -139,7 +139,7 @@ std::vector<Comparison> isrm_factor() {
     return compared;
 }
 
-std::vector<Comparison> tip_fields() {
+std::vector<CheckedValue> tip_fields() {
     constexpr double r = 1e-3;
     const std::vector<StressField> fields = fields_around_tip({0.0, 1.0}, 5e-3);
     const double expected = 1.0 / std::sqrt(2.0 * pi * r);
@@ -147,7 +147,7 @@ std::vector<Comparison> tip_fields() {
             {"K_II = 1, shear", expected, std::abs(fields[1]({0.0, r}).xy)}};
 }
 
-std::vector<Comparison> chain() {
+std::vector<CheckedValue> chain() {
     const auto crack = [](Vec2 from, Vec2 to) {
         Crack c;
         c.from = 1e-3 * from;

@@ -36,8 +36,8 @@ Mat2 energy_slope(const Mat2& G, double h) {
     return {slope(&Mat2::xx), slope(&Mat2::xy), slope(&Mat2::yx), slope(&Mat2::yy)};
 }
 
-std::vector<Comparison> stress_by_energy() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> stress_by_energy() {
+    std::vector<CheckedValue> compared;
     for (const double size : {1e-1, 1e-3, 1e-5}) {
         const Mat2 G = {0.3 * size, -0.7 * size, 0.4 * size, -0.9 * size}, P = first_piola_stress(plane_stress(), G),
                    S = energy_slope(G, 1e-4 * size);
@@ -51,14 +51,14 @@ std::vector<Comparison> stress_by_energy() {
 }
 
 // By how much the difference falls when the step is halved, as a power of two.
-std::vector<Comparison> order_of_differences() {
+std::vector<CheckedValue> order_of_differences() {
     const Mat2 G = {0.03, -0.07, 0.04, -0.09};
     const double P = first_piola_stress(plane_stress(), G).yy;
     const double coarse = energy_slope(G, 2e-2).yy - P, fine = energy_slope(G, 1e-2).yy - P;
     return {{"", 2.0, std::log2(coarse / fine)}};
 }
 
-std::vector<Comparison> turned_stress() {
+std::vector<CheckedValue> turned_stress() {
     const Mat2 F = {1.002, 0.0015, -0.0005, 0.997}, FR = rotated(0.7, F);
     const Mat2 expected = rotated(0.7, first_piola_stress(plane_stress(), gradient(F))),
                P = first_piola_stress(plane_stress(), gradient(FR));
@@ -68,13 +68,13 @@ std::vector<Comparison> turned_stress() {
             {"yy", 1e-6 * expected.yy, 1e-6 * P.yy}};
 }
 
-std::vector<Comparison> turned_energy() {
+std::vector<CheckedValue> turned_energy() {
     const Mat2 F = {1.002, 0.0015, -0.0005, 0.997};
     return {{"", 1e-3 * strain_energy_density(plane_stress(), gradient(F)),
              1e-3 * strain_energy_density(plane_stress(), gradient(rotated(0.7, F)))}};
 }
 
-std::vector<Comparison> hooke() {
+std::vector<CheckedValue> hooke() {
     constexpr double strain = 1e-7;
     const Mat2 stress = first_piola_stress(plane_stress(), {strain, 0, 0, -kNu * strain});
     const Mat2 plane =
@@ -85,7 +85,7 @@ std::vector<Comparison> hooke() {
             {"plane strain, across", 0.0, plane.yy}};
 }
 
-std::vector<Comparison> cauchy() {
+std::vector<CheckedValue> cauchy() {
     constexpr double lx = 1.1, ly = 0.95, angle = 0.7;  // large, so that the sections differ from the undeformed ones
     const Mat2 P = first_piola_stress(plane_stress(), {lx - 1.0, 0, 0, ly - 1.0});
     const double sx = P.xx / ly, sy = P.yy / lx, c = std::cos(angle), s = std::sin(angle);
@@ -98,7 +98,7 @@ std::vector<Comparison> cauchy() {
 
 Assembly small_body() { return assemble(*make(rectangle(0.02, 0.04)), ModelSpec{}, granite(), table7()); }
 
-std::vector<Comparison> rigid_rotation() {
+std::vector<CheckedValue> rigid_rotation() {
     Assembly assembly = small_body();
     Team team(1);
     for (int n = 0; n < assembly.nodes.count(); ++n)
@@ -201,7 +201,7 @@ std::vector<Check> triangle_checks() {
          .reason = "rounding over a strain of 1e-6",
          .compare =
              [] {
-                 return std::vector<Comparison>{{"", 0.0, homogeneous_strain().largest_inside}};
+                 return std::vector<CheckedValue>{{"", 0.0, homogeneous_strain().largest_inside}};
              }},
         {.name = "triangles.homogeneous-strain-energy",
          .sentence = "A homogeneous strain has the elastic energy of Hooke's law.",
@@ -213,7 +213,7 @@ std::vector<Check> triangle_checks() {
          .compare =
              [] {
                  const Strained s = homogeneous_strain();
-                 return std::vector<Comparison>{{"", 1e6 * s.expected_energy, 1e6 * s.energy}};
+                 return std::vector<CheckedValue>{{"", 1e6 * s.expected_energy, 1e6 * s.energy}};
              }},
     };
 }

@@ -36,7 +36,7 @@ const TestResult& pulled_at_one_point() {
     return result;
 }
 
-std::vector<Comparison> stiffness() {
+std::vector<CheckedValue> stiffness() {
     const TestSetup s = bar(methods::direct_tension);
     for (const HistoryRow& row : pulled().history)
         if (row.phase == Phase::elastic && row.platen_displacement_m != 0.0)
@@ -45,7 +45,7 @@ std::vector<Comparison> stiffness() {
     return {};
 }
 
-std::vector<Comparison> strengths() {
+std::vector<CheckedValue> strengths() {
     TestSetup brittle = bar(methods::direct_tension);
     brittle.contact.law = ContactLaw::brittle;
     return {{"three points", 8.5, 1e-6 * pulled().properties.peak_stress_Pa},
@@ -53,7 +53,7 @@ std::vector<Comparison> strengths() {
             {"three points, brittle", 8.5, 1e-6 * run_test(brittle, {}).properties.peak_stress_Pa}};
 }
 
-std::vector<Comparison> energies() {
+std::vector<CheckedValue> energies() {
     const EnergyLedger &three = pulled().energy_at_end, &one = pulled_at_one_point().energy_at_end;
     return {{"three points, work", 20.0, three.supplied() / kArea},
             {"three points, fracture", 20.0, three.fracture / kArea},
@@ -61,7 +61,7 @@ std::vector<Comparison> energies() {
             {"one point, fracture", 20.0, one.fracture / kArea}};
 }
 
-std::vector<Comparison> compression() {
+std::vector<CheckedValue> compression() {
     TestSetup s = bar(methods::uniaxial_compression);
     s.numerics.kind = NumericsKind::paper;
     s.numerics.speed_m = 3e-10;  // many travel times of a wave over 6 mm
@@ -103,8 +103,8 @@ const Torn& torn(ContactKind kind, bool shear) {
     return all[kind == ContactKind::lobatto3 ? 1 : 0][shear ? 1 : 0];
 }
 
-std::vector<Comparison> torn_energies() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> torn_energies() {
+    std::vector<CheckedValue> compared;
     for (const ContactKind kind : {ContactKind::lobatto3, ContactKind::point})
         for (const bool shear : {false, true}) {
             const std::string what = std::string(name(kind)) + (shear ? ", sheared off" : ", torn apart");
@@ -115,8 +115,8 @@ std::vector<Comparison> torn_energies() {
     return compared;
 }
 
-std::vector<Comparison> torn_strengths() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> torn_strengths() {
+    std::vector<CheckedValue> compared;
     for (const ContactKind kind : {ContactKind::lobatto3, ContactKind::point})
         for (const bool shear : {false, true})
             compared.push_back({std::string(name(kind)) + (shear ? ", sheared off" : ", torn apart"), shear ? 33.25 : 11.5,
@@ -140,7 +140,7 @@ const TestResult& rigid_pulled() {
     return result;
 }
 
-std::vector<Comparison> contacts_in_series() {
+std::vector<CheckedValue> contacts_in_series() {
     const double expected = 1e-12 * 1.08e13 / 3.0;
     for (const HistoryRow& row : rigid_pulled().history)
         if (row.phase == Phase::elastic && row.platen_displacement_m != 0.0)
@@ -148,7 +148,7 @@ std::vector<Comparison> contacts_in_series() {
     return {};
 }
 
-std::vector<Comparison> pressed_in_series() {
+std::vector<CheckedValue> pressed_in_series() {
     TestSetup s = rigid_bar(methods::uniaxial_compression, ContactKind::lobatto3);
     s.numerics.kind = NumericsKind::paper;
     s.numerics.speed_m = 3e-10;  // many travel times of a wave over 6 mm
@@ -223,9 +223,9 @@ std::vector<Check> two_grain_checks() {
          .compare =
              [] {
                  const TestResult& r = rigid_pulled();
-                 return std::vector<Comparison>{{"strength", 1.0, 1e-6 * r.properties.peak_stress_Pa / 11.5},
-                                                {"work", 1.0, r.energy_at_end.supplied() / (66.1 * kArea)},
-                                                {"fracture", 1.0, r.energy_at_end.fracture / (66.1 * kArea)}};
+                 return std::vector<CheckedValue>{{"strength", 1.0, 1e-6 * r.properties.peak_stress_Pa / 11.5},
+                                                  {"work", 1.0, r.energy_at_end.supplied() / (66.1 * kArea)},
+                                                  {"fracture", 1.0, r.energy_at_end.fracture / (66.1 * kArea)}};
              },
          .run = "two-rigid-grains"},
         {.name = "two-grains.torn-energy",

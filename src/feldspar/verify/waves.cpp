@@ -28,7 +28,7 @@ StepSettings elastic_steps(Assembly& assembly, Team& team) {
 double nothing() { return std::numeric_limits<double>::quiet_NaN(); }
 
 // Fixed below, free above.
-std::vector<Comparison> fixed_bar() {
+std::vector<CheckedValue> fixed_bar() {
     const auto specimen = make(rectangle(0.02, kHeight));
     Assembly assembly = assemble(*specimen, ModelSpec{}, granite(), table7());
     attach(assembly, *specimen, platen_rows(*specimen));
@@ -49,8 +49,8 @@ std::vector<Comparison> fixed_bar() {
 }
 
 // A free bar, struck along its axis.
-std::vector<Comparison> free_bars() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> free_bars() {
+    std::vector<CheckedValue> compared;
     for (const GrainKind grains : {GrainKind::rigid, GrainKind::inner_particles}) {
         const TestSetup given = setup(rectangle(0.02, kHeight), methods::uniaxial_compression, model(grains));
         Started s(given);
@@ -77,8 +77,8 @@ std::vector<Comparison> free_bars() {
 }
 
 // All stiffness of two rigid grains lies in one direction, where the bound behind the masses is exact.
-std::vector<Comparison> margin() {
-    std::vector<Comparison> compared;
+std::vector<CheckedValue> margin() {
+    std::vector<CheckedValue> compared;
     for (const NumericsKind kind : {NumericsKind::adaptive, NumericsKind::paper}) {
         TestSetup s = setup(two_grain_bar(0.003), methods::direct_tension);
         s.model = model(GrainKind::rigid, ContactKind::point);
@@ -107,7 +107,7 @@ double growth(Assembly assembly, int steps) {
 }
 
 // Mass at which motion begins to grow over that at which the largest omega^2 dt^2 is 4.
-std::vector<Comparison> limit() {
+std::vector<CheckedValue> limit() {
     Assembly assembly = assemble(*make(rectangle(0.014, 0.028)), ModelSpec{}, granite(), table7());
     Team team(1);
     set_scaled_masses(assembly, MassBound::tensor, 1.0);

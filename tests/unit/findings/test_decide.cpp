@@ -11,7 +11,7 @@
 namespace feldspar {
 namespace {
 
-using Kind = Target::Kind;
+using Kind = MeanLimit::Kind;
 
 MeanInterval of(int count, double mean, double standard_deviation) {
     const double half = student_quantile(count - 1) * standard_deviation / std::sqrt(static_cast<double>(count));
@@ -35,8 +35,8 @@ TEST(Decide, ANoIsFoundWhereItsChanceIsBelowTwoAndAHalfPerCent) {
     for (const Kind kind : {Kind::above, Kind::below, Kind::inside, Kind::outside})
         for (double mean = -3.0; mean <= 3.0; mean += 0.05) {
             const MeanInterval i = of(6, mean, 0.7);
-            const Target target{kind, 1.0};
-            EXPECT_EQ(decide(i, target) == Finding::no, chance_of_no(i, target) < 0.025) << mean;
+            const MeanLimit target{kind, 1.0};
+            EXPECT_EQ(decide(i, target) == Decision::no, chance_of_no(i, target) < 0.025) << mean;
         }
 }
 
@@ -66,7 +66,7 @@ TEST(Decide, SoManyPackingsDecideInFourOfFiveCases) {
             std::vector<double> values;
             for (int v = 0; v < count; ++v) values.push_back(mean + normal(random));
             const MeanInterval i = mean_interval(values);
-            decided += decide(i, {Kind::above, 0.0}) == Finding::yes || is_nothing(i, size) ? 1 : 0;
+            decided += decide(i, {Kind::above, 0.0}) == Decision::yes || is_nothing(i, size) ? 1 : 0;
         }
         return static_cast<double>(decided) / draws;
     };

@@ -143,7 +143,7 @@ std::vector<BadJob> bad_jobs() {
          edited("width = \"80 mm\"", "width = 80 \xC2\xB5m"),
          3,
          {"syntax error", "'\xC2\xB5'", "in quotes"}},
-        {"key beyond ASCII", edited("width", "w\xC3\xADdth"), 3, {"syntax error", "'\xC3\xAD'"}},
+        {"key beyond ASCII", edited("width", "w\xC3\xAD\x64th"), 3, {"syntax error", "'\xC3\xAD'"}},
         {"no-break space", edited("width = ", "width\xC2\xA0= "), 3, {"syntax error", "outside of quotes"}},
         {"not UTF-8", edited("shape", "sh\xff\xff"), 2, {"syntax error"}},
         {"unknown table",
