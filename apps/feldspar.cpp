@@ -9,6 +9,7 @@
 #include <memory>
 #include <new>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "commands.hpp"
 #include "feldspar/base/printable.hpp"
 #include "feldspar/base/units.hpp"
+#include "feldspar/base/usable_cores.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
@@ -130,6 +132,10 @@ int guarded(const std::function<ExitCode()>& command) {
         return complain(ExitCode::interrupted, error.what());
     } catch (const std::bad_alloc&) {
         return complain(ExitCode::numerical, "there is not enough memory for this job");
+    } catch (const std::system_error& error) {
+        return complain(ExitCode::numerical, lacks_threads(error)
+                                                 ? "there is not enough memory for this job: no further thread can be started"
+                                                 : fmt::format("internal error: {}", error.what()));
     } catch (const std::exception& error) {
         return complain(ExitCode::numerical, fmt::format("internal error: {}", error.what()));
     }
