@@ -16,6 +16,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/study/text_hash.hpp"
@@ -268,6 +269,22 @@ auto guarded(const fs::path& directory, Action action) {
     }
 }
 
+// The change of the journal needs the whole file, and does not wait for it by itself: of two programs that make a ledger at the
+// same moment one would be told that it is locked.
+void let_readers_and_writers_side_by_side(SQLite::Database& file) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(busy_timeout_ms);
+    while (true) {
+        try {
+            file.exec("PRAGMA journal_mode = WAL");
+            return;
+        } catch (const SQLite::Exception& problem) {
+            constexpr int busy = 5;  // SQLITE_BUSY
+            if (problem.getErrorCode() != busy || std::chrono::steady_clock::now() > end) throw;
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+}
+
 }  // namespace
 
 Ledger::Ledger(const fs::path& directory, Access access, std::chrono::milliseconds watched) {
@@ -286,7 +303,7 @@ Ledger::Ledger(const fs::path& directory, Access access, std::chrono::millisecon
             throw InputError({file.string(), 0, 0, {}}, "was made by a later version of this program",
                              fmt::format("the version that made it, or another `results`; if the file is damaged, {}", way_out));
         if (access == Access::write) {
-            database_->file.exec("PRAGMA journal_mode = WAL");    // readers and writers side by side
+            let_readers_and_writers_side_by_side(database_->file);
             database_->file.exec("PRAGMA synchronous = NORMAL");  // a power cut may lose the last rows; run.json has them
         }
         if (access != Access::read || version < schema_version)
