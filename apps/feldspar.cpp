@@ -7,18 +7,16 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <new>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "command_line.hpp"
 #include "command_pages.hpp"
 #include "commands.hpp"
+#include "feldspar/base/lacking_memory.hpp"
 #include "feldspar/base/printable.hpp"
 #include "feldspar/base/units.hpp"
-#include "feldspar/base/usable_cores.hpp"
 #include "feldspar/job/job_template.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/output/results.hpp"
@@ -130,14 +128,9 @@ int guarded(const std::function<ExitCode()>& command) {
         return complain(ExitCode::output, error.what());
     } catch (const Interrupted& error) {
         return complain(ExitCode::interrupted, error.what());
-    } catch (const std::bad_alloc&) {
-        return complain(ExitCode::numerical, "there is not enough memory for this job");
-    } catch (const std::system_error& error) {
-        return complain(ExitCode::numerical, lacks_threads(error)
-                                                 ? "there is not enough memory for this job: no further thread can be started"
-                                                 : fmt::format("internal error: {}", error.what()));
     } catch (const std::exception& error) {
-        return complain(ExitCode::numerical, fmt::format("internal error: {}", error.what()));
+        const std::string lack = lack_of_memory(error, "this job");
+        return complain(ExitCode::numerical, lack.empty() ? fmt::format("internal error: {}", error.what()) : lack);
     }
 }
 

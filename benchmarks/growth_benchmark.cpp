@@ -95,20 +95,9 @@ thickness = "80 mm"
 [specimen.grains]
 diameter = { distribution = "uniform", minimum = "2 mm", maximum = "4 mm" }
 porosity = 0.10
-[model]
-kind = "flexible"
-[material.grain]
-E = "25.8 GPa"
-nu = 0.23
-density = "2650 kg/m3"
-[material.contact]
-Kn = "18.00e4 GPa/m"
-eta = 0.28
-sigma_nt = "8.5 MPa"
-tau = "29.75 MPa"
-mu = 0.40
-Gfn = "20 N/m"
-Gfs = "800 N/m"
+[material]
+elastic_preset = "augig-flexible"
+strength_preset = "augig-table7"
 [[test]]
 kind = "uniaxial-compression"
 [run]

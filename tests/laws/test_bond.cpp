@@ -8,6 +8,7 @@
 #include "feldspar/base/rng.hpp"
 #include "feldspar/laws/bond.hpp"
 #include "feldspar/laws/dilation.hpp"
+#include "feldspar/verify/dilating_point.hpp"
 
 namespace feldspar {
 namespace {
@@ -86,55 +87,11 @@ TEST(Softening, WithoutEnergyToSoftenTheDirectionIsBrittle) {
 
 // ---------------------------------------------------------------------------------------------------------------------- dilation
 
-constexpr double kTanPsi = 0.2, kLimit = 1e-4;
-
-// A broken joint under a normal stress, sheared by `reach`. @param stiffness_Pa_m  of what presses it: 0, a constant stress
-struct Sheared {
-    double opening_m = 0.0, shear_N = 0.0, normal_N = 0.0, work_J = 0.0, slip_m = 0.0, first_slip_u_m = -1.0;
-    BondState state;
-};
-
-Sheared shear(double reach_m, double stiffness_Pa_m, const Dilation& dilation, int steps = 4000) {
-    ContactMaterial m = fixtures::table7();
-    m.sigma_nt_Pa = m.tau_Pa = 0.0;
-    m.mu = 0.5;
-    const BondLaw law = BondLaw::make(m);
-    constexpr double kStress = 5e6;
-    const double kn = law.Kn_Pa_m * kArea, K = stiffness_Pa_m * kArea;
-    Sheared r;
-    r.state.damage = 1.0;
-    r.state.un_m = -kStress * kArea / kn;
-    r.state.Fn_N = kStress * kArea;
-    double un = 0.0;  // since then
-    for (int k = 0; k < steps; ++k) {
-        const double du = reach_m / steps, Fn_before = r.state.Fn_N, Fs_before = r.state.Fs_N;
-        // The opening at which what presses it and the joint are in balance: both forces fall or grow with it.
-        double low = -1e-5, high = 1e-5;
-        BondState after;
-        double slip = 0.0, dun = 0.0;
-        for (int i = 0; i < 80; ++i) {
-            dun = 0.5 * (low + high);
-            after = r.state;
-            slip = r.slip_m;
-            slide_with_dilation(law, dilation, kArea, dun, du, after, slip);
-            (after.Fn_N > kStress * kArea + K * (un + dun) ? low : high) = dun;
-        }
-        if (r.first_slip_u_m < 0.0 && slip > 0.0) r.first_slip_u_m = (k + 1) * du;
-        un += dun;
-        r.state = after;
-        r.slip_m = slip;
-        r.work_J -= 0.5 * (Fn_before + after.Fn_N) * dun + 0.5 * (Fs_before + after.Fs_N) * du;
-    }
-    r.opening_m = un;
-    r.shear_N = -r.state.Fs_N;
-    r.normal_N = r.state.Fn_N;
-    return r;
-}
+using bodies::kLimit, bodies::kTanPsi, bodies::shear;
 
 TEST(Dilation, StopsWithinAStepAtItsLimitAndWorksBothWays) {
     // Steps of any size leave the same opening, since the step in which the limit is reached is divided there.
-    const double fine = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 6000).opening_m,
-                 coarse = shear(3.0 * kLimit, 2e9, {kTanPsi, kLimit}, 7).opening_m;
+    const double fine = shear(3.0 * kLimit, 2e9, 6000).opening_m, coarse = shear(3.0 * kLimit, 2e9, 7).opening_m;
     EXPECT_NEAR(coarse / fine, 1.0, 1e-3);
     const BondLaw law = BondLaw::make(fixtures::table7());
     const Dilation d{kTanPsi, kLimit};

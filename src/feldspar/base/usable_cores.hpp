@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <system_error>
 
 namespace feldspar {
 
@@ -14,8 +13,5 @@ int usable_cores();
 /// The share of processor time that a control group's file grants, in cores: of "cpu.max" ("150000 100000"), or of version 1's
 /// quota and period with a blank between. Nothing if there is no limit or the text says none.
 std::optional<double> cores_of_quota(const std::string& text);
-
-/// Whether it says that no further thread can be started, since memory or their number is limited.
-inline bool lacks_threads(const std::system_error& error) { return error.code() == std::errc::resource_unavailable_try_again; }
 
 }  // namespace feldspar

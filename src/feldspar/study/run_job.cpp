@@ -9,13 +9,12 @@
 #include <new>
 #include <set>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "feldspar/base/counted.hpp"
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/lacking_memory.hpp"
 #include "feldspar/base/parallel.hpp"
-#include "feldspar/base/usable_cores.hpp"
 #include "feldspar/lab/on_device.hpp"
 #include "feldspar/methods/method.hpp"
 #include "feldspar/specimen/write_cells.hpp"
@@ -149,12 +148,9 @@ void write_packing(const Specimen& specimen, const fs::path& file) {
 std::string reason_of(const std::exception_ptr& error) {
     try {
         std::rethrow_exception(error);
-    } catch (const std::bad_alloc&) {
-        return "there is not enough memory for it";
-    } catch (const std::system_error& problem) {
-        return lacks_threads(problem) ? "there is not enough memory for it: no further thread can be started" : problem.what();
     } catch (const std::exception& problem) {
-        return problem.what();
+        const std::string lack = lack_of_memory(problem, "it");
+        return lack.empty() ? problem.what() : lack;
     }
 }
 

@@ -111,8 +111,8 @@ std::string checks_markdown(std::span<const CheckResult> results, const Provenan
     std::string text = fmt::format(
         "# Closed forms\n\n{}.\n\nThis page was written by the program itself (`verify.md` of its "
         "results):\n\n```\n{}\n```\n\n{}, "
-        "{}. The page `verify.html` and `verify.json` beside it have the same numbers.\n\n"
-        "An error is relative to the expected value where its bound is given in per cent, else it is the difference. Equations "
+        "{}.\nThe page `verify.html` and `verify.json` beside it have the same numbers.\n\n"
+        "An error is relative to the expected value where its bound is given in per cent, else it is the difference.\nEquations "
         "such as (C9) are those of the [theory](../theory/README.md).\n",
         tally(results), provenance.command_line, machine(provenance), counted(provenance.threads, "thread"));
     by_topic(results, [&](const char* topic, std::span<const CheckResult> of_topic) {
