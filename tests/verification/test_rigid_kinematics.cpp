@@ -32,42 +32,11 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Models, RigidModels, testing::ValuesIn(fixtures::rigid_models()),
                          [](const auto& tested) { return fixtures::label(tested.param); });
 
-// Turns all bodies about the origin to `angle` as a step would: displacements, arcs, and the velocities that lead there.
-void turn_to(Assembly& assembly, double angle) {
-    Nodes& nodes = assembly.nodes;
-    for (const Body& body : assembly.bodies) {
-        const int centre = body.centre_node, turn = centre + 1;
-        const Vec2 X = nodes.reference[centre];
-        const Vec2 after = turned(X, angle) - X, arc = {angle * body.radius_m, 0.0};
-        nodes.velocity[centre] = after - nodes.displacement[centre];
-        nodes.velocity[turn] = arc - nodes.displacement[turn];
-        nodes.displacement[centre] = after;
-        nodes.displacement[turn] = arc;
-    }
-}
-
-struct Gaps {
-    double un = 0.0, us = 0.0;
-};
-
-Gaps gaps_after_turning(Assembly assembly, int steps) {
-    for (int k = 1; k <= steps; ++k) {
-        turn_to(assembly, 0.3 * k / steps);
-        contact_forces(assembly, all_contacts(assembly), StepSettings{}, k);
-    }
-    Gaps largest;
-    for (const ContactPoint& point : assembly.points) {
-        largest.un = std::max(largest.un, std::abs(assembly.bonds.at(point.state).un_m));
-        largest.us = std::max(largest.us, std::abs(assembly.bonds.at(point.state).us_m));
-    }
-    return largest;
-}
-
 TEST_P(RigidModels, RigidRotationOpensContactsOnlyByTheStepsOwnError) {
-    const Gaps gaps = gaps_after_turning(bodies(*specimen()), 1000);
-    EXPECT_LT(gaps.un, 5e-7);
-    EXPECT_LT(gaps.us, 5e-7);
-    EXPECT_GT(gaps.un, 0.0);
+    const Vec2 gaps = fixtures::gaps_of_a_rotation(bodies(*specimen()), 1000);
+    EXPECT_LT(gaps.x, 5e-7);
+    EXPECT_LT(gaps.y, 5e-7);
+    EXPECT_GT(gaps.x, 0.0);
 }
 
 TEST_P(RigidModels, ContactForcesConserveLinearAndAngularMomentum) {
@@ -145,7 +114,7 @@ TEST_P(RigidModels, ForcesOfLoadedContactsTurnWithTheBodies) {
 TEST_P(RigidModels, DrawnGrainsFollowARigidMotionExactly) {
     const auto s = specimen();
     Assembly assembly = bodies(*s);
-    turn_to(assembly, 0.3);
+    fixtures::turn_to(assembly, 0.3);
     const std::vector<Vec2> drawn = mesh_displacements(assembly, *s, assembly.nodes.displacement);
     ASSERT_EQ(drawn.size(), s->mesh.nodes.size());
     for (std::size_t n = 0; n < drawn.size(); ++n) {

@@ -117,25 +117,11 @@ TEST(Joints, OverTheLigamentOfABeamTakeTheirFractureEnergy) {
 // A smooth joint that dilates in direct shear: the upper half rises by tan psi of the slip until the limit, under the friction of
 // the whole angle; behind a spring the normal stress grows by what the spring gives for the rise. Rigid grains: nothing else
 // gives way.
-TestResult dilating_shear(GrainKind grains, double tan_psi, double limit_m, double stiffness_Pa_m, double strain) {
-    TestSetup setup = fixtures::setup(fixtures::with_joint(0.04, 0.02, 0.0), methods::direct_shear, fixtures::model(grains));
-    setup.test = usual_test(methods::direct_shear);
-    JointSpec joint = fixtures::smooth_joint(setup.contact, 0.5, 0.0, 0.0);
-    joint.dilation = tan_psi;
-    joint.dilation_slip_m = limit_m;
-    setup.rock.joints = {joint};
-    setup.test.sigma3_Pa = 2e6;
-    setup.test.maximum_strain = strain;
-    setup.test.stop_fraction = 0.5;
-    if (stiffness_Pa_m > 0.0) setup.test.own["normal_stiffness"] = {stiffness_Pa_m};
-    return run_test(setup, fixtures::threads(1));
-}
-
 TEST(Joints, ThatDilateRiseByTheTangentOfTheirAngleUntilTheirLimit) {
     constexpr double kTanPsi = 0.2;
     for (const GrainKind grains : {GrainKind::flexible}) {  // rigid ones: verify/joints.cpp
         constexpr double kLimit = 5e-5;
-        const TestResult r = dilating_shear(grains, kTanPsi, kLimit, 0.0, 45.0 * kLimit);
+        const TestResult r = fixtures::sheared_joint(grains, 0.5, kTanPsi, kLimit, 0.0, 45.0 * kLimit);
         std::vector<double> u, v;  // while it dilates
         double along = 0.0, across = 0.0, highest = 0.0, at_end = 0.0;
         const auto first =

@@ -202,4 +202,50 @@ struct Started {
     }
 };
 
+/// Turns all rigid bodies about the origin to `angle` as a step would: displacements, arcs, and the velocities that lead there.
+inline void turn_to(Assembly& assembly, double angle) {
+    Nodes& nodes = assembly.nodes;
+    for (const Body& body : assembly.bodies) {
+        const int centre = body.centre_node, turn = centre + 1;
+        const Vec2 X = nodes.reference[centre];
+        const Vec2 after = turned(X, angle) - X, arc = {angle * body.radius_m, 0.0};
+        nodes.velocity[centre] = after - nodes.displacement[centre];
+        nodes.velocity[turn] = arc - nodes.displacement[turn];
+        nodes.displacement[centre] = after;
+        nodes.displacement[turn] = arc;
+    }
+}
+
+/// Largest opening and sliding when rigid bodies turn by 0.3 rad as a whole.
+inline Vec2 gaps_of_a_rotation(Assembly assembly, int steps) {
+    for (int k = 1; k <= steps; ++k) {
+        turn_to(assembly, 0.3 * k / steps);
+        contact_forces(assembly, {0, static_cast<int>(assembly.contacts.size())}, StepSettings{}, k);
+    }
+    Vec2 largest;
+    for (const ContactPoint& point : assembly.points) {
+        largest.x = std::max(largest.x, std::abs(assembly.bonds.at(point.state).un_m));
+        largest.y = std::max(largest.y, std::abs(assembly.bonds.at(point.state).us_m));
+    }
+    return largest;
+}
+
+/// A smooth joint in direct shear under 2 MPa, or behind a spring from there on. @param limit_m  0: it does not dilate
+inline TestResult sheared_joint(GrainKind grains, double mu, double tan_psi, double limit_m, double stiffness_Pa_m,
+                                double strain) {
+    TestSetup s = setup(with_joint(0.04, 0.02, 0.0), methods::direct_shear, model(grains));
+    s.test = usual_test(methods::direct_shear);
+    JointSpec joint = smooth_joint(s.contact, mu, 0.0, 0.0);
+    if (limit_m > 0.0) {
+        joint.dilation = tan_psi;
+        joint.dilation_slip_m = limit_m;
+    }
+    s.rock.joints = {joint};
+    s.test.sigma3_Pa = 2e6;
+    s.test.maximum_strain = strain;
+    s.test.stop_fraction = 0.5;
+    if (stiffness_Pa_m > 0.0) s.test.own["normal_stiffness"] = {stiffness_Pa_m};
+    return run_test(s, {});
+}
+
 }  // namespace feldspar::bodies

@@ -299,29 +299,6 @@ std::vector<CheckedValue> masses_of_squares() {
              1e9 * assembly.nodes.mass[3] * h * h / 16.0}};
 }
 
-// Largest opening and sliding when rigid bodies turn by 0.3 rad as a whole.
-Vec2 gaps_of_a_rotation(Assembly assembly, int steps) {
-    Nodes& nodes = assembly.nodes;
-    for (int k = 1; k <= steps; ++k) {
-        const double angle = 0.3 * k / steps;
-        for (const Body& body : assembly.bodies) {
-            const int centre = body.centre_node, turn = centre + 1;
-            const Vec2 X = nodes.reference[centre], moved = turned(X, angle) - X, arc = {angle * body.radius_m, 0.0};
-            nodes.velocity[centre] = moved - nodes.displacement[centre];
-            nodes.velocity[turn] = arc - nodes.displacement[turn];
-            nodes.displacement[centre] = moved;
-            nodes.displacement[turn] = arc;
-        }
-        contact_forces(assembly, all_contacts(assembly), StepSettings{}, k);
-    }
-    Vec2 largest;
-    for (const ContactPoint& point : assembly.points) {
-        largest.x = std::max(largest.x, std::abs(assembly.bonds.at(point.state).un_m));
-        largest.y = std::max(largest.y, std::abs(assembly.bonds.at(point.state).us_m));
-    }
-    return largest;
-}
-
 // The turn moves a point by its arc, the centre by its chord: of first order in the step, along the line of centres. Across it
 // the line turns with the bodies, and what is left is of second order; across the edge's normal it is of first order too.
 std::vector<CheckedValue> order_of_rigid_rotation() {

@@ -28,23 +28,6 @@ std::vector<CheckedValue> jaeger() {
 
 constexpr double kMu = 0.5, kTanPsi = 0.2;
 
-// A smooth joint in direct shear under 2 MPa, or behind a spring from there on. @param limit_m  0: it does not dilate
-TestResult sheared(GrainKind grains, double limit_m, double stiffness_Pa_m, double strain) {
-    TestSetup s = setup(with_joint(0.04, 0.02, 0.0), methods::direct_shear, model(grains));
-    s.test = usual_test(methods::direct_shear);
-    JointSpec joint = smooth_joint(s.contact, kMu, 0.0, 0.0);
-    if (limit_m > 0.0) {
-        joint.dilation = kTanPsi;
-        joint.dilation_slip_m = limit_m;
-    }
-    s.rock.joints = {joint};
-    s.test.sigma3_Pa = 2e6;
-    s.test.maximum_strain = strain;
-    s.test.stop_fraction = 0.5;
-    if (stiffness_Pa_m > 0.0) s.test.own["normal_stiffness"] = {stiffness_Pa_m};
-    return run_test(s, {});
-}
-
 // Shear force over normal force, means over the rows from a slip on.
 double friction(const TestResult& r, double from_m) {
     double along = 0.0, across = 0.0;
@@ -58,14 +41,14 @@ double friction(const TestResult& r, double from_m) {
 
 // The edges of flexible grains tilt as they deform, and with them the planes on which they slide: measured 0.9968 of mu.
 std::vector<CheckedValue> frictions() {
-    return {{"rigid grains", kMu, friction(sheared(GrainKind::rigid, 0.0, 0.0, 0.004), 4e-5)},
-            {"flexible grains", kMu, friction(sheared(GrainKind::flexible, 0.0, 0.0, 0.004), 4e-5)}};
+    return {{"rigid grains", kMu, friction(sheared_joint(GrainKind::rigid, kMu, kTanPsi, 0.0, 0.0, 0.004), 4e-5)},
+            {"flexible grains", kMu, friction(sheared_joint(GrainKind::flexible, kMu, kTanPsi, 0.0, 0.0, 0.004), 4e-5)}};
 }
 
 constexpr double kLimit = 1e-4;
 
 const TestResult& dilating() {
-    static const TestResult r = sheared(GrainKind::rigid, kLimit, 0.0, 45.0 * kLimit);
+    static const TestResult r = sheared_joint(GrainKind::rigid, kMu, kTanPsi, kLimit, 0.0, 45.0 * kLimit);
     return r;
 }
 
@@ -90,7 +73,7 @@ std::vector<CheckedValue> rise() {
 
 std::vector<CheckedValue> spring() {
     constexpr double kStiffness = 1e8;  // Pa/m; the specimen gives way 1e-4 of what the spring does
-    const TestResult r = sheared(GrainKind::rigid, 1e-3, kStiffness, 0.01);
+    const TestResult r = sheared_joint(GrainKind::rigid, kMu, kTanPsi, 1e-3, kStiffness, 0.01);
     std::vector<double> u, stress;
     for (const HistoryRow& row : r.history)
         if (const double slip = row.axial_strain * r.length_m; row.phase == Phase::loading && slip > 4e-5) {

@@ -199,4 +199,36 @@ inline TestSetup setup_of(const Case& c) {
     return s;
 }
 
+/// A state in which everything happens, and the settings of a fast loading.
+struct Stirred {
+    TestSetup setup;
+    RunControl control;
+    Experiment e;
+    StepSettings settings;
+
+    explicit Stirred(const TestSetup& s, int threads = 1) : setup(s), control(fixtures::threads(threads)), e(setup, control) {
+        choose_step(e);
+        if (setup.test.kind == methods::biaxial) e.set_dead_loads(1.0);
+        stir(e.assembly);
+        if (setup.test.kind != methods::uniaxial_compression) mix_contacts(e.assembly);  // there a mixed specimen would fly apart
+        settings = e.settings;
+        settings.speed = 1e-8;
+    }
+    /// Goes on by `calls` calls of `count` steps. @return the work of the loading, J
+    double go_on(int calls, int count) {
+        PlatenWork work;
+        for (int i = 0; i < calls; ++i) advance(e.assembly, e.team, settings, i * count, count, work);
+        return work.loading;
+    }
+    /// The state after that by a device; this one stays.
+    Assembly after(StepDevice& device, int calls, int count, double& loading_J) {
+        Assembly assembly = e.assembly;
+        PlatenWork work;
+        settings.device = &device;
+        for (int i = 0; i < calls; ++i) advance(assembly, e.team, settings, i * count, count, work);
+        loading_J = work.loading;
+        return assembly;
+    }
+};
+
 }  // namespace feldspar

@@ -61,32 +61,6 @@ TEST_P(OneStepOfADevice, IsThatOfTheReadableStages) {
 
 INSTANTIATE_TEST_SUITE_P(Emulation, OneStepOfADevice, testing::ValuesIn(cases()), label);
 
-// A state in which everything happens, and the settings of a fast loading.
-struct Stirred {
-    TestSetup setup;
-    RunControl control = fixtures::threads(1);
-    Experiment e;
-    StepSettings settings;
-
-    explicit Stirred(const TestSetup& s) : setup(s), e(setup, control) {
-        choose_step(e);
-        if (setup.test.kind == methods::biaxial) e.set_dead_loads(1.0);
-        stir(e.assembly);
-        if (setup.test.kind != methods::uniaxial_compression) mix_contacts(e.assembly);  // there a mixed specimen would fly apart
-        settings = e.settings;
-        settings.speed = 1e-8;
-    }
-    /// The state after `calls` calls of `count` steps.
-    Assembly after(StepDevice& device, int calls, int count, double& loading_J) {
-        Assembly assembly = e.assembly;
-        PlatenWork work;
-        settings.device = &device;
-        for (int i = 0; i < calls; ++i) advance(assembly, e.team, settings, i * count, count, work);
-        loading_J = work.loading;
-        return assembly;
-    }
-};
-
 std::vector<TestSetup> setups() {
     const ModelSpec flexible = fixtures::model(GrainKind::flexible), rigid = fixtures::model(GrainKind::rigid),
                     particles = fixtures::model(GrainKind::inner_particles);

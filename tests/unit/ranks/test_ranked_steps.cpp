@@ -18,29 +18,6 @@
 namespace feldspar {
 namespace {
 
-// A state in which everything happens, and the settings of a fast loading.
-struct Stirred {
-    TestSetup setup;
-    RunControl control;
-    Experiment e;
-    StepSettings settings;
-
-    explicit Stirred(const TestSetup& s, int threads = 1) : setup(s), control(fixtures::threads(threads)), e(setup, control) {
-        choose_step(e);
-        if (setup.test.kind == methods::biaxial) e.set_dead_loads(1.0);
-        stir(e.assembly);
-        if (setup.test.kind != methods::uniaxial_compression) mix_contacts(e.assembly);  // there a mixed specimen would fly apart
-        settings = e.settings;
-        settings.speed = 1e-8;
-    }
-    /// After `calls` calls of `count` steps.
-    double go_on(int calls, int count) {
-        PlatenWork work;
-        for (int i = 0; i < calls; ++i) advance(e.assembly, e.team, settings, i * count, count, work);
-        return work.loading;
-    }
-};
-
 class RankedSteps : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(States, RankedSteps, testing::ValuesIn(cases()), label);
 
