@@ -158,7 +158,7 @@ template <class Number, class Real>
 FELDSPAR_LAW Real normal_energy(const BondLawOf<Number>& law, Real inverse_area, Real Fn, Real un, Real damage) {
     const Real none{}, energy = 0.5 * law.inverse_Kn * inverse_area * Fn * Fn;
     if (!law.secant_unloading) return energy;
-    return (un > none) & (damage > none) ? 0.5 * NumberOf<Real>::absolute(Fn) * un : energy;
+    return ((un > none) & (damage > none)) ? 0.5 * NumberOf<Real>::absolute(Fn) * un : energy;
 }
 
 /// Recoverable energy of a point, J.
@@ -207,7 +207,7 @@ FELDSPAR_LAW BondUpdate<Real> update_damaged(const BondLawOf<Number>& law, Real 
         damage = where(NumberOf<Real>::absolute(Fs_trial) > cohesion_limit + law.mu * pressed, law.shear.brittle) ? one : damage;
     s.damage = broken_before ? s.damage : damage;
     Real Fn = larger(Fn_trial, -tension_limit);
-    if (law.secant_unloading) Fn = (s.un_m > none) & (s.max_un_m > law.normal.x0) ? -tension_limit * s.un_m / s.max_un_m : Fn;
+    if (law.secant_unloading) Fn = ((s.un_m > none) & (s.max_un_m > law.normal.x0)) ? -tension_limit * s.un_m / s.max_un_m : Fn;
     const MaskOf<Real> broken = s.damage >= one;
     s.Fn_N = broken ? (s.un_m < none ? -kn * s.un_m : none) : Fn;
     cohesion_limit = broken ? none : cohesion_limit;
