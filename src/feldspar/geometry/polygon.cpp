@@ -4,6 +4,8 @@
 #include <cassert>
 #include <limits>
 
+#include "feldspar/geometry/segments.hpp"
+
 namespace feldspar {
 
 double signed_area(std::span<const Vec2> polygon) {
@@ -38,13 +40,7 @@ namespace {
 bool segments_touch(Vec2 a, Vec2 b, Vec2 c, Vec2 d, double tolerance) {
     if (std::max(a.x, b.x) + tolerance < std::min(c.x, d.x) || std::max(c.x, d.x) + tolerance < std::min(a.x, b.x)) return false;
     if (std::max(a.y, b.y) + tolerance < std::min(c.y, d.y) || std::max(c.y, d.y) + tolerance < std::min(a.y, b.y)) return false;
-    const double side_c = cross(b - a, c - a);
-    const double side_d = cross(b - a, d - a);
-    const double side_a = cross(d - c, a - c);
-    const double side_b = cross(d - c, b - c);
-    if (side_c * side_d < 0.0 && side_a * side_b < 0.0) return true;
-    return distance_to_segment(a, c, d) <= tolerance || distance_to_segment(b, c, d) <= tolerance ||
-           distance_to_segment(c, a, b) <= tolerance || distance_to_segment(d, a, b) <= tolerance;
+    return distance_between_segments(a, b, c, d) <= tolerance;
 }
 
 }  // namespace

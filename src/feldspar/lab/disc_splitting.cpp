@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "feldspar/geometry/polygon.hpp"
+#include "feldspar/geometry/segments.hpp"
 #include "feldspar/methods/method.hpp"
 
 namespace feldspar {
@@ -19,18 +19,6 @@ constexpr double band_of_grains = 2.0;
 // open is an end point of an edge that has not broken: a sixth of an edge, some 0.1 of a grain. A middle that holds (0.4 of a
 // grain) is a bridge and must not be passed over.
 constexpr double reach_of_grain = 0.25;
-
-bool cross_each_other(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-    const double c_side = cross(b - a, c - a), d_side = cross(b - a, d - a);
-    const double a_side = cross(d - c, a - c), b_side = cross(d - c, b - c);
-    return c_side * d_side < 0.0 && a_side * b_side < 0.0;
-}
-
-double distance(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-    if (cross_each_other(a, b, c, d)) return 0.0;
-    return std::min(
-        {distance_to_segment(a, c, d), distance_to_segment(b, c, d), distance_to_segment(c, a, b), distance_to_segment(d, a, b)});
-}
 
 }  // namespace
 
@@ -86,7 +74,8 @@ void SplittingCrack::add(const Crack& crack) {
         for (double j = std::floor(low / size); j <= std::floor(high / size); ++j) {
             std::vector<int>& here = squares_[square((i + 0.5) * size, (j + 0.5) * size)];
             for (const int other : here)
-                if (root(other) != root(piece) && distance(from, to, pieces_[other].from, pieces_[other].to) <= reach)
+                if (root(other) != root(piece) &&
+                    distance_between_segments(from, to, pieces_[other].from, pieces_[other].to) <= reach)
                     join(other, piece);
             here.push_back(piece);
         }

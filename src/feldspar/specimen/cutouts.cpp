@@ -10,6 +10,7 @@
 
 #include "feldspar/base/error.hpp"
 #include "feldspar/geometry/polygon.hpp"
+#include "feldspar/geometry/segments.hpp"
 
 namespace feldspar {
 namespace {
@@ -60,11 +61,6 @@ double common_area(std::vector<Vec2> polygon, std::span<const Vec2> convex) {
     return signed_area(polygon);
 }
 
-bool segments_cross(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
-    const auto side = [](Vec2 p, Vec2 q, Vec2 r) { return cross(q - p, r - p) > 0.0; };
-    return side(a, b, c) != side(a, b, d) && side(c, d, a) != side(c, d, b);
-}
-
 /// Least distance of two chains of segments (m), 0 if they cross. A polygon is a closed chain.
 double distance_between(std::span<const Vec2> a, bool a_closed, std::span<const Vec2> b, bool b_closed) {
     double least = infinity;
@@ -72,9 +68,7 @@ double distance_between(std::span<const Vec2> a, bool a_closed, std::span<const 
         const Vec2 p = a[i], q = a[(i + 1) % a.size()];
         for (std::size_t j = 0; j + (b_closed ? 0 : 1) < b.size(); ++j) {
             const Vec2 r = b[j], s = b[(j + 1) % b.size()];
-            if (segments_cross(p, q, r, s)) return 0.0;
-            least = std::min({least, distance_to_segment(p, r, s), distance_to_segment(q, r, s), distance_to_segment(r, p, q),
-                              distance_to_segment(s, p, q)});
+            least = std::min(least, distance_between_segments(p, q, r, s));
         }
     }
     return least;

@@ -24,6 +24,8 @@ TEST(Units, ReadsQuantitiesExactly) {
     const std::vector<Good> cases{
         {"80 mm", Dimension::length, 0.08},
         {"3mm", Dimension::length, 0.003},
+        {"9 mm", Dimension::length, 0.009},  // 9 x 0.001 is another number
+        {"13 mm", Dimension::length, 0.013},
         {"  +0.25  mm ", Dimension::length, 0.00025},
         {"1.1 mm", Dimension::length, 0.0011},
         {"250 um", Dimension::length, 0.00025},

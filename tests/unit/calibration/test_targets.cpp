@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "calibration_files.hpp"
 #include "feldspar/calibration/insight.hpp"
@@ -51,6 +53,20 @@ TEST(Targets, FollowFromTheMeansByTheirFormulas) {
             EXPECT_EQ(value, 0.23);
         }
     }
+}
+
+TEST(Targets, RatiosAreThoseOfTheMeans) {
+    const auto read = [](const char* targets) {
+        return folder().read(std::string("[targets]\n") + targets + "[[unknown]]\nkey = \"material.contact.mu\"\n");
+    };
+    const auto ratio = [](const Calibration& calibration, std::map<std::string, double> mean) {
+        const auto observables = observables_for(calibration);
+        std::vector<double> means;
+        for (const Observable& o : observables) means.push_back(mean.at(o.name));
+        return value_of(calibration.targets.front(), observables, means);
+    };
+    EXPECT_DOUBLE_EQ(ratio(read("UCS_over_BTS = 14\n"), {{"UCS", 120e6}, {"BTS", 10e6}}), 12.0);
+    EXPECT_DOUBLE_EQ(ratio(read("BTS_over_DTS = 1.1\n"), {{"BTS", 9e6}, {"DTS", 6e6}}), 1.5);
 }
 
 TEST(Targets, SayWhatStrengthACompressionTestIsToShow) {

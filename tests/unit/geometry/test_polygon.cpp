@@ -39,6 +39,7 @@ TEST(Polygon, SimplePolygonsAreRecognised) {
 
 TEST(Polygon, PolygonsThatTouchOrCrossThemselvesAreNotSimple) {
     EXPECT_FALSE(is_simple_polygon(std::vector<Vec2>{{0, 0}, {1, 1}, {1, 0}, {0, 1}})) << "bow tie";
+    EXPECT_FALSE(is_simple_polygon(std::vector<Vec2>{{0, 0}, {4, 0}, {0, 3}, {4, 2}})) << "a bow tie with an area";
     EXPECT_FALSE(is_simple_polygon(std::vector<Vec2>{{0, 0}, {1, 0}})) << "two vertices";
     EXPECT_FALSE(is_simple_polygon(std::vector<Vec2>{{0, 0}, {1, 0}, {2, 0}})) << "no area";
     EXPECT_FALSE(is_simple_polygon(std::vector<Vec2>{{0, 0}, {1, 0}, {1, 0}, {0, 1}})) << "a vertex twice in a row";

@@ -77,6 +77,11 @@ TEST(SplittingCrack, APathThatWandersSplitsItAndBranchesDoNotMatter) {
     EXPECT_FALSE(searched(path({{-0.007, 0.0}, {0.007, 0.0}}, 0)).split()) << "as long as it is, it lies across";
 }
 
+TEST(SplittingCrack, TwoCracksOnOneLineWithAGapBetweenThemDoNotCross) {
+    const auto lower = path({{0.0, -0.030}, {0.0, -0.0005}}, 0), upper = path({{0.0002, 0.0005}, {-0.0001, 0.030}}, 100);
+    EXPECT_FALSE(searched(both(lower, upper)).split()) << "the line of one meets the other; the cracks are 1 mm apart";
+}
+
 TEST(SplittingCrack, TheOrderOfCracksWithinAStepDoesNotMatter) {
     auto cracks = path({{0.0, -0.026}, {0.005, -0.016}, {-0.006, -0.004}, {0.004, 0.010}, {0.0, 0.026}}, 0);
     for (Crack& c : cracks) c.step = c.step / 20;  // many at once

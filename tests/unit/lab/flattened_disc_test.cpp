@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "feldspar/lab/disc_splitting.hpp"
@@ -28,6 +29,35 @@ TEST(FlattenedDisc, IsThatOfFiniteElementsForEveryPlate) {
                           {40, 1e3, 0.28, 0.4, 0.7547}, {30, 0.43, 0.28, 0.4, 0.9076}})
         EXPECT_NEAR(k(c.degrees, {c.hardness, c.eta, c.mu}), c.expected, 2e-3)
             << c.degrees << " degrees, hardness " << c.hardness << ", mu " << c.mu;
+}
+
+// How hard the plate is goes by the modulus of the disc: of plane strain E / (1 - nu^2), of rigid grains what their contacts
+// make.
+TEST(FlattenedDisc, ThePlateIsAsHardAsTheDiscIsSoft) {
+    Specimen specimen;
+    specimen.spec.outline.flat_angle_rad = 20.0 * std::numbers::pi / 180.0;
+    specimen.outline.radius_m = 0.04;
+    specimen.quality.mean_diameter_m = 0.003;
+    const GrainMaterial grain{40e9, 0.4, 2650.0};
+    ContactMaterial contact;
+    contact.Kn_Pa_m = 2e13;
+    contact.eta = 0.28;
+    TestSpec test;
+    test.plate_Kn_Pa_m = 3e12;
+    test.plate_mu = 0.3;
+    const double half_width = 0.04 * std::sin(10.0 * std::numbers::pi / 180.0);
+    const auto expect = [&](GrainKind kind, PlaneState plane, double E_Pa) {
+        ModelSpec model;
+        model.kind = kind;
+        model.plane = plane;
+        EXPECT_NEAR(flat_coefficient(specimen, model, grain, contact, test), k(20.0, {3e12 * half_width / E_Pa, 0.28, 0.3}),
+                    1e-12);
+    };
+    expect(GrainKind::flexible, PlaneState::stress, 40e9);
+    expect(GrainKind::flexible, PlaneState::strain, 40e9 / 0.84);
+    expect(GrainKind::rigid, PlaneState::stress, 2e13 * 0.003);
+    specimen.spec.particles_per_grain = 9.0;
+    expect(GrainKind::inner_particles, PlaneState::stress, 2e13 * 0.003 / 3.0);
 }
 
 TEST(FlattenedDisc, HasLessOfTheLoadInItsCentreTheWiderAndHarderAndRougherItIsPressed) {

@@ -90,6 +90,17 @@ TEST(RateControl, ASpecimenThatFailsIsPassedAtTheSpeedThatIsAskedFor) {
     EXPECT_NEAR(per_travel_time(next(c, 0.0, 50.0, 50.0, 10.0)), kGrowth, 1e-12);
 }
 
+TEST(RateControl, BehindThePeakWhatIsOutOfBalanceCountsAgainstHalfTheLargestLoad) {
+    RateControl c = control();
+    const Unbalanced little{0.5 * kTarget * kForce, 0.5 * kTarget * kForce};
+    c.next(2e-8, little, kForce, kTravel);
+    EXPECT_DOUBLE_EQ(c.residual(), 0.5 * kTarget);
+    c.next(2e-8, little, 0.8 * kForce, kTravel);
+    EXPECT_DOUBLE_EQ(c.residual(), 0.5 * kTarget / 0.8);
+    c.next(2e-8, little, 0.1 * kForce, kTravel);  // the specimen bears next to nothing
+    EXPECT_DOUBLE_EQ(c.residual(), kTarget);
+}
+
 TEST(RateControl, ACrackThatRunsAwayIsSeenBeforeTheTargetIsReached) {
     RateControl c = control();
     const double v = 2e-8;

@@ -109,6 +109,18 @@ TEST(ScalingRules, FrictionFollowsTheAngle) {
     EXPECT_FALSE(first_parameters(targets, grain_m).friction_reached);
 }
 
+TEST(ScalingRules, CohesionAndFrictionAngleStandForTheStrength) {
+    RockTargets targets;
+    targets.E_Pa = 40e9;
+    targets.cohesion_Pa = 20e6;
+    targets.friction_angle_deg = 50.0;
+    targets.BTS_Pa = 10e6;
+    const FirstParameters first = first_parameters(targets, grain_m);
+    const double UCS_Pa = 2.0 * 20e6 * 2.74748;  // tan 70 deg
+    EXPECT_NEAR(first.wanted_ratio, UCS_Pa / 10e6, 1e-4);
+    EXPECT_NEAR(first.expected.UCS_Pa / UCS_Pa, 1.0, 1e-5);
+}
+
 TEST(ScalingRules, ScatterRaisesTheRatio) {
     RockTargets targets;
     targets.E_Pa = 40e9;

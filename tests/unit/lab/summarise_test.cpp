@@ -41,6 +41,15 @@ TEST(StrengthEnvelope, TheMeasuredUCSIsThatOfTheUniaxialTest) {
     EXPECT_DOUBLE_EQ(fit.UCS_measured_Pa, ucs);
 }
 
+TEST(StrengthEnvelope, LineOfMohrAndCoulomb) {
+    const double phi = 53.0 * std::numbers::pi / 180.0, N = (1.0 + std::sin(phi)) / (1.0 - std::sin(phi));
+    EXPECT_NEAR(mohr_coulomb_slope(53.0), N, 1e-12 * N);
+    EXPECT_NEAR(mohr_coulomb_UCS_Pa(21e6, 53.0), 2.0 * 21e6 * std::sqrt(N), 1e-6);
+    const EnvelopeFit fit = fit_envelopes({0.0, 4e6, 10e6}, {125e6, 125e6 + N * 4e6, 125e6 + N * 10e6});
+    EXPECT_NEAR(fit.friction_angle_deg, 53.0, 1e-9);
+    EXPECT_NEAR(mohr_coulomb_UCS_Pa(fit.cohesion_Pa, fit.friction_angle_deg), 125e6, 1e-3);
+}
+
 TEST(StrengthEnvelope, NotANumberWhereThePointsDecideNothing) {
     EXPECT_TRUE(std::isnan(fit_envelopes({4e6}, {150e6}).cohesion_Pa));
     EXPECT_TRUE(std::isnan(fit_envelopes({4e6, 4e6}, {150e6, 160e6}).friction_angle_deg)) << "one sigma_3 only";
