@@ -134,12 +134,13 @@ void GaussianProcess::fit(const GaussianProcess* before) {
 // Few packings leave the scatter between packings open: the most probable one is too small in the mean, and an interval by it too
 // narrow. So its variance is averaged over what is possible, the other scales as they are.
 double GaussianProcess::mean_scale(std::size_t which) const {
-    constexpr double reach = 2.0, step = 0.25;  // of the logarithm
+    constexpr int steps = 8;       // to either side
+    constexpr double step = 0.25;  // of the logarithm
     const double most_probable = minus_log_posterior(scales_from(logarithms_));
     double weights = 0.0, variance = 0.0;
-    for (double off = -reach; off <= reach; off += step) {
+    for (int k = -steps; k <= steps; ++k) {
         std::vector<double> moved = logarithms_;
-        moved[which] += off;
+        moved[which] += k * step;
         const double weight = std::exp(most_probable - minus_log_posterior(scales_from(moved)));
         weights += weight;
         variance += weight * std::exp(2.0 * moved[which]);

@@ -123,10 +123,11 @@ WeighedSets weigh(const Learner& learner, const std::vector<double>& best) {
     for (const std::vector<double>& x : sets.x) badness.push_back(sets.standings.emplace_back(standing_at(learner, x)).badness());
     // where no set is good, a handful that is a little less bad than the others would have all the weight: misfits are taken less
     // seriously then
-    for (double seriousness = 1.0; seriousness > 1e-3; seriousness *= 0.7) {
+    double seriousness = 1.0;
+    do {
         sets.weights = weights_of(badness, volumes, seriousness);
-        if (counting(sets.weights) >= enough_sets) break;
-    }
+        seriousness *= 0.7;
+    } while (counting(sets.weights) < enough_sets && seriousness > 1e-3);
     return sets;
 }
 

@@ -128,6 +128,21 @@ FELDSPAR_INLINE void store_where(double* p, Real v, Mask mask, int count) {
 #endif
 }
 
+// The lanes of the mask; the others are 0, and their memory is not looked at.
+FELDSPAR_INLINE Real load_where(const double* p, Mask mask) {
+#if defined(__AVX512DQ__) && FELDSPAR_LANES == 8
+    return _mm512_maskz_loadu_pd(static_cast<__mmask8>(_mm512_movepi64_mask(reinterpret_cast<__m512i>(mask))), p);
+#else
+    Real v{};
+    for (int lane = 0; lane < kWidth; ++lane)
+        if (mask[lane]) v[lane] = p[lane];
+    return v;
+#endif
+}
+
+// Number of the lowest bit that is set.
+FELDSPAR_INLINE int lowest_bit(unsigned bits) { return __builtin_ctz(bits); }
+
 // Lanes whose bit is set.
 FELDSPAR_INLINE Mask lanes_of(unsigned bits) {
     Mask m{};

@@ -78,6 +78,8 @@ FELDSPAR_INLINE bool any(Mask m) { return m.set; }
 FELDSPAR_INLINE void store_where(double* p, Real v, Mask mask, int) {
     if (mask.set) *p = v.v;
 }
+FELDSPAR_INLINE Real load_where(const double* p, Mask mask) { return mask.set ? Real(*p) : Real{}; }
+FELDSPAR_INLINE int lowest_bit(unsigned) { return 0; }  // a single lane reads for itself
 FELDSPAR_INLINE Mask lanes_of(unsigned bits) { return Mask((bits & 1U) != 0); }
 
 }  // namespace

@@ -139,9 +139,12 @@ FELDSPAR_APART PointForces update_points(const KernelArrays& a, const KernelStep
     const int state = pack.first_state + j * pack.lanes + chunk.begin, count = chunk.count;
     const Mask takes_part = lanes_of(pack.active >> chunk.begin) & lanes_of((1U << count) - 1U);
     const Real area = load(a.area + state, count), kn = law.Kn_Pa_m * area, ks = law.Ks_Pa_m * area;
-    BondLanes s{load(a.un + state, count),     load(a.us + state, count),       load(a.Fn + state, count),
-                load(a.Fs + state, count),     load(a.max_un + state, count),   load(a.max_us + state, count),
-                load(a.damage + state, count), load(a.fracture + state, count), load(a.friction + state, count)};
+    // Another thread may be writing the state of a contact that takes no part here.
+    const bool all_take_part = kWidth == 1 || !any(~takes_part);
+    const auto of_lanes = [&](const double* p)
+                              FELDSPAR_LAMBDA { return all_take_part ? load(p + state) : load_where(p + state, takes_part); };
+    BondLanes s{of_lanes(a.un),     of_lanes(a.us),     of_lanes(a.Fn),       of_lanes(a.Fs),      of_lanes(a.max_un),
+                of_lanes(a.max_us), of_lanes(a.damage), of_lanes(a.fracture), of_lanes(a.friction)};
     const Mask intact = s.damage == 0.0;
     s.Fn_N = intact ? -kn * s.un_m : s.Fn_N;  // of intact points it is not kept
     s.Fs_N = intact ? -ks * s.us_m : s.Fs_N;
@@ -221,10 +224,15 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     constexpr bool rigid = frame != Frame::triangles;
     const KernelArrays a = arrays;  // a copy that nobody else can change: its pointers stay in registers
     const int constants = kMostLanes * pack_index + chunk.begin;
+    const auto takes_part = [&](int lane) FELDSPAR_LAMBDA {
+        return plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U));
+    };
     double *line_a[kWidth], *line_b[kWidth];
     for (int lane = 0; lane < kWidth; ++lane) {
-        line_a[lane] = line_at(a.lines, a.line_a[constants + lane]);
-        line_b[lane] = line_at(a.lines, a.line_b[constants + lane]);
+        // A lane that takes no part reads what one that does reads: another thread may be writing into its own lines.
+        const int of = kWidth == 1 || takes_part(lane) ? constants + lane : kMostLanes * pack_index + lowest_bit(pack.active);
+        line_a[lane] = line_at(a.lines, a.line_a[of]);
+        line_b[lane] = line_at(a.lines, a.line_b[of]);
     }
     Side A{}, B{};
     load_motion(line_a, A);
@@ -331,9 +339,6 @@ FELDSPAR_INLINE void contacts_of_chunk(const KernelArrays& arrays, const KernelS
     // On B: force F, and W = sum of w F. Arms: along m to the reference point, then w along t.
     const Real2 F = Fn_sum * n + Fs_sum * s, W = Fn_moment * n + Fs_moment * s;
     const int contact = pack.first_contact + chunk.begin;
-    const auto takes_part = [&](int lane) FELDSPAR_LAMBDA {
-        return plain || (lane < chunk.count && (pack.active >> (chunk.begin + lane) & 1U));
-    };
     if constexpr (rigid) {
         const Real across = central ? Real{} : cross(t, W),
                    at_reference = frame == Frame::rigid ? Fs_sum : cross(m, F);  // moments: of W, and of F over its arm

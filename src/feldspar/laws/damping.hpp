@@ -28,8 +28,8 @@ template <class Real>
 FELDSPAR_LAW Real before_local_drag(Real V, Real loading, Real F, Real push, double alpha) {
     const Real none{}, size = alpha * F, magnitude = F < none ? -size : size;
     const Real forward = V - push * (F - magnitude), backward = V - push * (F + magnitude), free = V - push * F;
-    const Real other = (backward < loading) & (backward < none) ? backward : free;
-    return (forward > loading) & (forward > none) ? forward : other;
+    const Real other = ((backward < loading) & (backward < none)) ? backward : free;
+    return ((forward > loading) & (forward > none)) ? forward : other;
 }
 
 }  // namespace feldspar
