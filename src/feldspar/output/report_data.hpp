@@ -24,8 +24,9 @@ struct ReportFields {             // NOLINT(bugprone-exception-escape): moving t
 
 /// Of each kind (and sigma_3) the fields of the packings with the median, the smallest and the largest strength, as many as fit
 /// into `budget_B` characters; of a job with variants those of the first packing of each variant and kind. A test that does not
-/// fit into its share as a whole keeps fewer moments: first crack, peak and end at last, or its end alone; one that does not fit
-/// then either is left out.
+/// fit into its share as a whole keeps fewer moments: first crack, peak and end at last, or its end alone. One that does not fit
+/// then either, or has more than 100,000 triangles, is drawn in squares that have the means of the grains in them (squares.hpp);
+/// one that would need fewer than 1,000 squares is left out.
 std::vector<ReportFields> report_fields(std::span<const TestResult> results, std::size_t budget_B);
 
 /// The cracks of every test over the grains of its packing, one block a packing: for patterns side by side.

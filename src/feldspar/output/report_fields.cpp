@@ -13,11 +13,15 @@
 //   crack_nodes      int32    two on face a, two on face b; -1 unknown
 //   crack_strain     float32  axial strain at the break, 10^-3
 //   crack_mode       uint8    0 tensile, 1 shear
+//   crack_square     int32    the square in which it lies; -1 none; only of a specimen drawn in squares
 // and for each snapshot n:
 //   u<n>             int16    all x, then all y, each as the difference from the node before; times `scale` (mm)
 //   damage<n>        uint8    0 ... 255 for 0 ... 1
 //   sigma1_<n>, sigma3_<n>  uint8  principal stresses: 0 ... 255 between the test's limits
 //   fragment<n>      int32    grains: the piece that it belongs to, from 0 on by falling area
+//
+// A large specimen is drawn in squares (squares.hpp), which stand in the place of grains; "squares" in the meta data says how
+// large they are. Of its cracks every "crack_every"-th is there.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -25,6 +29,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -34,6 +39,7 @@
 #include "feldspar/output/fragments.hpp"
 #include "feldspar/output/report_block.hpp"
 #include "feldspar/output/report_data.hpp"
+#include "feldspar/output/squares.hpp"
 #include "feldspar/output/user_units.hpp"
 
 namespace feldspar {
@@ -153,12 +159,24 @@ double add_displacement(Block& block, const std::string& part, const std::vector
     return scale * 1e3;
 }
 
-ReportFields fields_of(const TestResult& result, std::size_t test, const std::vector<std::size_t>& chosen) {
+int tensile_ones(std::span<const Crack> cracks) {
+    return static_cast<int>(std::ranges::count(cracks, CrackMode::tensile, &Crack::mode));
+}
+
+/// @param squares  in which the result is drawn; null: grain by grain
+ReportFields fields_of(const TestResult& whole, std::size_t test, const std::vector<std::size_t>& chosen,
+                       const Squares* squares) {
+    const TestResult& result = squares != nullptr ? squares->result : whole;
     Block block;
     ReportFields fields;
     add_mesh(block, result.specimen->mesh);
     add_texture(block, fields.meta, result);
     add_cracks(block, result);
+    if (squares != nullptr) {
+        block.add("crack_square", "int32", squares->square_of_crack);
+        fields.meta["squares"] = {{"side", rounded(squares->side_m * 1e3)}, {"grains", rounded(squares->grains_in_one)}};
+        fields.meta["crack_every"] = squares->crack_every;
+    }
     std::vector<Principal> stresses;
     std::vector<double> all_1, all_3;
     for (const std::size_t n : chosen) {
@@ -187,10 +205,12 @@ ReportFields fields_of(const TestResult& result, std::size_t test, const std::ve
         block.add("sigma3_" + n, "uint8", levels(stresses[i].sigma3_MPa, limits_3));
         if (!result.specimen->cells.cells.empty())
             block.add("fragment" + n, "int32", fragments(*result.specimen, result.cracks, snapshot.cracks));
+        const int cracks = std::clamp(snapshot.cracks, 0, static_cast<int>(whole.cracks.size()));
         snapshots.push_back({{"label", snapshot.label},
                              {"strain", rounded(snapshot.axial_strain * 1e3)},
                              {"stress", rounded(snapshot.axial_stress_Pa * MPa)},
-                             {"cracks", std::clamp(snapshot.cracks, 0, static_cast<int>(result.cracks.size()))},
+                             {"cracks", cracks},
+                             {"tensile", tensile_ones(std::span(whole.cracks).first(static_cast<std::size_t>(cracks)))},
                              {"scale", scale}});
     }
     fields.meta.update(Json{{"test", test},
@@ -225,6 +245,35 @@ std::array<std::vector<std::size_t>, 4> moments_of(const TestResult& result) {
         if (named || (label.starts_with("load") && loads++ % 2 == 1)) some.push_back(n);
     }
     return {all, some, few, {result.snapshots.size() - 1}};
+}
+
+// How many triangles browsers turn and colour without a wait, on a machine without a graphics card.
+constexpr std::size_t kSmooth = 100'000;
+// Squares of a specimen with more: as many triangles as a usual specimen has.
+constexpr std::size_t kMostSquares = 16'000, kFewestSquares = 1'000;
+
+/// The fields of a test in no more than `share` characters, of as many moments as there is room for; nothing where there is room
+/// for none.
+std::optional<ReportFields> fields_within(const TestResult& result, std::size_t test, std::size_t share) {
+    const std::size_t triangles = result.specimen->mesh.triangles.size();
+    const auto tried = [&](const std::vector<std::size_t>& chosen, const Squares* squares) -> std::optional<ReportFields> {
+        if (chosen.empty()) return std::nullopt;
+        ReportFields fields = fields_of(result, test, chosen, squares);
+        if (fields.block.size() > share) return std::nullopt;
+        return fields;
+    };
+    const auto moments = moments_of(result);
+    if (triangles <= kSmooth)
+        for (const auto& chosen : moments)
+            if (auto fields = tried(chosen, nullptr)) return fields;
+    // Squares that hold less than two grains each would only be worse than the grains.
+    for (std::size_t count = std::min(kMostSquares, result.specimen->mesh.vertex_count.size() / 2); count >= kFewestSquares;
+         count /= 2) {
+        const Squares squares = in_squares(result, count);
+        for (const auto& chosen : moments)
+            if (auto fields = tried(chosen, &squares)) return fields;
+    }
+    return std::nullopt;
 }
 
 /// A test whose fields are to be kept.
@@ -304,15 +353,11 @@ std::vector<ReportFields> report_fields(std::span<const TestResult> results, std
     for (const Candidate& test : tests) {                    // each passes on what it does not need
         const auto share = static_cast<std::size_t>(static_cast<double>(budget_B) * std::min(1.0, test.weight / weights));
         weights -= test.weight;
-        for (const auto& chosen : moments_of(results[test.result])) {
-            if (chosen.empty()) continue;
-            ReportFields fields = fields_of(results[test.result], test.result, chosen);
-            if (fields.block.size() > share) continue;
-            budget_B -= fields.block.size();
-            fields.meta["role"] = test.role;
-            list.emplace_back(test.group, std::move(fields));
-            break;
-        }
+        std::optional<ReportFields> fields = fields_within(results[test.result], test.result, share);
+        if (!fields) continue;
+        budget_B -= fields->block.size();
+        fields->meta["role"] = test.role;
+        list.emplace_back(test.group, std::move(*fields));
     }
     std::ranges::stable_sort(list, {}, [](const auto& one) { return one.first; });
     std::vector<ReportFields> fields;

@@ -1,9 +1,9 @@
 // Failure patterns side by side: of each packing the grains once, and of every test on it the cracks.
 //
 // Parts of a block (report_block.hpp), all coordinates in steps of `scale` from (x0, y0), in mm and undeformed:
-//   begin     int32   grains + 1
-//   points    uint16  x, y of the outline of each grain
-// and for each test k on the packing:
+//   begin     int32   outlines + 1
+//   points    uint16  x, y of the outline of each grain; of many grains each edge on the border of the specimen instead
+// and for each test k on the packing, of many cracks every "crack_every"-th:
 //   ends<k>   uint16  x, y of both ends of each crack, in the order in which they broke
 //   mode<k>   uint8   0 tensile, 1 shear
 #include <algorithm>
@@ -12,6 +12,7 @@
 
 #include "feldspar/output/report_block.hpp"
 #include "feldspar/output/report_data.hpp"
+#include "feldspar/output/squares.hpp"
 
 namespace feldspar {
 
@@ -38,9 +39,25 @@ struct Steps {
     }
 };
 
-void add_outlines(Block& block, const GrainMesh& mesh, const Steps& steps) {
+// Finer grains than these are finer than the lines of such a picture.
+constexpr std::size_t kMostOutlines = 20'000;
+
+void add_outlines(Block& block, const Specimen& specimen, const Steps& steps) {
+    const GrainMesh& mesh = specimen.mesh;
     std::vector<int> begin{0};
     std::vector<std::uint16_t> points;
+    if (mesh.vertex_count.size() > kMostOutlines) {
+        for (const Cell& cell : specimen.cells.cells)
+            for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
+                if (cell.neighbours[k] >= 0) continue;
+                for (const std::size_t end : {k, (k + 1) % cell.vertices.size()})
+                    steps.add(points, specimen.cells.vertices[static_cast<std::size_t>(cell.vertices[end])]);
+                begin.push_back(static_cast<int>(points.size() / 2));
+            }
+        block.add("begin", "int32", begin);
+        block.add("points", "uint16", points);
+        return;
+    }
     for (std::size_t g = 0; g < mesh.vertex_count.size(); ++g) {
         for (int k = 0; k < mesh.vertex_count[g]; ++k)
             steps.add(points, mesh.nodes[static_cast<std::size_t>(mesh.node_begin[g] + k)]);
@@ -50,16 +67,20 @@ void add_outlines(Block& block, const GrainMesh& mesh, const Steps& steps) {
     block.add("points", "uint16", points);
 }
 
-void add_cracks(Block& block, const std::string& number, const TestResult& result, const Steps& steps) {
+/// @return how many cracks each that is drawn stands for
+std::size_t add_cracks(Block& block, const std::string& number, const TestResult& result, const Steps& steps) {
+    const auto every = static_cast<std::size_t>(cracks_for_one(result.cracks.size()));
     std::vector<std::uint16_t> ends;
     std::vector<std::uint8_t> mode;
-    for (const Crack& crack : result.cracks) {
+    for (std::size_t c = 0; c < result.cracks.size(); c += every) {
+        const Crack& crack = result.cracks[c];
         steps.add(ends, crack.from);
         steps.add(ends, crack.to);
         mode.push_back(static_cast<std::uint8_t>(crack.mode));
     }
     block.add("ends" + number, "uint16", ends);
     block.add("mode" + number, "uint8", mode);
+    return every;
 }
 
 int cracks_at_peak(const TestResult& result) {
@@ -79,12 +100,12 @@ std::vector<ReportFields> report_patterns(std::span<const TestResult> results) {
         seen.push_back(specimen);
         const Steps steps(specimen->mesh.nodes);
         Block block;
-        add_outlines(block, specimen->mesh, steps);
+        add_outlines(block, *specimen, steps);
         Json tests = Json::array();
         for (std::size_t r = 0; r < results.size(); ++r) {
             if (results[r].specimen.get() != specimen) continue;
-            add_cracks(block, std::to_string(tests.size()), results[r], steps);
-            tests.push_back({{"test", r}, {"at_peak", cracks_at_peak(results[r])}});
+            const std::size_t every = add_cracks(block, std::to_string(tests.size()), results[r], steps);
+            tests.push_back({{"test", r}, {"at_peak", cracks_at_peak(results[r])}, {"crack_every", every}});
         }
         ReportFields pattern;
         pattern.meta = {{"x0", rounded(steps.low.x * 1e3)},

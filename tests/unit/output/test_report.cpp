@@ -11,6 +11,7 @@
 #include "feldspar/output/fragments.hpp"
 #include "feldspar/output/report_data.hpp"
 #include "feldspar/output/results.hpp"
+#include "feldspar/output/squares.hpp"
 #include "feldspar/output/variant_summary.hpp"
 #include "synthetic_result.hpp"
 
@@ -218,7 +219,7 @@ TEST_F(Report, OfNoResultsIsWhole) {
 template <class Number>
 std::vector<Number> part(const ReportFields& fields, const std::string& name) {
     const std::vector<std::uint8_t> packed = from_base64(fields.block);
-    std::vector<std::uint8_t> bytes(1 << 20);
+    std::vector<std::uint8_t> bytes(1 << 23);
     uLongf size = bytes.size();
     EXPECT_EQ(uncompress(bytes.data(), &size, packed.data(), packed.size()), Z_OK);
     const auto& place = fields.meta["parts"][name];
@@ -285,6 +286,60 @@ TEST(ReportFields, AreOfTheMedianTheWeakestAndTheStrongestPacking) {
     ASSERT_GE(scarce.size(), 2U);
     EXPECT_EQ(scarce[0].meta["role"], "median");
     EXPECT_EQ(scarce.back().meta["test"], 5U);
+}
+
+// A wall of 200 x 200 grains, whose squares of 2 mm have four grains each.
+TEST(Squares, HaveTheMeansOfTheGrainsInThem) {
+    TestResult result = make_result(methods::uniaxial_compression, 3, 200, 200);
+    const auto stress_of = [](std::size_t grain) { return 1e6 * static_cast<double>(grain % 7); };
+    Snapshot& snapshot = result.snapshots.back();
+    for (std::size_t t = 0; t < snapshot.stress_xx_Pa.size(); ++t) {
+        snapshot.stress_xx_Pa[t] = stress_of(t / 4);
+        snapshot.damage[t] = t / 4 == 0 ? 1.0F : 0.0F;
+    }
+    for (std::size_t n = 0; n < snapshot.displacement_m.size(); ++n)
+        snapshot.displacement_m[n] = 1e-3 * result.specimen->mesh.nodes[n];
+    result.cracks.assign(100'001, result.cracks.front());
+    for (std::size_t c = 0; c < result.cracks.size(); ++c) result.cracks[c].place = {0.101, 0.0505};  // square 50 of row 25
+    const Squares squares = in_squares(result, 10'000);
+    EXPECT_NEAR(squares.side_m, 2e-3, 1e-12);
+    EXPECT_DOUBLE_EQ(squares.grains_in_one, 4.0);
+    const GrainMesh& mesh = squares.result.specimen->mesh;
+    ASSERT_EQ(mesh.vertex_count.size(), 10'000U);
+    const Snapshot& drawn = squares.result.snapshots.back();
+    for (const std::size_t square : {0UL, 77UL, 9999UL}) {
+        const std::size_t first = 2 * (square % 100) + 400 * (square / 100);  // the grain at its lower left
+        const double mean = 0.25 * (stress_of(first) + stress_of(first + 1) + stress_of(first + 200) + stress_of(first + 201));
+        EXPECT_NEAR(drawn.stress_xx_Pa[2 * square], mean, 1e-6);
+        EXPECT_EQ(drawn.stress_xx_Pa[2 * square + 1], drawn.stress_xx_Pa[2 * square]);
+    }
+    EXPECT_NEAR(drawn.damage[0], 0.25, 1e-6);
+    EXPECT_EQ(drawn.damage[2], 0.0F);
+    const int inner = 4 * (25 * 100 + 50);  // its lower left corner, around which the wall is the same in all directions
+    EXPECT_NEAR(mesh.nodes[inner].x, 0.100, 1e-12);
+    EXPECT_NEAR(drawn.displacement_m[inner].x, 1e-3 * 0.100, 1e-9);
+    EXPECT_NEAR(drawn.displacement_m[inner].y, 1e-3 * 0.050, 1e-9);
+    EXPECT_EQ(squares.crack_every, 3);
+    EXPECT_EQ(squares.result.cracks.size(), 33'334U);
+    EXPECT_EQ(squares.square_of_crack.back(), 25 * 100 + 50);
+}
+
+TEST(Squares, StandForASpecimenThatIsTooLargeToDraw) {
+    const std::vector<TestResult> results = {make_result(methods::uniaxial_compression, 3, 200, 200)};
+    const auto list = report_fields(results, 4 << 20);
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_NEAR(list[0].meta["squares"]["grains"].get<double>(), 2.5, 0.05);  // whole numbers of rows and columns
+    EXPECT_EQ(list[0].meta["snapshots"].size(), 3U);
+    EXPECT_EQ(list[0].meta["snapshots"][2]["cracks"], 2);
+    EXPECT_EQ(list[0].meta["snapshots"][2]["tensile"], 1);
+    EXPECT_EQ(part<std::int32_t>(list[0], "crack_square").size(), 2U);
+    const auto tight = report_fields(results, list[0].block.size() / 3);  // fewer moments first, then larger squares
+    ASSERT_EQ(tight.size(), 1U);
+    EXPECT_LE(tight[0].block.size(), list[0].block.size() / 3);
+    EXPECT_TRUE(tight[0].meta.contains("squares"));
+    EXPECT_FALSE(report_fields(std::vector{make_result()}, 1 << 20)[0].meta.contains("squares")) << "a small one has its grains";
+    const auto patterns = report_patterns(results);
+    EXPECT_EQ(part<std::int32_t>(patterns[0], "begin").size(), 801U) << "the border of the wall, not its grains";
 }
 
 TEST(Fragments, HangTogetherWhileATenthOfTheirEdgeIsWhole) {

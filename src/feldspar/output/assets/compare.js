@@ -144,12 +144,12 @@ async function drawPatterns(host, tests, moment) {
   const found = await Promise.all(tests.map(patternOf));
   const cards = tests.map((t, n) => {
     if (!found[n]) return null;
-    const [meta, parts, k] = found[n], mode = parts["mode" + k], count = moment === "peak" ? Math.min(meta.tests[k].at_peak, mode.length) : mode.length;
+    const [meta, parts, k] = found[n], mode = parts["mode" + k], every = meta.tests[k].crack_every || 1, count = moment === "peak" ? Math.min(Math.ceil(meta.tests[k].at_peak / every), mode.length) : mode.length;
     let shear = 0;
     for (let c = 0; c < count; ++c) shear += mode[c];
     const canvas = h("canvas", {role: "img", "aria-label": "Failure pattern of " + t.variant});
     return {canvas, draw: () => paintPattern(canvas, meta, parts, k, count),
-      element: h("figure", {}, h("figcaption", {}, swatch(variantIndex(t)), t.variant), canvas, h("div", {class: "soft tiny"}, show(t.peak) + " MPa \u00b7 " + (count - shear) + " tensile, " + shear + " shear"))};
+      element: h("figure", {}, h("figcaption", {}, swatch(variantIndex(t)), t.variant), canvas, h("div", {class: "soft tiny"}, show(t.peak) + " MPa \u00b7 " + (every > 1 ? "about " : "") + every * (count - shear) + " tensile, " + every * shear + " shear"))};
   }).filter(Boolean);
   host.style.setProperty("--columns", cards.length > 5 ? Math.min(6, Math.ceil(cards.length / 2)) : Math.max(2, cards.length));
   host.replaceChildren(...cards.map((c) => c.element));

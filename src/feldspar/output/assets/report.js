@@ -783,6 +783,10 @@ function writePattern() {
       const piece = specimen.parts["fragment" + viewer.snapshot];
       crackKey.append(h("span", {}, !piece ? "The pieces are not known." : piece.some((p) => p > 0) ? plural(1 + piece.reduce((most, p) => Math.max(most, p), 0), "piece") + ", the largest without colour" : "all in one piece"));
     }
+    if (specimen && specimen.meta.squares) {
+      const {squares: {side, grains}, crack_every: every} = specimen.meta;
+      crackKey.append(h("span", {}, "Drawn in squares of " + show(side) + " mm: means over about " + show(grains, 2) + " grains each" + (every > 1 ? "; one crack in " + every + " is drawn" : "") + "."));
+    }
     if (specimen && specimen.parts.joint_ends) crackKey.append(key("var(--ink)", "joint before the test, dashed"));
     if (viewer.cracks === "mode") crackKey.append(key("var(--tensile)", "tensile crack"), key("var(--shear)", "shear crack"));
     if (viewer.cracks === "time") {
@@ -797,10 +801,8 @@ function writePattern() {
   }
   function showMoment() {
     const s = specimen.state(viewer.moment), test = data.tests[specimen.meta.test];
-    let tensile = 0;
-    for (let c = 0; c < s.cracks; ++c) tensile += specimen.parts.crack_mode[c] === 0 ? 1 : 0;
     moment.replaceChildren(h("strong", {}, s.label.replaceAll("-", " ")), s.share > 0 ? "" : " (" + (s.n + 1) + " of " + specimen.meta.snapshots.length + ")", "  \u00b7  strain " + show(s.strain) + "\u00b710\u207b\u00b3  \u00b7  stress " + show(s.stress) + " MPa  \u00b7  " +
-      tensile + " tensile, " + (s.cracks - tensile) + " shear cracks");
+      s.tensile + " tensile, " + (s.cracks - s.tensile) + " shear cracks");
     if (viewer.field === "fragments") showScale();
     drawRosette(rosette, specimen, viewer.moment);
     const all = specimen.meta.snapshots;

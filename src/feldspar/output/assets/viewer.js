@@ -86,7 +86,8 @@ class Specimen {
   state(moment) {
     const n = Math.floor(moment), share = moment - n, all = this.meta.snapshots, a = all[n], b = all[Math.min(n + 1, all.length - 1)];
     const mix = (key) => a[key] + share * (b[key] - a[key]);
-    return {n, share, cracks: Math.round(mix("cracks")), strain: mix("strain"), stress: mix("stress"), label: share > 0 ? "between " + a.label + " and " + b.label : a.label};
+    const cracks = Math.round(mix("cracks"));
+    return {n, share, cracks, drawn: Math.ceil(cracks / (this.meta.crack_every || 1)), tensile: Math.min(cracks, Math.round(mix("tensile"))), strain: mix("strain"), stress: mix("stress"), label: share > 0 ? "between " + a.label + " and " + b.label : a.label};
   }
 
   /** Positions at a moment with displacements times `magnify`, mm: x, y of each node. */
@@ -207,7 +208,7 @@ class Specimen {
   wideOpening() {
     if (this.wide === undefined) {
       const last = this.meta.snapshots.length - 1, u = this.displacement(last), list = [];
-      for (let c = 0; c < this.meta.snapshots[last].cracks; ++c) { const w = this.opening(c, u); if (w > 0) list.push(w); }
+      for (let c = 0; c < this.state(last).drawn; ++c) { const w = this.opening(c, u); if (w > 0) list.push(w); }
       list.sort((a, b) => a - b);
       this.wide = list.length ? list[Math.floor(0.9 * (list.length - 1))] : 0;
     }
@@ -216,7 +217,13 @@ class Specimen {
 
   /** Ends of crack c, midway between its faces, mm. */
   crack(c, positions) {
-    const {crack_ends: ends, crack_nodes: faces, nodes} = this.parts, out = [0, 0, 0, 0];
+    const {crack_ends: ends, crack_nodes: faces, crack_square: squares, nodes} = this.parts, out = [0, 0, 0, 0];
+    if (squares) {   // moves as its square does
+      let ux = 0, uy = 0;
+      const q = squares[c];
+      for (let i = 4 * q; q >= 0 && i < 4 * q + 4; ++i) { ux += (positions[2 * i] - nodes[2 * i]) / 4; uy += (positions[2 * i + 1] - nodes[2 * i + 1]) / 4; }
+      return [ends[4 * c] + ux, ends[4 * c + 1] + uy, ends[4 * c + 2] + ux, ends[4 * c + 3] + uy];
+    }
     for (let end = 0; end < 2; ++end) {
       const x = ends[4 * c + 2 * end], y = ends[4 * c + 2 * end + 1];
       let found = 0;
@@ -362,7 +369,7 @@ class Viewer {
     if (t === undefined || t < 0) { this.readout.textContent = ""; return; }
     const s = this.specimen, n = this.snapshot, kind = fieldKinds[this.field], piece = s.parts["fragment" + n];
     const value = (field) => { const [low, high] = s.meta[field]; return low + (s.parts[field + "_" + n][t] / 255) * (high - low); };
-    this.readout.textContent = "grain " + s.grain[t] + (s.meta.minerals ? ", " + s.meta.minerals[s.parts.phase[s.grain[t]]].name : "") + "  \u00b7  \u03c3\u2081 \u2248 " + show(value("sigma1")) + " MPa  \u00b7  \u03c3\u2083 \u2248 " +
+    this.readout.textContent = (s.meta.squares ? "square of " + show(s.meta.squares.side) + " mm" : "grain " + s.grain[t]) + (s.meta.minerals ? ", " + s.meta.minerals[s.parts.phase[s.grain[t]]].name : "") + "  \u00b7  \u03c3\u2081 \u2248 " + show(value("sigma1")) + " MPa  \u00b7  \u03c3\u2083 \u2248 " +
       show(value("sigma3")) + " MPa  \u00b7  damage " + show(s.parts["damage" + n][t] / 255, 2) + (kind.derived ? "  \u00b7  " + kind.label.replace(/ [(\u03c3].*/, "") + " " + show(s.derived(this.field, n)[t]) + " " + kind.unit : "") +
       (this.field === "fragments" && piece ? "  \u00b7  piece " + (piece[s.grain[t]] + 1) : "");
   }
@@ -412,6 +419,7 @@ class Viewer {
       for (let t = 0; t < count; ++t) {
         const number = piece ? piece[s.grain[t]] : 0;
         const [r, g, b] = number > 0 ? pieces[(number - 1) % pieces.length] : minerals.length && !piece ? minerals[s.parts.phase[s.grain[t]]] : plain;
+        if (s.meta.squares) { colors[t] = (255 << 24) | (b << 16) | (g << 8) | r; continue; }
         const unit = s.parts.crystal ? s.parts.crystal[s.grain[t]] : s.grain[t];
         const shade = 1 - (s.parts.crystal ? 0.15 : 0.075) * (((unit * 2654435761) >>> 0) / 4294967296);   // neighbours differ a little
         colors[t] = (255 << 24) | (Math.round(b * shade) << 16) | (Math.round(g * shade) << 8) | Math.round(r * shade);
@@ -429,6 +437,7 @@ class Viewer {
   }
 
   paintGrainEdges(ctx, px, py) {
+    if (this.specimen.meta.squares) return;
     const {node_begin: begin, vertex_count: corners} = this.specimen.parts;
     ctx.beginPath();
     for (let g = 0; g < corners.length; ++g) {
@@ -461,7 +470,7 @@ class Viewer {
 
   paintCracks(ctx, positions) {
     if (this.cracks === "none") return;
-    const s = this.specimen, {crack_mode: mode, crack_strain: strain} = s.parts, count = s.state(this.moment).cracks;
+    const s = this.specimen, {crack_mode: mode, crack_strain: strain} = s.parts, count = s.state(this.moment).drawn;
     const u = this.cracks === "opening" ? s.displacementAt(this.moment) : null, wide = u ? s.wideOpening() || 1 : 1;
     const groups = new Map();   // colour -> lines
     const table = palette("viridis"), [first, last] = this.crackTimes();
@@ -498,9 +507,10 @@ class Viewer {
   /** Points at cracks with a name, once they are there. */
   paintMarks(ctx, positions) {
     const s = this.specimen, count = s.state(this.moment).cracks;
+    const every = s.meta.crack_every || 1;
     for (const {crack, look: [color, mark, size]} of this.marksOf(s.meta.test)) {
-      if (crack >= count) continue;
-      const [x0, y0, x1, y1] = s.crack(crack, positions);
+      if (crack >= count || crack % every) continue;
+      const [x0, y0, x1, y1] = s.crack(crack / every, positions);
       const x = this.canvas.width / 2 + ((x0 + x1) / 2 - this.cx) * this.scale, y = this.canvas.height / 2 - ((y0 + y1) / 2 - this.cy) * this.scale;
       drawMark(ctx, mark, x, y, (size + 3.5) * this.dpr, theme.get("halo"));
       drawMark(ctx, mark, x, y, (size + 1.5) * this.dpr, color);
@@ -552,7 +562,7 @@ class Viewer {
 function drawRosette(canvas, specimen, moment) {
   const bins = 18, length = [new Float64Array(bins), new Float64Array(bins)];
   const {crack_ends: ends, crack_mode: mode} = specimen.parts;
-  for (let c = 0; c < specimen.state(moment).cracks; ++c) {
+  for (let c = 0; c < specimen.state(moment).drawn; ++c) {
     const dx = ends[4 * c + 2] - ends[4 * c], dy = ends[4 * c + 3] - ends[4 * c + 1];
     const angle = (Math.atan2(dx, dy) + 2 * Math.PI) % Math.PI;   // clockwise from the loading axis, 0 ... pi
     length[mode[c]][Math.min(bins - 1, Math.floor((angle / Math.PI) * bins))] += Math.hypot(dx, dy);

@@ -1,0 +1,32 @@
+// A large specimen in squares, for pictures: no screen shows a million grains, and no browser draws them. Internal to this room.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "feldspar/methods/result.hpp"
+
+namespace feldspar {
+
+/// A result with squares in the place of grains. Each is two triangles, of one stress and one damage: the means over what lies
+/// in it, weighted by area. Its corners move as the mean of what lies in the squares around them.
+struct Squares {
+    TestResult
+        result;  ///< mesh, snapshots, minerals (in each square that with the largest area) and cracks; no contacts, no cells
+    double side_m = 0.0;
+    double grains_in_one = 0.0;        ///< mean number
+    int crack_every = 1;               ///< so many cracks of the test stand for one here
+    std::vector<int> square_of_crack;  ///< of those that are here; -1: in none
+};
+
+/// The most cracks that a picture has. @return of a test with more of them, how many stand for one that is drawn; else 1
+inline constexpr std::size_t most_cracks_drawn = 40'000;
+constexpr int cracks_for_one(std::size_t cracks) {
+    return static_cast<int>((cracks + most_cracks_drawn - 1) / most_cracks_drawn) + (cracks == 0 ? 1 : 0);
+}
+
+/// @param result  with a specimen, and snapshots of its mesh
+/// @param count   of squares that would cover the specimen's area, at least 1
+Squares in_squares(const TestResult& result, std::size_t count);
+
+}  // namespace feldspar
