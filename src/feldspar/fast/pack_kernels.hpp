@@ -178,14 +178,14 @@ FELDSPAR_APART PointForces update_points(const KernelArrays& a, const KernelStep
 template <bool own>
 FELDSPAR_INLINE decltype(auto) law_of(const KernelArrays& a, const ContactPack& pack, Chunk chunk) {
     if constexpr (own) {
-        [[maybe_unused]] const int at = pack.first_law + chunk.begin, count = chunk.count;
-        const auto lanes = [&](const double* constant) FELDSPAR_LAMBDA { return load(constant + at, count); };
+        const int at = pack.first_law + chunk.begin;
 #if FELDSPAR_LANES == 1
         const auto of_lane = [&](const double* constant) { return constant[at]; };
         return bond_law<double>(
             a.own_form, {of_lane(a.own.Kn_Pa_m), of_lane(a.own.Ks_Pa_m), of_lane(a.own.x0_normal), of_lane(a.own.x0_shear),
                          of_lane(a.own.x_fl_normal), of_lane(a.own.x_fl_shear), of_lane(a.own.mu)});
 #else
+        const auto lanes = [&](const double* constant) FELDSPAR_LAMBDA { return load(constant + at, chunk.count); };
         return bond_law<Real>(a.own_form,
                               {lanes(a.own.Kn_Pa_m), lanes(a.own.Ks_Pa_m), lanes(a.own.x0_normal), lanes(a.own.x0_shear),
                                lanes(a.own.x_fl_normal), lanes(a.own.x_fl_shear), lanes(a.own.mu)});
