@@ -37,6 +37,21 @@ TEST(Masses, RealOnesAddUpToTheSpecimens) {
     }
 }
 
+TEST(Masses, WeightIsThatOfTheSpecimenAndTurnsNothing) {
+    const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.03));
+    const double whole_kg = kDensity * 0.02 * 0.03 * specimen->spec.thickness_m;
+    for (const GrainKind grains : {GrainKind::flexible, GrainKind::rigid}) {
+        const Assembly assembly = of(*specimen, grains);
+        Vec2 sum;
+        for (const Vec2 weight : weights(assembly, {2.0, -9.81})) sum += weight;
+        EXPECT_NEAR(sum.x, 2.0 * whole_kg, 1e-9 * whole_kg);
+        EXPECT_NEAR(sum.y, -9.81 * whole_kg, 1e-9 * whole_kg);
+        if (grains == GrainKind::rigid) {
+            EXPECT_EQ(weights(assembly, {2.0, -9.81})[assembly.bodies[5].centre_node + 1], Vec2{});
+        }
+    }
+}
+
 // The rotation of a rigid body is an arc at its radius, so its inertia counts as a mass at that radius: m (gyration / radius)^2.
 TEST(Masses, OfTheRotationIsTheMomentOfInertiaOverTheRadiusSquared) {
     const auto specimen = fixtures::make(fixtures::rectangle(0.02, 0.03));
@@ -60,6 +75,8 @@ TEST(Masses, ScaledOnesAreInProportionToTheFactorAndTheTensorIsTheTighterBound) 
         double tensor_kg = 0.0, rows_kg = 0.0;
         for (int n = 0; n < one.nodes.count(); ++n) {
             EXPECT_NEAR(two.nodes.mass[n], 2.0 * one.nodes.mass[n], 1e-12 * two.nodes.mass[n]);
+            // The largest eigenvalue of a 2 x 2 matrix is at least half its larger sum of a row.
+            EXPECT_GE(one.nodes.mass[n], 0.5 * (1.0 - 1e-12) * rows.nodes.mass[n]);
             tensor_kg += one.nodes.mass[n];
             rows_kg += rows.nodes.mass[n];
         }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "feldspar/base/error.hpp"
+#include "feldspar/base/rng.hpp"
 #include "feldspar/geometry/polygon.hpp"
 #include "feldspar/model/assemble.hpp"
 #include "feldspar/model/joints.hpp"
@@ -30,7 +32,8 @@ Texture texture(const Heterogeneity& rock, const Specimen& specimen = plate()) {
 }
 
 // The largest distance between the shares of a sample below its values and those of the distribution.
-double kolmogorov_smirnov(std::vector<double> sample, double (*share)(double, double), double parameter) {
+template <class Share>
+double kolmogorov_smirnov(std::vector<double> sample, Share share, double parameter) {
     std::sort(sample.begin(), sample.end());
     double largest = 0.0;
     const double n = static_cast<double>(sample.size());
@@ -93,6 +96,27 @@ TEST(Scatter, IsCutOffAtBothEnds) {
     EXPECT_GE(*std::min_element(f.begin(), f.end()), 0.3);
     EXPECT_LE(*std::max_element(f.begin(), f.end()), 1.6);
     EXPECT_LT(std::count(f.begin(), f.end(), 0.3), 3);  // cut off, not heaped up there
+}
+
+// What is left between the ends has the distribution's own shape.
+TEST(Scatter, ThatIsCutOffKeepsItsShapeBetween) {
+    const auto cut = [](auto share, double low, double high) {
+        return [=](double f, double parameter) {
+            return (share(f, parameter) - share(low, parameter)) / (share(high, parameter) - share(low, parameter));
+        };
+    };
+    Heterogeneity rock;
+    const double limit = 1.63 / std::sqrt(static_cast<double>(strengths(rock).size()));  // at 1 %
+    rock.scatter[Scattered::strength] = {
+        .kind = DistributionKind::weibull, .weibull_modulus = 1.5, .lowest = 0.3, .highest = 1.6};
+    const auto weibull = [](double f, double m) { return 1.0 - std::exp(-std::pow(f * std::tgamma(1.0 + 1.0 / m), m)); };
+    EXPECT_LT(kolmogorov_smirnov(strengths(rock), cut(weibull, 0.3, 1.6), 1.5), limit);
+    rock.scatter[Scattered::strength] = {.kind = DistributionKind::log_normal, .variation = 0.6, .lowest = 0.8, .highest = 2.0};
+    const auto log_normal = [](double f, double v) {
+        const double s = std::sqrt(std::log1p(v * v));
+        return 0.5 * std::erfc(-(std::log(f) / s + 0.5 * s) / std::numbers::sqrt2);
+    };
+    EXPECT_LT(kolmogorov_smirnov(strengths(rock), cut(log_normal, 0.8, 2.0), 0.6), limit);
 }
 
 TEST(Scatter, IsDrawnByTheGrainsThatAContactJoins) {
@@ -203,6 +227,27 @@ TEST(Minerals, ComeFromAListOrAMap) {
     map.phase.resize(60 * 100);
     rock.minerals.map = std::make_shared<PhaseMap>(map);
     EXPECT_THROW(texture(rock), InputError);  // another shape than the specimen
+}
+
+// A map finer than the grains: each grain is of the mineral with most pixels in it, not of the one in its middle.
+TEST(Minerals, OfAFineMapAreThoseOfMostPixels) {
+    Heterogeneity rock = granite_of_four();
+    PhaseMap map{120, 240, {}};  // 0.5 mm a pixel
+    RandomStream random(5, "pixels");
+    for (int pixel = 0; pixel < 120 * 240; ++pixel) map.phase.push_back(static_cast<std::int8_t>(random.uniform() < 0.5 ? 0 : 3));
+    rock.minerals.map = std::make_shared<PhaseMap>(map);
+    const Texture t = texture(rock);
+    for (int c = 0; c < std::ssize(plate().cells.cells); ++c) {
+        const std::vector<Vec2> corners = corners_of_cell(plate().cells, c);
+        std::array<int, 4> votes{};
+        for (int row = 0; row < 240; ++row)
+            for (int column = 0; column < 120; ++column)
+                if (contains(corners, {(column + 0.5) * 0.5e-3, 0.12 - (row + 0.5) * 0.5e-3}))
+                    ++votes[static_cast<std::size_t>(map.phase[static_cast<std::size_t>(row) * 120 + column])];
+        if (votes[0] != votes[3]) {
+            EXPECT_EQ(t.phases()[c], votes[0] > votes[3] ? 0 : 3) << c;
+        }
+    }
 }
 
 // Where minerals have sizes of their own the packing says which cell is of which, and the summary what they came to.

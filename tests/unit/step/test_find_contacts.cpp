@@ -36,6 +36,38 @@ TEST(FindContacts, IntactBodiesGetNoneBeside) {
     EXPECT_EQ(changes.dropped, 0);
 }
 
+TEST(FindContacts, IntactOnesAreNeverDropped) {
+    Assembly assembly = bar();
+    ContactFinder finder(assembly, 1e-3);
+    lift_upper(assembly, 0.01);
+    EXPECT_EQ(finder.update(assembly, 0.0).dropped, 0);
+}
+
+// Bodies that overlap at the start without a contact, as discs of a packing may, begin one when they come nearer than they were.
+TEST(FindContacts, OverlapsOfTheStartAreAtRest) {
+    Assembly assembly = bar();
+    for (Contact& contact : assembly.contacts) contact.dropped = true;
+    lift_upper(assembly, -1e-3);
+    ContactFinder finder(assembly, 1e-2);
+    lift_upper(assembly, 1e-4);
+    EXPECT_EQ(finder.update(assembly, 0.0).made, 0) << "they still overlap, by less than at the start";
+    lift_upper(assembly, -1e-4 - 1e-6);
+    EXPECT_EQ(finder.update(assembly, 0.0).made, 1);
+}
+
+// What comes from beyond the skin is found once it has come half of it: bodies that were no candidates.
+TEST(FindContacts, BodiesThatWereFarApartMeet) {
+    Assembly assembly = bar();
+    for (Contact& contact : assembly.contacts) contact.dropped = true;
+    constexpr double kSkin = 1e-3;
+    lift_upper(assembly, 5.0 * kSkin);
+    ContactFinder finder(assembly, kSkin);
+    lift_upper(assembly, -4.0 * kSkin);
+    EXPECT_EQ(finder.update(assembly, 0.0).made, 0) << "a gap of the skin is left";
+    lift_upper(assembly, -1.1 * kSkin);
+    EXPECT_EQ(finder.update(assembly, 0.0).made, 1);
+}
+
 // A broken contact that is open beyond its closing distance is dropped; when the grains meet again a frictional one begins, once.
 TEST(FindContacts, BrokenOnesAreDroppedWhenOpenAndBeginAgainWithAnOverlap) {
     Assembly assembly = bar();

@@ -80,3 +80,27 @@ TEST(Steps, InOneBlockOrOneByOneLeaveTheSameBits) {
         EXPECT_EQ(block.platen_work.loading, single.platen_work.loading);
     }
 }
+
+// Two plates' nodes with forces: what is imposed does not follow them, and that is the reaction.
+TEST(Reactions, AreWhatIsImposedFeels) {
+    Assembly assembly;
+    for (int n = 0; n < 3; ++n) assembly.nodes.add({}, {1.0, 1.0});
+    assembly.nodes.force = {{1.0, 10.0}, {2.0, 20.0}, {5.0, 70.0}};
+    Fixture rest, loading;
+    rest.nodes = {0, 1};
+    rest.imposed = {1.0, 1.0};
+    loading.nodes = {2};
+    loading.imposed = {0.0, 1.0};
+    loading.motion = {0.0, -1.0};
+    assembly.fixtures = {rest, loading};
+    EXPECT_EQ(reaction(assembly, rest).x, 3.0);
+    EXPECT_EQ(reaction(assembly, rest).y, 30.0);
+    EXPECT_EQ(reaction(assembly, loading).x, 0.0) << "free to slide";
+    EXPECT_EQ(reaction(assembly, loading).y, 70.0);
+    EXPECT_EQ(loading_reaction(assembly), 70.0) << "pushed down against what pushes up";
+    const Reactions both = reactions(assembly);
+    EXPECT_EQ(both.loading, 70.0);
+    EXPECT_EQ(both.rest, -30.0);
+    assembly.weight = {{0.0, 0.0}, {0.0, -4.0}, {0.0, -6.0}};
+    EXPECT_EQ(reactions(assembly).rest, -40.0) << "who holds the specimen holds its weight";
+}

@@ -61,6 +61,8 @@ TEST_F(ExecuteStudy, DoesEveryRunOnceAndLeavesItsFiles) {
     const auto points = point_results(study, ledger);
     ASSERT_EQ(points.size(), 2u);
     EXPECT_EQ(points[0].missing, 0);
+    EXPECT_EQ(points[0].results.size(), 2u);
+    EXPECT_EQ(points[1].results.size(), 2u);
     EXPECT_EQ(points[0].properties.values.at("DTS_Pa").seeds, (std::vector<std::uint64_t>{1, 2}));
     EXPECT_NE(points_csv(study, points).find("DTS_MPa,DTS_MPa_low"), std::string::npos);
     EXPECT_NE(runs_csv(study, ledger).find(study.runs[0].id), std::string::npos);

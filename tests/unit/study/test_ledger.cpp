@@ -216,6 +216,7 @@ TEST_F(LedgerOfAStudy, SaysWhichRunsAStudyConsistsOf) {
     ledger.enrol(study_);
     EXPECT_EQ(raw().execAndGet("SELECT count(*) FROM member WHERE study = 'study'").getInt(), 8);
     EXPECT_EQ(raw().execAndGet("SELECT count(*) FROM member WHERE axis = 'mu' AND number = 0.5").getInt(), 4);
+    EXPECT_EQ(raw().execAndGet("SELECT count(*) FROM member WHERE number = 0.5 AND label = '0.5'").getInt(), 4);
 }
 
 TEST_F(LedgerOfAStudy, LearnsColumnsThatAnEarlierVersionDidNotKnow) {
