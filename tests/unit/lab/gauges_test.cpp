@@ -54,5 +54,37 @@ TEST(Gauge, PointsOnALineGiveTheSlopeAlongIt) {
     for (const double w : weights.x) EXPECT_EQ(w, 0.0);
 }
 
+// Grains at these places, each a body with one node.
+Assembly grains_at(const std::vector<Vec2>& places) {
+    Assembly assembly;
+    for (const Vec2 place : places) {
+        Body body;
+        body.centre_node = assembly.nodes.add(place, {1.0, 1.0});
+        assembly.bodies.push_back(body);
+    }
+    return assembly;
+}
+
+// A disc that is strained in its middle only, and moves wildly from a quarter of its radius on; a plate from a quarter of its
+// height on.
+TEST(Gauge, LooksAtTheMiddleOfTheSpecimen) {
+    const std::vector<Vec2> places = scattered(4000, {-0.04, -0.04}, 0.08, 0.08);
+    for (const bool disc : {true, false}) {
+        Specimen specimen;
+        specimen.outline.is_disc = disc;
+        specimen.outline.radius_m = 0.04;
+        specimen.mesh.nodes = {{-0.04, -0.04}, {0.04, 0.04}};
+        Assembly assembly = grains_at(places);
+        const StrainGauge gauge(assembly, specimen);
+        for (std::size_t g = 0; g < places.size(); ++g) {
+            const bool middle = disc ? norm(places[g]) < 0.01 : std::abs(places[g].y) < 0.02;
+            assembly.nodes.displacement[assembly.bodies[g].centre_node] =
+                middle ? Vec2{3e-4 * places[g].x, -1e-3 * places[g].y} : Vec2{1.0, 1.0};
+        }
+        EXPECT_NEAR(gauge.axial(assembly), 1e-3, 1e-12);
+        EXPECT_NEAR(gauge.lateral(assembly), -3e-4, 1e-12);
+    }
+}
+
 }  // namespace
 }  // namespace feldspar

@@ -60,9 +60,9 @@ TEST(FindContacts, BodiesThatWereFarApartMeet) {
     Assembly assembly = bar();
     for (Contact& contact : assembly.contacts) contact.dropped = true;
     constexpr double kSkin = 1e-3;
-    lift_upper(assembly, 5.0 * kSkin);
+    lift_upper(assembly, 3.0 * kSkin);
     ContactFinder finder(assembly, kSkin);
-    lift_upper(assembly, -4.0 * kSkin);
+    lift_upper(assembly, -2.0 * kSkin);
     EXPECT_EQ(finder.update(assembly, 0.0).made, 0) << "a gap of the skin is left";
     lift_upper(assembly, -1.1 * kSkin);
     EXPECT_EQ(finder.update(assembly, 0.0).made, 1);

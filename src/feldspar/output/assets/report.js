@@ -793,7 +793,8 @@ function writePattern() {
       const [first, end] = viewer.crackTimes(), colors = palette("viridis");
       crackKey.append(key(css(colors[0]), "first crack, strain " + show(first) + "\u00b710\u207b\u00b3"), key(css(colors[128]), "midway"), key(css(colors[255]), "last crack, " + show(end) + "\u00b710\u207b\u00b3"));
     }
-    if (viewer.cracks === "opening" && specimen) {
+    if (viewer.cracks === "opening" && specimen && specimen.meta.squares) crackKey.append(h("span", {}, "How far single cracks are open is not known in squares."));
+    else if (viewer.cracks === "opening" && specimen) {
       const colors = palette("viridis"), wide = specimen.wideOpening();
       crackKey.append(key(css(colors[0]), "closed"), key(css(colors[128]), "open by " + show(wide / 2, 2) + " mm"), key(css(colors[255]), show(wide, 2) + " mm or more"));
     }
