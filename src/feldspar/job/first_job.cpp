@@ -245,7 +245,8 @@ ReadRock read_rock_numbers(const GivenRock& given) {
     return read;
 }
 
-std::string with_values(std::string text, std::string_view table, const std::vector<std::pair<std::string, std::string>>& values,
+std::string with_values(const std::string& text, std::string_view table,
+                        const std::vector<std::pair<std::string, std::string>>& values,
                         std::span<const std::string_view> optional) {
     std::istringstream lines(text);
     std::string written;
@@ -271,9 +272,9 @@ std::string with_values(std::string text, std::string_view table, const std::vec
             }
             line = now;
         } else if (inside && line == bare && std::find(optional.begin(), optional.end(), key) != optional.end()) {
-            line = "# " + line;
+            line.insert(0, "# ");
         }
-        written += line + "\n";
+        written.append(line).append("\n");
     }
     if (inside) add_missing();
     return written;
@@ -326,12 +327,11 @@ FirstJob first_job(std::string_view kind, const GivenRock& given) {
     const ContactMaterial& c = first.contact;
     const double d_mm = 1e3 * rock.grain_m;
     if (given.values.contains("grain-size"))
-        text = with_values(std::move(text), "specimen.grains",
+        text = with_values(text, "specimen.grains",
                            {{"diameter", fmt::format("{{ distribution = \"uniform\", minimum = {}, maximum = {} }}",
                                                      four(d_mm * 2.0 / 3.0, "mm"), four(d_mm * 4.0 / 3.0, "mm"))}});
-    text = with_values(std::move(text), "material.grain",
-                       {{"E", four(1e-9 * grain.E_Pa, "GPa")}, {"nu", fmt::format("{:.3g}", grain.nu)}});
-    text = with_values(std::move(text), "material.contact",
+    text = with_values(text, "material.grain", {{"E", four(1e-9 * grain.E_Pa, "GPa")}, {"nu", fmt::format("{:.3g}", grain.nu)}});
+    text = with_values(text, "material.contact",
                        {{"Kn", four(1e-9 * c.Kn_Pa_m, "GPa/m")},
                         {"eta", fmt::format("{:.3g}", c.eta)},
                         {"sigma_nt", four(1e-6 * c.sigma_nt_Pa, "MPa")},
@@ -341,7 +341,7 @@ FirstJob first_job(std::string_view kind, const GivenRock& given) {
                         {"Gfs", four(c.Gfs_J_m2, "N/m")}});
     constexpr std::array<std::string_view, 8> shown{
         "E", "nu", "UCS", "DTS", "BTS", "cohesion", "friction_angle", "hoek_brown_mi"};
-    text = with_values(std::move(text), "laboratory", rock.laboratory, shown);
+    text = with_values(text, "laboratory", rock.laboratory, shown);
     job.text = std::move(text);
     return job;
 }

@@ -57,7 +57,8 @@ FirstJob first_job(std::string_view kind, const GivenRock& given);
 
 /// `text` with the keys of a table that are given set to these values, keeping comments; of the template's keys in `optional`
 /// those that are not given are commented out.
-std::string with_values(std::string text, std::string_view table, const std::vector<std::pair<std::string, std::string>>& values,
+std::string with_values(const std::string& text, std::string_view table,
+                        const std::vector<std::pair<std::string, std::string>>& values,
                         std::span<const std::string_view> optional = {});
 
 }  // namespace feldspar

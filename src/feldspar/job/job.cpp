@@ -32,7 +32,7 @@ std::string name_from_stem(const std::filesystem::path& file) {
 
 std::string read_name(const JobTable& root, const std::filesystem::path& file) {
     if (!root.has("name")) return name_from_stem(file);
-    const std::string given = root.text("name");
+    std::string given = root.text("name");
     root.check({"name"}, [&] {
         if (given.front() == '.' || given.size() > 100 || !made_of_letters_and(given, kFurtherSigns))
             root.fail("name", shown(*root.find("name")) + " cannot name a directory", root.allowed("name"));

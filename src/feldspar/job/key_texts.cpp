@@ -102,7 +102,7 @@ std::string as_written(const KeyValue& value, double si) {
 
 std::string allowed(const JobKey& key) {
     const KeyValue& value = key.value;
-    const std::string one = element_text(value.element);
+    std::string one = element_text(value.element);
     switch (value.shape) {
         case ValueShape::one:
             return one;
