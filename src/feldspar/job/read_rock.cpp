@@ -27,7 +27,7 @@ bool can_be_a_name(const std::string& name) {
 
 std::string read_name(const JobTable& table, const std::string& otherwise) {
     if (!table.has("name")) return otherwise;
-    const std::string given = table.text("name");
+    std::string given = table.text("name");
     table.check({"name"}, [&] {
         if (!can_be_a_name(given))
             table.fail("name", shown(*table.find("name")) + " cannot be a name here", table.allowed("name"));
