@@ -38,7 +38,7 @@ TEST_P(RankedSteps, HaveTheBitsOfAProgramThatIsAlone) {
             damping == Damping::local ? std::vector{std::pair{2, 1}, std::pair{3, 2}} : std::vector{std::pair{4, 1}};
         for (const auto& [size, threads] : company) {
             std::mutex mutex;
-            in_one_process(size, [&](Communicator& ranks) {
+            in_one_process(size, [&, size = size, threads = threads](Communicator& ranks) {
                 Stirred own(setup, threads);
                 own.settings.damping = damping;
                 own.settings.viscous = 0.02;
