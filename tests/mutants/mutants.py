@@ -50,7 +50,8 @@ def verdict_of(mutant):
         if built.returncode != 0:
             return "does not compile", built.stdout[-300:]
         try:
-            tested = run(str(root / "build/release" / mutant["caught_by"]), "--gtest_brief=1", "--gtest_fail_fast", timeout=longest_s)
+            tested = run(str(root / "build/release" / mutant["caught_by"]), "--gtest_brief=1", "--gtest_fail_fast", "--gtest_filter=" + mutant.get("filter", "*"),
+                         timeout=longest_s)
         except subprocess.TimeoutExpired:
             return "caught", f"no end within {longest_s} s"
         return ("caught", first_failure(tested.stdout)) if tested.returncode != 0 else ("lives", "")
