@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <utility>
@@ -33,36 +34,39 @@ std::string sizes_text(const SizeSummary& sizes) {
                        1e3 * sizes.maximum_m, 1e3 * sizes.D50_m);
 }
 
-void print_specimen(const std::string& what, const Specimen& specimen) {
+void print_specimen(const Printing& print, const std::string& what, const Specimen& specimen) {
     const SpecimenQuality& q = specimen.quality;
-    say("{} (seed {})\n", what, specimen.seed);
-    say("  grains                {}\n", q.grains);
-    say("  contacts              {}\n", q.contacts);
-    say("  nodes, triangles      {}, {}\n", q.nodes, q.triangles);
-    say("  vertices per grain    {:.2f}\n", q.vertices_per_grain);
-    say("  merged edges          {}\n", q.merged_edges);
-    say("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
-    say("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2, 1e3 * q.smallest_triangle_height_m);
+    print.say_results("{} (seed {})\n", what, specimen.seed);
+    print.say_results("  grains                {}\n", q.grains);
+    print.say_results("  contacts              {}\n", q.contacts);
+    print.say_results("  nodes, triangles      {}, {}\n", q.nodes, q.triangles);
+    print.say_results("  vertices per grain    {:.2f}\n", q.vertices_per_grain);
+    print.say_results("  merged edges          {}\n", q.merged_edges);
+    print.say_results("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
+    print.say_results("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2,
+                      1e3 * q.smallest_triangle_height_m);
     if (specimen.spec.given_cells.given())
-        say("  corners of the file   {} welded, {} put into edges, {} moved onto the outline\n", q.welded, q.inserted, q.moved);
+        print.say_results("  corners of the file   {} welded, {} put into edges, {} moved onto the outline\n", q.welded,
+                          q.inserted, q.moved);
     else
-        say("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n", 100.0 * q.overlap_mean,
-            100.0 * q.overlap_max);
-    say("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
-    if (!specimen.spec.given_cells.given()) say("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
+        print.say_results("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n",
+                          100.0 * q.overlap_mean, 100.0 * q.overlap_max);
+    print.say_results("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
+    if (!specimen.spec.given_cells.given()) print.say_results("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
     const std::vector<PhaseFill> fills = fill_of_phases(specimen);
     for (std::size_t p = 0; p < fills.size(); ++p)
-        say("  {:<22}{} grains, {:.2f} % of the area ({:.4g} % asked for), mm: {}; discs {}\n", specimen.packing.phase_names[p],
-            fills[p].grains, 100.0 * fills[p].area_share, 100.0 * specimen.spec.phase_sizes[p].share, sizes_text(fills[p].cells),
-            sizes_text(fills[p].discs));
+        print.say_results("  {:<22}{} grains, {:.2f} % of the area ({:.4g} % asked for), mm: {}; discs {}\n",
+                          specimen.packing.phase_names[p], fills[p].grains, 100.0 * fills[p].area_share,
+                          100.0 * specimen.spec.phase_sizes[p].share, sizes_text(fills[p].cells), sizes_text(fills[p].discs));
     if (q.crossings > 0)
-        say("  cuts that cross       {} crossings, or ends on another cut; {} pieces were too small for a grain and went to a "
+        print.say_results(
+            "  cuts that cross       {} crossings, or ends on another cut; {} pieces were too small for a grain and went to a "
             "neighbour\n",
             q.crossings, q.joined_pieces);
-    say("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
-    say("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
-    say("  area error            {:.1e}\n", q.area_error);
-    for (const std::string& warning : q.warnings) say("  warning: {}\n", warning);
+    print.say_results("  hexatic order         {:.2f}, size spread {:.1f} %\n", q.hexatic_order, 100.0 * q.size_spread);
+    print.say_results("  width / largest grain {:.1f}\n", q.width_over_largest_grain);
+    print.say_results("  area error            {:.1e}\n", q.area_error);
+    for (const std::string& warning : q.warnings) print.say_results("  warning: {}\n", warning);
 }
 
 // What presses on the flats decides how much of 2P / (pi D t) counts.
@@ -140,8 +144,11 @@ std::string variant_text(const Variant& variant) {
 // tests the steps and the time.
 class Check {
 public:
-    Check(const Job& job, int threads, DeviceUse device)
+    /// @param warned  gets what is to be said of specimens, too
+    Check(const Job& job, int threads, DeviceUse device, const Printing& print, std::vector<std::string>& warned)
         : job_(job),
+          print_(print),
+          warned_(warned),
           device_(std::move(device)),
           packings_(planned_runs(job).size(), &stop_requested()),
           threads_(threads),
@@ -149,22 +156,47 @@ public:
         control_.stop = &stop_requested();
     }
 
-    void run() {
+    /// @return what is foreseen, for programs
+    Json run() {
         for (const Group& group : groups_of(job_)) {
             if (stop_requested()) throw Interrupted();
             add(group);
         }
-        say("\n{}\nExpected time of the whole job: about {} ({} to {}). Nothing was run, no file was written.\n", text_,
-            duration_text(total_s_.usual), duration_text(total_s_.low), duration_text(total_s_.high));
+        print_.say_results("\n{}\nExpected time of the whole job: about {} ({} to {}). Nothing was run, no file was written.\n",
+                           text_, duration_text(total_s_.usual), duration_text(total_s_.low), duration_text(total_s_.high));
+        return {{"tests", tests_}, {"seconds", range_json(total_s_, 1.0)}};
     }
 
 private:
+    static Json range_json(const Foreseen& range, double factor) {
+        return {{"low", factor * range.low}, {"usual", factor * range.usual}, {"high", factor * range.high}};
+    }
+
+    void tell(const Group& group, const TestPreview& preview) {
+        const PlannedRun& run = group.example;
+        tests_.push_back({{"variant", run.variant->name},
+                          {"test", title(*run.test)},
+                          {"runs", group.runs},
+                          {"grains", preview.grains},
+                          {"contacts", preview.contacts},
+                          {"contact_points", preview.contact_points},
+                          {"nodes", preview.nodes},
+                          {"triangles", preview.triangles},
+                          {"memory_MB", range_json(preview.memory_bytes, 1e-6)},
+                          {"steps", range_json(preview.steps, 1.0)},
+                          {"seconds", range_json(preview.steps, preview.step_seconds)},
+                          {"omega2", preview.omega2},
+                          {"omega2_limit", preview.omega2_limit},
+                          {"stable_time_step_s", preview.stable_time_step_s}});
+    }
+
     void add(const Group& group) {
         const PlannedRun& run = group.example;
         const std::shared_ptr<const Specimen> specimen =
-            packings_.get(specimen_of(run), run.seed, threads_,
-                          [&](const SpecimenProgress& state) { progress_.making(packing_stem(run), state); });
-        progress_.busy("building " + label_of(run));
+            packings_.get(specimen_of(run), run.seed, threads_, [&](const SpecimenProgress& state) {
+                if (!print_.quiet()) progress_.making(packing_stem(run), state);
+            });
+        if (!print_.quiet()) progress_.busy("building " + label_of(run));
         // timed with the threads that it will have beside the others; what these would take of its speed is not seen
         const int bodies = body_count(run, *specimen);
         const int at_once = std::min(sharing_.most_at_once(bodies), static_cast<int>(planned_runs(job_).size()));
@@ -187,6 +219,7 @@ private:
             text_ += flats_text(run, *specimen) + card;
             text_ += fmt::format("  expected, each        {}\n", course_text(preview));
         }
+        tell(group, preview);
         const double each_s = preview.step_seconds * group.runs / at_once;
         total_s_.low += preview.steps.low * each_s;
         total_s_.usual += preview.steps.usual * each_s;
@@ -197,10 +230,17 @@ private:
         const std::string head = method_of(test).specimen.own_disc ? fmt::format("Disc of the {}", method_of(test).words.title)
                                  : test.specimen                   ? fmt::format("Specimen of {}", title(test))
                                                                    : "Specimen";
-        if (shown_.insert(head).second) print_specimen(head, specimen);
+        if (!shown_.insert(head).second) return;
+        print_specimen(print_, head, specimen);
+        for (const std::string& warning : specimen.quality.warnings) {
+            warned_.push_back(fmt::format("{} (seed {}): {}", head, specimen.seed, warning));
+            if (print_.quiet()) say(stderr, "warning: {}\n", warned_.back());
+        }
     }
 
     const Job& job_;
+    const Printing& print_;
+    std::vector<std::string>& warned_;
     DeviceUse device_;
     Packings packings_;
     int threads_;
@@ -210,21 +250,32 @@ private:
     const Variant* variant_ = nullptr;  // the last one shown
     std::set<std::string> shown_;       // headings of specimens
     Foreseen total_s_;
+    Json tests_ = Json::array();
     std::string text_;
 };
 
 }  // namespace
 
-ExitCode check_command(const JobOptions& options) {
+ExitCode check_command(const CheckOptions& options) {
     install_signal_handlers();
-    const Job job = job_with_options(options);
-    const int threads = thread_count(job.threads);
-    say("Job {} is sound: {} runs of {} tests{}, {}\n\n", job.name, planned_runs(job).size(), job.tests.size(),
-        job.has_variants() ? fmt::format(" and {} variants", job.variants.size()) : "", counted(threads, "thread"));
-    for (const std::string& warning : warnings(job)) say("warning: {}\n\n", warning);
-    Provenance provenance;
-    Check(job, threads, device_use(options.device, provenance)).run();
-    return ExitCode::success;
+    return printing(options.print, [&](Printing& print) {
+        const Job job = job_with_options(options);
+        const int threads = thread_count(job.threads);
+        print.say_results("Job {} is sound: {} of {}{}, {}\n\n", job.name, counted(planned_runs(job).size(), "run"),
+                          counted(job.tests.size(), "test"),
+                          job.has_variants() ? " and " + counted(job.variants.size(), "variant") : "",
+                          counted(threads, "thread"));
+        std::vector<std::string> warned = warnings(job);
+        for (const std::string& warning : warned)
+            say(print.quiet() ? stderr : print.results(), "warning: {}\n{}", warning, print.quiet() ? "" : "\n");
+        Provenance provenance;
+        const Json found = Check(job, threads, device_use(options.device, provenance), print, warned).run();
+        if (!print.json()) return ExitCode::success;
+        Json object = {{"job", job.name}, {"runs", planned_runs(job).size()}, {"threads", threads}, {"warnings", warned}};
+        for (const auto& [key, value] : found.items()) object[key] = value;
+        print.print_object(object);
+        return ExitCode::success;
+    });
 }
 
 }  // namespace feldspar

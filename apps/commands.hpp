@@ -191,8 +191,12 @@ struct ConvergeCommandOptions : JobOptions {
 /// Varies grain size, specimen size, triangles and loading rate one at a time, and says whether the answer depends on them.
 ExitCode converge_command(const ConvergeCommandOptions& options);
 
+struct CheckOptions : JobOptions {
+    PrintOptions print;  ///< the object has counts, memory, steps and time of each kind of test
+};
+
 /// Builds everything, prints counts, memory, stable step, expected steps and time, and stops.
-ExitCode check_command(const JobOptions& options);
+ExitCode check_command(const CheckOptions& options);
 
 /// What stands on the command line of `export-cells` beside the job file.
 struct ExportCellsOptions : JobOptions {

@@ -55,6 +55,7 @@ constexpr const char* run_examples = R"(  feldspar run granite.toml             
 
 constexpr const char* check_examples = R"(  feldspar check granite.toml
   feldspar check granite.toml --set specimen.grains.diameter.minimum=1mm --test UCS
+  feldspar check granite.toml --json > foreseen.json     to be read by a program
 )";
 
 constexpr const char* export_examples =
@@ -348,9 +349,14 @@ void add_run(CommandLine& line) {
 }
 
 void add_check(CommandLine& line) {
-    const auto options = std::make_shared<JobOptions>();
+    const auto options = std::make_shared<CheckOptions>();
     CLI::App& command = line.add("check", "build everything, print counts, memory and expected time, and stop", check_examples);
     add_job_options(line, command, *options);
+    command.add_flag(
+        "--json", options->print.json,
+        "print counts, memory, steps and time of each kind of test as JSON on standard output at the end, and all else "
+        "on standard error; a mistake as {\"error\": ...}");
+    command.add_flag("--quiet", options->print.quiet, "print only warnings and mistakes");
     line.does(command, [options] { return check_command(*options); });
 }
 

@@ -111,10 +111,13 @@ Execution run_study(const Study& study, Ledger& ledger, const StudyRunning& runn
     control.progress = [&](const Run& run, const TestProgress& state) { progress.report(run, state); };
     control.ended = [&](const Run& run, const RunRecord& record) { progress.ended(run, record); };
     control.note = [&](const std::string& line) { progress.warn(line); };
+    std::optional<GrowingPage> page;
     std::optional<LiveRuns> shown;
-    if (live.board() != nullptr)
+    if (live.board() != nullptr) {
+        if (running.shows_points) page.emplace(study, ledger, *live.board());
         control.live = &shown.emplace(
-            *live.board(), [&](const Run& run) { return label_of(study, run); }, result_text);
+            *live.board(), [&](const Run& run) { return label_of(study, run); }, result_text, page ? &*page : nullptr);
+    }
     const Execution execution = execute(study.runs, ledger, control);
     progress.clear();
     return execution;

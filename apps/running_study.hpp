@@ -17,6 +17,7 @@ struct StudyRunning {
     std::string command_line;    ///< for provenance
     std::string device = "cpu";  ///< where the steps are made
     bool retry_failed = false;   ///< also runs that failed for good
+    bool shows_points = false;   ///< a live view has the page of the study below it, with its points so far
 };
 
 /// "biaxial at 4 MPa, seed 1".

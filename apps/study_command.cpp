@@ -35,7 +35,7 @@ ExitCode run_and_print(const StudyOptions& options, Printing& print) {
             "what --set changes makes other runs: those of the file as it stands stay in the ledger, and the page shows these\n");
     const Execution execution = run_study(study, ledger,
                                           {thread_count(options.threads.value_or(0)), options.at_once.value_or(0),
-                                           options.command_line, options.device, options.retry_failed},
+                                           options.command_line, options.device, options.retry_failed, /*shows_points=*/true},
                                           print, live);
 
     const std::vector<PointResults> points = point_results(study, ledger);

@@ -29,8 +29,10 @@ install(FILES ${CMAKE_BINARY_DIR}/FeldsparConfig.cmake ${CMAKE_BINARY_DIR}/Felds
 install(FILES packaging/debian-copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libfeldspar-dev RENAME copyright COMPONENT library)
 
 set(CPACK_PACKAGE_NAME feldspar)
-set(CPACK_PACKAGE_VENDOR "The authors of Feldspar")
-set(CPACK_PACKAGE_CONTACT "The authors of Feldspar <feldspar@localhost>")
+file(STRINGS CITATION.cff author REGEX "^  - name:" LIMIT_COUNT 1)   # who stands behind a package is who is to be cited; an address there is none (SECURITY.md)
+string(REGEX REPLACE "^  - name: \"(.*)\"$" "\\1" author "${author}")
+set(CPACK_PACKAGE_VENDOR "${author}")
+set(CPACK_PACKAGE_CONTACT "${author}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "laboratory tests of rock with the flexible particle model")
 set(CPACK_PACKAGE_DESCRIPTION "A virtual laboratory for the fracture of rock. It packs grains, bonds them, presses, pulls and splits the specimen, and reports strengths, moduli and cracks with their scatter over several packings.")
 set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)

@@ -253,6 +253,25 @@ TEST(Conventions, LinksInTheDocumentationWork) {
                    });
 }
 
+// CMakeLists.txt says the version; what reads it from there (the program, the packages, the Python package) needs no look here.
+TEST(Conventions, TheVersionIsTheSameEverywhere) {
+    const auto version_in = [](const std::string& name, const std::string& pattern) {
+        const std::regex version(pattern);
+        for (const std::string& line : read(fs::path(FELDSPAR_SOURCE_DIR) / name).lines)
+            if (std::smatch match; std::regex_search(line, match, version)) return match.str(1);
+        return "no version in " + name;
+    };
+    const std::string version = version_in("CMakeLists.txt", R"re(^project\(feldspar VERSION (\d+\.\d+\.\d+) )re");
+    EXPECT_EQ(version_in("CITATION.cff", R"re(^version: (\S+)$)re"), version);
+    EXPECT_EQ(version_in("packaging/conda/meta.yaml", R"re(^\{% set version = "(.*)" %\}$)re"), version);
+    EXPECT_EQ(version_in("CHANGELOG.md", R"re(^## \[(\d.*)\])re"), version) << "the first version there is the last one released";
+    EXPECT_EQ(version_in("pyproject.toml", R"re(^dynamic = \["(version)"\]$)re"), "version")
+        << "the build takes it from CMakeLists.txt";
+    EXPECT_EQ(version_in("docs/install.md", R"re(find_package\(Feldspar (\S+) )re"), version.substr(0, version.rfind('.')));
+    EXPECT_EQ(version_in("CITATION.cff", R"re(^date-released: (\d{4}-\d{2}-\d{2})$)re"),
+              version_in("CHANGELOG.md", R"re(^## \[\d[^\]]*\] - (\d{4}-\d{2}-\d{2})$)re"));
+}
+
 TEST(Conventions, ScriptsStopAtTheFirstError) {
     std::vector<SourceFile> scripts = files_under("scripts", text_extensions);
     for (const char* name : {"check", "demo", "bench", ".ci/run"}) scripts.push_back(read(fs::path(FELDSPAR_SOURCE_DIR) / name));

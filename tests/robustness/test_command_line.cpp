@@ -214,7 +214,7 @@ TEST(CommandLine, ChecksEachVariantOnce) {
     const Outcome outcome = run_program(place.path(), {"check", "job.toml"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
     for (const char* part :
-         {"3 runs of 1 tests and 2 variants", "\nbilinear\n", "\nBrittle, 2\n", "2 x direct-tension", "1 x direct-tension"})
+         {"3 runs of 1 test and 2 variants", "\nbilinear\n", "\nBrittle, 2\n", "2 x direct-tension", "1 x direct-tension"})
         EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;
 }
 
@@ -489,6 +489,23 @@ TEST(CommandLine, CheckForeseesThatPressureMakesATestLonger) {
     EXPECT_LT(steps[1], steps[2]);
     const std::string limited = run_program(place.path(), {"check", "job.toml", "--set", "numerics.maximum_steps=500"}).out;
     EXPECT_NE(limited.find("expected, each        500 steps"), std::string::npos) << limited;
+
+    const Outcome object = run_program(place.path(), {"check", "job.toml", "--json"});
+    ASSERT_EQ(object.code, 0) << object.err;
+    const auto json = nlohmann::json::parse(object.out);
+    ASSERT_EQ(json.at("tests").size(), 3u);
+    EXPECT_EQ(json.at("tests").at(2).at("test"), "biaxial at 20 MPa");
+    EXPECT_NEAR(json.at("tests").at(2).at("steps").at("usual").get<double>(), steps[2], 0.06 * steps[2])
+        << "two digits are printed";
+    EXPECT_NE(object.err.find("is sound"), std::string::npos);
+    ASSERT_FALSE(json.at("warnings").empty());
+    const std::string narrow = json.at("warnings").back();
+    EXPECT_EQ(narrow.find("Specimen (seed 1): "), 0u) << narrow;
+    const Outcome quiet = run_program(place.path(), {"check", "job.toml", "--quiet"});
+    EXPECT_EQ(quiet.out, "");
+    EXPECT_NE(quiet.err.find("warning: " + narrow), std::string::npos) << quiet.err;
+    const Outcome wrong = run_program(place.path(), {"check", "job.toml", "--json", "--set", "specimen.width=-1mm"});
+    EXPECT_EQ(nlohmann::json::parse(wrong.out).at("error").at("key"), "specimen.width");
 }
 
 TEST(CommandLine, FieldsAreExportedFromTheRun) {

@@ -4,6 +4,7 @@
 usage: live_study.py FELDSPAR WORK_DIRECTORY
 
 Held: runs of an earlier call are listed as done; curves and grains of the runs under way appear; the page counts runs and is not wider than its window at 390 and 1000 pixels;
+below stand all points of the study, whose runs and numbers grow without the page being loaded again, and what the reader has chosen there stays;
 a run that is ended there is listed as failed, ended by the user; the button of the study ends it as Ctrl-C does (exit code 130), and the page becomes that of the study; the same
 command makes the rest, the ended run too. Pictures stay in WORK_DIRECTORY. Exit code 0: fine; 1: something is wrong (said in words); 77: no browser is installed (skipped).
 """
@@ -38,6 +39,9 @@ key = "material.contact.mu"
 values = [0.2, 0.4, 0.6]
 """
 WORDS = "document.querySelector('.live > .state')?.textContent || ''"
+# Of the table of points: how many runs of each are done, and its cells.
+DONE = "[...document.querySelectorAll('table.points tbody tr')].map((row) => Number(row.cells[row.cells.length - 3].textContent))"
+CELLS = "[...document.querySelectorAll('table.points tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))"
 LISTED = "[...document.querySelectorAll('.live .done li')].map((e) => e.textContent)"
 
 
@@ -66,12 +70,24 @@ def main():
                 wrong.append(f"the page does not count the runs: {words}")
             if not any("0.2: uniaxial-compression, seed 1: " in line for line in browser.evaluate(LISTED)):
                 wrong.append(f"the run that was done before is not listed: {browser.evaluate(LISTED)}")
+            before = wait_for(browser, f"{DONE}.length > 0 ? {DONE} : null") or []
+            if len(before) != 3 or not any("to do" in cell for row in browser.evaluate(CELLS) for cell in row):
+                wrong.append(f"the points of the study are not there: {browser.evaluate(CELLS)}")
+            browser.evaluate("window.notLoadedAgain = true; document.querySelector('section input[type=checkbox]').click()")
+            if not wait_for(browser, f"{DONE}.reduce((a, b) => a + b, 0) > {sum(before)}", 120):
+                wrong.append(f"runs end, but the table of points does not show them: {browser.evaluate(CELLS)}")
+            if not browser.evaluate("window.notLoadedAgain === true && document.querySelector('section input[type=checkbox]').checked"):
+                wrong.append("the page was loaded again for them, or has forgotten what was chosen")
+            if not any(row[1].strip() for row in browser.evaluate(CELLS)):
+                wrong.append(f"no point has a number: {browser.evaluate(CELLS)}")
+            browser.evaluate("document.querySelector('section input[type=checkbox]').click()")
             for width, density, scheme in ((1000, 1, "light"), (390, 2, "dark")):
                 size(browser, width, density, scheme)
                 wide, seen = browser.evaluate(SHEET)
                 if wide > seen + 1:
                     wrong.append(f"the page is {wide} pixels wide in a window of {seen}")
                 browser.picture(work / f"live-study-{width}-{density}-{scheme}.png", ".live")
+                browser.picture(work / f"live-study-points-{width}-{density}-{scheme}.png", "main")
             size(browser, 1000)
             ended = None
             for _ in range(20):   # a run may end by itself while it is being ended

@@ -23,6 +23,9 @@ void LiveRuns::settled(const RunRecord& record) {
     const bool done = record.state == RunState::done;
     board_.ended(number_of(record.id), {done ? LiveState::ended : LiveState::failed, words_(record),
                                         done && took != record.numbers.end() ? took->second : 0.0});
+    if (page_ == nullptr) return;
+    page_->more();
+    page_->renew_if_due();
 }
 
 void LiveRuns::begins(const Run& run) { board_.begins(number_of(run.id)); }
@@ -31,7 +34,10 @@ TestWatch& LiveRuns::watch(const Run& run, std::shared_ptr<const Specimen> speci
     return board_.begins(number_of(run.id), std::move(specimen));
 }
 
-void LiveRuns::progress(const Run& run, const TestProgress& state) { board_.progress(number_of(run.id), state); }
+void LiveRuns::progress(const Run& run, const TestProgress& state) {
+    board_.progress(number_of(run.id), state);
+    if (page_ != nullptr) page_->renew_if_due();
+}
 
 void LiveRuns::written(const Run& run) { board_.written(number_of(run.id)); }
 

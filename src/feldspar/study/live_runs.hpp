@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "feldspar/live/live_board.hpp"
+#include "feldspar/study/growing_page.hpp"
 #include "feldspar/study/run_record.hpp"
 #include "feldspar/study/study.hpp"
 
@@ -22,8 +23,10 @@ public:
     /// @param board  outlives it
     /// @param label  "rigid: biaxial at 4 MPa, seed 1"
     /// @param words  "114 MPa, grade B", or why it failed
-    LiveRuns(LiveBoard& board, std::function<std::string(const Run&)> label, std::function<std::string(const RunRecord&)> words)
-        : board_(board), label_(std::move(label)), words_(std::move(words)) {}
+    /// @param page   is renewed as runs end; may be null
+    LiveRuns(LiveBoard& board, std::function<std::string(const Run&)> label, std::function<std::string(const RunRecord&)> words,
+             GrowingPage* page = nullptr)
+        : board_(board), label_(std::move(label)), words_(std::move(words)), page_(page) {}
 
     /// These are to be made, those besides that it knows already.
     void plan(std::span<const Run* const> runs);
@@ -45,6 +48,7 @@ private:
     LiveBoard& board_;
     std::function<std::string(const Run&)> label_;
     std::function<std::string(const RunRecord&)> words_;
+    GrowingPage* page_;
     std::map<std::string, std::size_t> numbers_;  // on the board, by the runs' ids
 };
 

@@ -1,6 +1,8 @@
 // Running a study: every run once, failures recorded, interruptions taken up again.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -9,6 +11,7 @@
 #include "feldspar/live/live_stream.hpp"
 #include "feldspar/study/execute.hpp"
 #include "feldspar/study/point_results.hpp"
+#include "feldspar/study/study_report.hpp"
 #include "feldspar/study/study_table.hpp"
 
 namespace feldspar {
@@ -258,6 +261,61 @@ TEST_F(ExecuteStudy, IsShownWhileItRunsAndChangesNoBit) {
     LiveStream later(again.board);
     EXPECT_EQ(run(study, ledger).found_done, 2);
     EXPECT_EQ(nlohmann::json::parse(later.next(std::chrono::milliseconds(0)))["run"]["ended"], 2);
+}
+
+// What the page of a study holds of its points.
+nlohmann::json points_of(const std::filesystem::path& page) {
+    std::ifstream in(page, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(in), {}}, mark = "id=\"data\">";
+    const std::size_t begin = text.find(mark) + mark.size();
+    return nlohmann::json::parse(text.substr(begin, text.find("</script>", begin) - begin)).at("points");
+}
+
+TEST_F(ExecuteStudy, ItsPageGrowsWhileItRuns) {
+    Study study = read(std::string("keep = \"numbers\"\n") + two_frictions);
+    study.results = place_;
+    Ledger ledger(place_, Ledger::Access::write);
+    std::atomic<bool> stop{false};
+    LiveBoard board("study", stop);
+    GrowingPage page(study, ledger, board, std::chrono::milliseconds(0));
+    EXPECT_EQ(board.report_file(), study_page(study));
+    const nlohmann::json before = points_of(study_page(study));
+    ASSERT_EQ(before.size(), 2u) << "all points are there before the first run";
+    EXPECT_EQ(before[1]["missing"], 2);
+
+    LiveRuns runs(
+        board, [](const feldspar::Run&) { return "run"; }, [](const RunRecord&) { return "is done"; }, &page);
+    live_ = &runs;
+    EXPECT_EQ(run(study, ledger).done, 4);
+    // pages are written at most in a fiftieth of the time, so the last runs may not be on it yet
+    nlohmann::json after = points_of(study_page(study));
+    const auto latest = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (after[1]["done"] != 2 && std::chrono::steady_clock::now() < latest) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        page.renew_if_due();
+        after = points_of(study_page(study));
+    }
+    EXPECT_EQ(after[0]["done"], 2);
+    EXPECT_EQ(after[1]["done"], 2);
+    EXPECT_EQ(after[1]["missing"], 0);
+    EXPECT_TRUE(after[1]["cells"][0]["mean"].is_number());
+    LiveStream looks(board);
+    EXPECT_GE(nlohmann::json::parse(looks.next(std::chrono::milliseconds(0)))["run"]["reports"], 2);
+}
+
+TEST_F(ExecuteStudy, AStudyGoesOnWhereItsPageCannotBeWritten) {
+    Study study = read("keep = \"numbers\"\nseeds = [1]\n");
+    study.results = place_;
+    std::filesystem::create_directories(study_page(study));  // a directory stands in its place
+    Ledger ledger(place_, Ledger::Access::write);
+    std::atomic<bool> stop{false};
+    LiveBoard board("study", stop);
+    GrowingPage page(study, ledger, board, std::chrono::milliseconds(0));
+    EXPECT_TRUE(board.report_file().empty());
+    LiveRuns runs(
+        board, [](const feldspar::Run&) { return "run"; }, [](const RunRecord&) { return "is done"; }, &page);
+    live_ = &runs;
+    EXPECT_EQ(run(study, ledger).done, 1);
 }
 
 TEST_F(ExecuteStudy, ARunThatTheUserEndsHasNoResultAndIsMadeAgain) {

@@ -141,6 +141,12 @@
   if (!live.report && live.over) tests.append(h("p", {class: "soft"}, live.one === "test" ? "No test has ended, so there is no report." : "There is no report."));
   redraw.push(() => running.forEach((test) => test.pattern.draw()));
 
+  /** Gives the page below the data of the report as it is now. */
+  function renew() {
+    fetch("report.html").then((answer) => (answer.ok ? answer.text() : null)).catch(() => null).then((text) => {
+      if (text) window.renewPage(JSON.parse(new DOMParser().parseFromString(text, "text/html").getElementById("data").textContent));   // else the next one will do
+    });
+  }
   function again() { sessionStorage.setItem("live-scroll", String(scrollY)); location.reload(); }
   const scroll = sessionStorage.getItem("live-scroll");
   sessionStorage.removeItem("live-scroll");
@@ -181,7 +187,10 @@
     words.textContent = [run.tests ? ended + " of " + (run.at_most ? "at most " : "") + plural(run.tests, live.one) + " ended" : null, run.failed ? run.failed + " failed" : null, running.size ? running.size + " running" : null,
       waiting > 0 && run.tests ? (run.at_most ? "up to " : "") + waiting + (run.at_most ? " to come" : " waiting") : null, run.busy || null, run.seconds_left !== null && run.tests && !run.ending ? (run.at_most ? "at most " : "") + "about " + duration(run.seconds_left) + " left" : null].filter(Boolean).join("  \u00b7  ");
     document.title = (run.tests ? ended + "/" + run.tests + " " : "") + live.name + " - Feldspar";
-    if (reports === null) reports = run.reports;
+    if (window.renewPage) {   // the page below takes newer data
+      if (run.over === null && run.reports !== reports) renew();
+      reports = run.reports;
+    } else if (reports === null) reports = run.reports;
     if (run.over !== null) {
       stream.close();
       isOver(run.over);

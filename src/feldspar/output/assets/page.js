@@ -42,13 +42,14 @@ function followTheme() {
   });
 }
 
-/** Links to the page's sections, where there are several: beneath its head. */
+/** Links to the page's sections, where there are several: beneath its head, and beneath what is going on in a run under way. */
 function writeContents() {
-  const headings = [...page.querySelectorAll("h2")];
+  page.querySelector("nav.contents")?.remove();
+  const headings = [...page.querySelectorAll("h2")].filter((heading) => !heading.closest(".live"));
   if (headings.length < 3) return;
   headings.forEach((heading, n) => { heading.id ||= "part-" + (n + 1); });
   const list = h("nav", {class: "contents", "aria-label": "Contents"}, headings.map((heading) => h("a", {href: "#" + heading.id}, heading.textContent)));
-  page.querySelector("header").after(list);
+  (page.querySelector(".live") || page.querySelector("header")).after(list);
 }
 
 function median(values) {
@@ -86,8 +87,9 @@ function card(title) {
 
 /** The page's head: what made it, its title, facts as chips. */
 function pageHead(maker, title, facts) {
-  page.append(h("header", {}, h("div", {class: "maker"}, "Feldspar \u00b7 " + maker), h("h1", {}, title), h("ul", {class: "facts"}, facts.filter(Boolean).map((fact) => h("li", {}, fact)))));
+  page.append(h("header", {}, h("div", {class: "maker"}, "Feldspar \u00b7 " + maker), h("h1", {}, title), h("ul", {class: "facts"}, factChips(facts))));
 }
+function factChips(facts) { return facts.filter(Boolean).map((fact) => h("li", {}, fact)); }
 
 /** "12.3 \u2013 14.1", or a dash where one packing gives no interval. */
 function intervalText(row) { return row.low === null || row.low === undefined ? "\u2013" : show(row.low) + " \u2013 " + show(row.high); }
@@ -110,18 +112,18 @@ function kindText(test, sigma3) {
 }
 
 /** Says that runs are missing, and lists those that failed with their reasons. */
-function writeState(missing, failures) {
-  if (missing) page.append(h("p", {class: "notice"}, plural(missing, "run") + (missing === 1 ? " is" : " are") + " still to do. The page holds those that are done; the same command goes on."));
+function writeState(missing, failures, host = page) {
+  if (missing) host.append(h("p", {class: "notice"}, plural(missing, "run") + (missing === 1 ? " is" : " are") + " still to do. The page holds those that are done; the same command goes on."));
   if (!failures.length) return;
-  page.append(h("details", {open: failures.length <= 5}, h("summary", {}, plural(failures.length, "run") + " failed"),
+  host.append(h("details", {open: failures.length <= 5}, h("summary", {}, plural(failures.length, "run") + " failed"),
     table("evidence", [failures.some((f) => f.point) ? th("Point") : null, th("Test"), th("Seed", true), th("Reason")],
       failures.map((f) => h("tr", {}, failures.some((g) => g.point) ? td(f.point) : null, td(kindText(f.test, f.sigma3_MPa), false, "kind"), td(String(f.seed), true), td(f.reason))))));
 }
 
 /** @param more  further names and values */
-function writeSource(p, job, more = []) {
+function writeSource(p, job, more = [], host = page) {
   const list = h("dl", {}), add = (name, value) => list.append(h("dt", {}, name), h("dd", {}, value));
-  page.append(h("h2", {}, "Provenance"), list);
+  host.append(h("h2", {}, "Provenance"), list);
   add("Program", "Feldspar " + p.version + ", commit " + p.commit);
   if (p.command_line) add("Command", p.command_line);
   if (p.started) add("Written", p.started.replace("T", " ").replace("Z", " UTC"));

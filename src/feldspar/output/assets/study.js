@@ -1,4 +1,4 @@
-// The page of a study: points as a table, any property over any axis as a chart.
+// The page of a study: points as a table, any property over any axis as a chart. While the study runs, the live view gives it newer data.
 "use strict";
 
 const lineColors = ["va", "vb", "vc", "vd", "ve", "vf", "vg", "vh", "vi", "vj"];
@@ -18,7 +18,12 @@ function select(label, names, chosen, choose) {
 }
 function propertyName(p) { return p.label + (p.symbol && p.symbol !== p.label ? " (" + p.symbol + ")" : ""); }
 
-const state = {property: 0, axis: 0, fixed: []};   // fixed[a]: number of the value of axis a, or -1 for a line each
+const state = {property: null, axis: null, fixed: []};   // name of a property; fixed[a]: number of the value of axis a, or -1 for a line each
+/** Place of the chosen property. Until one is chosen: the strength in compression, if there is one yet. */
+function propertyPlace() {
+  const place = (name) => data.properties.findIndex((p) => p.name === name);
+  return Math.max(0, place(state.property) >= 0 ? place(state.property) : place("UCS_MPa"));
+}
 
 /** Points that the fixed values leave. */
 function chosenPoints() { return data.points.filter((p) => data.axes.every((_, a) => a === state.axis || state.fixed[a] < 0 || p.labels[a] === valuesOf(a)[state.fixed[a]].label)); }
@@ -36,14 +41,14 @@ function linesOf() {
 
 function seriesOf(lines) {
   const words = !numeric(state.axis), values = valuesOf(state.axis), order = values.map((v) => v.label), shown = lines.slice(0, mostLines);
-  const numbers = values.map((v) => v.number), step = 0.5 / Math.max(shown.length, 4);   // of words: lines stand side by side
+  const chosen = propertyPlace(), numbers = values.map((v) => v.number), step = 0.5 / Math.max(shown.length, 4);   // of words: lines stand side by side
   const series = shown.map(([label, points], k) => {
     const place = (p) => (words ? order.indexOf(p.labels[state.axis]) + step * (k - (shown.length - 1) / 2) : p.numbers[state.axis]);
-    const own = points.filter((p) => p.cells[state.property] && p.cells[state.property].mean !== null).sort((a, b) => place(a) - place(b)), cells = own.map((p) => p.cells[state.property]);
-    return {label: label || propertyName(data.properties[state.property]), x: own.map(place), y: cells.map((c) => c.mean), low: cells.map((c) => c.low), high: cells.map((c) => c.high), color: lineColors[k % lineColors.length],
+    const own = points.filter((p) => p.cells[chosen] && p.cells[chosen].mean !== null).sort((a, b) => place(a) - place(b)), cells = own.map((p) => p.cells[chosen]);
+    return {label: label || propertyName(data.properties[chosen]), x: own.map(place), y: cells.map((c) => c.mean), low: cells.map((c) => c.low), high: cells.map((c) => c.high), color: lineColors[k % lineColors.length],
       width: words ? 0 : 1.7, mark: "dot", size: 3.6};
   });
-  const lab = data.laboratory[data.properties[state.property].name];
+  const lab = data.laboratory[data.properties[chosen].name];
   if (lab !== undefined) {
     const ends = words ? [-0.5, order.length - 0.5] : extent([numbers]);
     series.push({label: "laboratory", x: ends, y: [lab, lab], color: "soft", width: 1.4, dash: true});
@@ -57,22 +62,21 @@ function rangeOf(series) {
   return [low > 0 && low < 0.6 * span ? 0 : low - 0.08 * span, high < 0 && -high < 0.6 * span ? 0 : high + 0.08 * span];
 }
 
+/** @returns what draws the chart again when the data are newer; it shows nothing while no property is known. */
 function writeChart() {
-  if (!data.axes.length || !data.properties.length) return;
-  page.append(h("h2", {}, "Over an axis"));
-  const controls = h("div", {class: "pick"}), box = h("div", {class: "card"}), note = h("p", {class: "soft small"});
-  page.append(controls, box, note);
-  state.property = Math.max(0, data.properties.findIndex((p) => p.name === "UCS_MPa"));
-  state.axis = Math.max(0, data.axes.findIndex((_, a) => numeric(a) && valuesOf(a).length > 1));
-  state.fixed = data.axes.map(() => -1);
-  fitFixed();
-  let chart = null;
+  const host = h("section", {}), controls = h("div", {class: "pick"}), box = h("div", {class: "card"}), note = h("p", {class: "soft small"});
+  page.append(host);
+  let chart = null, offered = "";
   const fill = () => {
-    const others = data.axes.map((_, a) => a).filter((a) => a !== state.axis && valuesOf(a).length > 1);
-    controls.replaceChildren(select("Property", data.properties.map(propertyName), state.property, (i) => { state.property = i; fill(); }));
+    const others = data.axes.map((_, a) => a).filter((a) => a !== state.axis && valuesOf(a).length > 1), names = data.properties.map((p) => p.name), chosen = propertyPlace();
+    offered = names.join();
+    controls.replaceChildren(select("Property", data.properties.map(propertyName), chosen, (i) => { state.property = names[i]; fill(); }));
     if (data.axes.length > 1) controls.append(select("over", data.axes, state.axis, (i) => { state.axis = i; fitFixed(); fill(); }));
     for (const a of others) controls.append(select(data.axes[a], ["a line each", ...valuesOf(a).map((v) => v.label)], state.fixed[a] + 1, (i) => { state.fixed[a] = i - 1; fill(); }));
-    const lines = linesOf(), series = seriesOf(lines), words = !numeric(state.axis), values = valuesOf(state.axis), quantity = data.properties[state.property];
+    draw();
+  };
+  const draw = () => {
+    const lines = linesOf(), series = seriesOf(lines), words = !numeric(state.axis), values = valuesOf(state.axis), quantity = data.properties[propertyPlace()];
     const [from, to] = extent([values.map((v) => v.number)]), margin = 0.04 * (to - from || Math.abs(to) || 1);
     const options = {x: data.axes[state.axis] + (unitOf(state.axis) ? " (" + unitOf(state.axis) + ")" : ""), y: quantity.symbol + (quantity.unit ? " (" + quantity.unit.replace("deg", "\u00b0") + ")" : ""), height: 400,
       xTicks: words ? values.map((v) => v.label) : undefined, xRange: words ? [-0.5, values.length - 0.5] : [from >= 0 && from < 0.35 * to ? 0 : from - margin, to + margin], yRange: rangeOf(series), series};
@@ -80,7 +84,18 @@ function writeChart() {
     else chart = new XYChart(box, options);
     note.textContent = "Mean over the packings with its 95 % interval." + (lines.length > mostLines ? " The first " + mostLines + " of " + lines.length + " lines are drawn: fix an axis to see the others." : "");
   };
-  fill();
+  const renew = () => {
+    if (!data.axes.length || !data.properties.length) return;
+    if (!chart) {
+      host.append(h("h2", {}, "Over an axis"), controls, box, note);
+      state.axis = Math.max(0, data.axes.findIndex((_, a) => numeric(a) && valuesOf(a).length > 1));
+      fitFixed();
+    }
+    if (data.properties.map((p) => p.name).join() === offered) draw();   // a list that is unfolded stays so
+    else fill();
+  };
+  renew();
+  return renew;
 }
 
 /** Fixes the longest other axes at their first value until few enough lines are left. */
@@ -101,14 +116,16 @@ function unitOf(axis) {
 
 const main = ["E_GPa", "nu", "UCS_MPa", "DTS_MPa", "BTS_MPa", "UCS_over_DTS", "cohesion_MPa", "friction_angle_deg", "hoek_brown_mi"];
 
+/** @returns what writes the table again when the data are newer */
 function writeTable() {
-  page.append(h("h2", {}, "Points"));
-  const shown = data.properties.map((p) => main.includes(p.name));
-  if (!shown.some(Boolean)) shown.fill(true, 0, 6);
   const box = h("div", {}), all = h("input", {type: "checkbox", onchange: () => fill()}), find = h("input", {type: "search", placeholder: "words of a point", "aria-label": "Only points with these words", oninput: () => fill()});
-  const details = data.properties.length > shown.filter(Boolean).length;
-  page.append(h("div", {class: "pick"}, data.points.length > 12 ? h("label", {class: "pick"}, "Show", find) : "", details ? h("label", {class: "pick"}, all, "all " + data.properties.length + " properties") : ""), box);
+  const count = h("span", {}), details = h("label", {class: "pick"}, all, count);
+  page.append(h("section", {}, h("h2", {}, "Points"), h("div", {class: "pick"}, data.points.length > 12 ? h("label", {class: "pick"}, "Show", find) : "", details), box));
   const fill = () => {
+    const shown = data.properties.map((p) => main.includes(p.name)), aside = box.querySelector(".scroll")?.scrollLeft || 0;
+    if (!shown.some(Boolean)) shown.fill(true, 0, 6);
+    details.hidden = data.properties.length === shown.filter(Boolean).length;
+    count.textContent = "all " + data.properties.length + " properties";
     const columns = data.properties.map((p, i) => [p, i]).filter(([, i]) => shown[i] || all.checked), wanted = find.value.toLowerCase().split(/\s+/).filter(Boolean);
     const points = data.points.filter((p) => { const text = p.labels.join(" ").toLowerCase(); return wanted.every((word) => text.includes(word)); });
     const open = data.points.some((p) => p.failed || p.missing);
@@ -116,8 +133,10 @@ function writeTable() {
       points.map((p, r) => h("tr", {}, data.axes.length ? p.labels.map((label, a) => td(r && points[r - 1].labels.slice(0, a + 1).join("|") === p.labels.slice(0, a + 1).join("|") ? h("span", {class: "soft"}, label) : label, false, "kind")) : td("the job"),
         columns.map(([, i]) => cellOf(p.cells[i])), td(String(p.done), true), open ? td([p.failed ? p.failed + " failed " : "", p.missing ? p.missing + " to do" : ""].join(""), true) : null, h("td", {}, gradesText(p.grades))))),
       h("p", {class: "soft small"}, "Mean over the packings and half of its 95 % interval; in brackets the packings where they are fewer than three. Point at a value to see each packing's."));
+    box.querySelector(".scroll").scrollLeft = aside;
   };
   fill();
+  return fill;
 }
 
 function cellOf(cell) {
@@ -127,14 +146,40 @@ function cellOf(cell) {
   return h("td", {class: "number", title: each}, show(cell.mean, 3), half === null ? "" : h("span", {class: "soft"}, " \u00b1\u00a0" + show(half, 2)), cell.n < 3 ? h("span", {class: "soft"}, " (" + cell.n + ")") : "");
 }
 
-const done = data.points.reduce((n, p) => n + p.done, 0), missing = data.points.reduce((n, p) => n + p.missing, 0);
+/** What is done, what is missing and what failed. */
+function facts() {
+  return factChips([plural(data.points.length, "point"), plural(data.points.reduce((n, p) => n + p.done, 0), "run") + " done", data.axes.length ? plural(data.axes.length, "axis").replace("axiss", "axes") : null, data.written.at.slice(0, 10)]);
+}
+function writeUnfinished(host) {
+  const folded = host.querySelector("details:not([open])") !== null;
+  host.replaceChildren();
+  writeState(data.points.reduce((n, p) => n + p.missing, 0), data.failures, host);
+  if (folded && host.querySelector("details")) host.querySelector("details").open = false;
+}
+function writeWritten(host) {
+  host.replaceChildren();
+  writeSource({version: data.written.version, commit: data.written.commit, started: data.written.at}, null, [], host);
+}
+
 setTheme();
-pageHead("study", data.title, [plural(data.points.length, "point"), plural(done, "run") + " done", data.axes.length ? plural(data.axes.length, "axis").replace("axiss", "axes") : null, data.written.at.slice(0, 10)]);
+pageHead("study", data.title, []);
 page.append(h("p", {class: "soft small", style: "margin-top:16px"}, "Signs: " + data.signs + "."));
-writeState(missing, data.failures);
-writeChart();
-writeTable();
-writeSource({version: data.written.version, commit: data.written.commit, started: data.written.at}, null);
+const unfinished = h("section", {class: "unfinished"});
+page.append(unfinished);
+const parts = [() => page.querySelector("header .facts").replaceChildren(...facts()), () => writeUnfinished(unfinished), writeChart(), writeTable()];
+parts[0]();
+parts[1]();
+const written = h("section", {});
+page.append(written);
+writeWritten(written);
 if (data.text) page.append(h("details", {}, h("summary", {}, "The study's file" + (data.file ? ": " + data.file : "")), h("pre", {}, data.text)));
 writeContents();
 followTheme();
+
+/** The page with newer data of the same study; what the reader has chosen stays. */
+window.renewPage = (newer) => {
+  Object.assign(data, newer);
+  for (const renew of parts) renew();
+  writeWritten(written);
+  writeContents();
+};
