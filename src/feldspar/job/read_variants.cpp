@@ -19,7 +19,7 @@ bool is_plain(char c) {
 }  // letters of other scripts have no byte below
 
 std::string read_variant_name(const JobTable& table) {
-    const std::string given = table.text("name");
+    std::string given = table.text("name");
     if (!table.sound({"name"})) return given;
     const bool fits = made_of_letters_and(given, " ,.-_%()+=");
     if (!fits || given.size() > longest_name || variant_stem(given).empty() || given.front() == ' ' || given.back() == ' ')

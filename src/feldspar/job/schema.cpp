@@ -74,7 +74,7 @@ Json element_of(const KeyElement& element) {
 Json array_of(Json items, int least) { return {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}}; }
 
 Json type_of(const KeyValue& value) {
-    const Json one = element_of(value.element);
+    Json one = element_of(value.element);
     switch (value.shape) {
         case ValueShape::one:
             return one;

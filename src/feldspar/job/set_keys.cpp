@@ -1,5 +1,7 @@
 #include "feldspar/job/set_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <sstream>
 #include <string_view>
@@ -121,7 +123,7 @@ void set_in_list(toml::array& list, const std::string& list_name, const std::str
         toml::table* table = list.get(i)->as_table();
         if (table != nullptr)
             lay(*table, std::move(named ? *inside.get(word)->as_table() : inside), setting,
-                named ? list_name + "." + word : list_name);
+                named ? fmt::format("{}.{}", list_name, word) : list_name);
     }
 }
 

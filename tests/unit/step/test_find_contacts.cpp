@@ -55,6 +55,18 @@ TEST(FindContacts, OverlapsOfTheStartAreAtRest) {
     EXPECT_EQ(finder.update(assembly, 0.0).made, 1);
 }
 
+// Each of two bodies may move by half of the skin before pairs are looked for again, so those that the skin parts are candidates.
+TEST(FindContacts, BodiesThatTheSkinPartsMeetHalfWay) {
+    Assembly assembly = bar();
+    for (Contact& contact : assembly.contacts) contact.dropped = true;
+    constexpr double kSkin = 1e-3;
+    lift_upper(assembly, 0.97 * kSkin);
+    ContactFinder finder(assembly, kSkin);
+    lift_upper(assembly, -0.49 * kSkin);
+    assembly.nodes.displacement[assembly.bodies[0].centre_node].y += 0.49 * kSkin;
+    EXPECT_EQ(finder.update(assembly, 0.0).made, 1);
+}
+
 // What comes from beyond the skin is found once it has come half of it: bodies that were no candidates.
 TEST(FindContacts, BodiesThatWereFarApartMeet) {
     Assembly assembly = bar();
