@@ -27,10 +27,10 @@ def _project() -> dict:
     return project
 
 
-def _metadata(project: dict) -> str:
+def _metadata(project: dict, numpy: str = "numpy") -> str:
     lines = ["Metadata-Version: 2.1", f"Name: {project['name']}", f"Version: {project['version']}", f"Summary: {project['description']}", f"License: {project['license']['text']}",
              f"Requires-Python: {project['requires-python']}"]
-    lines += [f"Requires-Dist: {name}" for name in project["dependencies"]]
+    lines += [f"Requires-Dist: {numpy if name == 'numpy' else name}" for name in project["dependencies"]]
     for extra, names in project["optional-dependencies"].items():
         lines += [f"Provides-Extra: {extra}"] + [f'Requires-Dist: {name} ; extra == "{extra}"' for name in names]
     return "\n".join(lines) + "\n\n" + "Documentation: docs/python.md in the repository.\n"
@@ -42,21 +42,54 @@ def _cmake(*arguments: str) -> None:
     subprocess.run(["cmake", *arguments], check=True, cwd=ROOT, env=environment)
 
 
-def _build(build: Path, prefix: str) -> None:
+def _configured(config_settings) -> Path:
+    """The build directory, configured: some seconds."""
+    build = (ROOT / (config_settings or {}).get("build-dir", "build/wheel")).resolve()
     if not (build / "CMakeCache.txt").exists():
         _cmake("-S", str(ROOT), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DFELDSPAR_TESTS=OFF", "-DFELDSPAR_BENCHMARKS=OFF", "-DFELDSPAR_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}")
+    return build
+
+
+def _build(build: Path, prefix: str) -> None:
     _cmake("--build", str(build), "--parallel", str(len(os.sched_getaffinity(0))), "--target", "feldspar_python")
     _cmake("--install", str(build), "--component", "python", "--prefix", prefix, "--strip")
 
 
+def _numpy_for(build: Path) -> str:
+    """Which NumPy the module can be used with: pybind11 knows that of version 2 from 2.12 on, and Debian 12 has 2.10."""
+    config = re.search(r"^pybind11_DIR:PATH=(/.+)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE)
+    if not config:
+        raise RuntimeError(f"{build} was configured without pybind11, so it has no Python module: scripts/install-dependencies, or another build-dir")
+    version = re.search(r'set\(PACKAGE_VERSION "(\d+)\.(\d+)', (Path(config.group(1)) / "pybind11ConfigVersion.cmake").read_text(encoding="utf-8"))
+    return "numpy" if (int(version.group(1)), int(version.group(2))) >= (2, 12) else "numpy<2"
+
+
+def _tag() -> str:
+    interpreter = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    return f"{interpreter}-{interpreter}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+
+
+def _texts(project: dict, build: Path) -> dict:
+    """What stands in the .dist-info directory of a wheel."""
+    return {"METADATA": _metadata(project, _numpy_for(build)), "WHEEL": f"Wheel-Version: 1.0\nGenerator: feldspar build_backend\nRoot-Is-Purelib: false\nTag: {_tag()}\n"}
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Without it pip would build everything while it says that it prepares metadata."""
+    project = _project()
+    directory = Path(metadata_directory) / f"{project['name']}-{project['version']}.dist-info"
+    directory.mkdir()
+    for text, content in _texts(project, _configured(config_settings)).items():
+        (directory / text).write_text(content, encoding="utf-8")
+    return directory.name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     project = _project()
-    build = (ROOT / (config_settings or {}).get("build-dir", "build/wheel")).resolve()
-    interpreter = f"cp{sys.version_info.major}{sys.version_info.minor}"
-    tag = f"{interpreter}-{interpreter}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+    build = _configured(config_settings)
     stem = f"{project['name']}-{project['version']}"
-    texts = {"METADATA": _metadata(project), "WHEEL": f"Wheel-Version: 1.0\nGenerator: feldspar build_backend\nRoot-Is-Purelib: false\nTag: {tag}\n"}
-    name = f"{stem}-{tag}.whl"
+    texts = _texts(project, build)
+    name = f"{stem}-{_tag()}.whl"
     with tempfile.TemporaryDirectory() as prefix:
         _build(build, prefix)
         files = {str(file.relative_to(prefix)): file.read_bytes() for file in sorted(Path(prefix).rglob("*")) if file.is_file()}
