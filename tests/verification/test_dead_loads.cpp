@@ -75,7 +75,14 @@ TEST(EndPlates, WithFrictionHoldTheEndsOfASquatSpecimen) {
 }
 
 TEST(Weight, DoesNotTakeTheSpecimenAwayFromThePlateThatLoadsIt) {
-    const RunControl control = fixtures::threads(1);
+    RunControl control = fixtures::threads(1);
+    long long told = -1;  // the last step of the computed start that was told
+    control.progress = [&](const TestProgress& p) {
+        if (p.stage != "elastic start") return;
+        EXPECT_GE(p.step, told);
+        EXPECT_LT(p.seconds_left, 0.0) << "nobody knows";
+        told = p.step;
+    };
     for (const bool weighs_much : {false, true})
         for (const GrainKind kind : {GrainKind::flexible, GrainKind::rigid}) {
             TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::custom, fixtures::model(kind));
@@ -95,9 +102,13 @@ TEST(Weight, DoesNotTakeTheSpecimenAwayFromThePlateThatLoadsIt) {
                 plate.contact.mu = 0.4;
                 if (press) plate.motion = {0.0, -1.0};
             }
+            told = -1;
             Experiment e(s, control);
             choose_step(e);
             prepare(e);
+            if (!weighs_much) {
+                EXPECT_LE(e.preparation_steps - told, 100);  // a word at least so often
+            }
             const Body& press = e.assembly.bodies[e.assembly.fixtures[1].plate];
             const double gone_m = -e.assembly.nodes.displacement[press.centre_node].y;
             constexpr double kDensity = 2650.0, kE_Pa = 25.8e9, kHeight_m = 0.04;

@@ -23,10 +23,16 @@ constexpr long long kMaximumSteps = 20000;     // of a relaxation; of a large sp
 constexpr double kMaximumTravelTimes = 100.0;  // a slope of 2264 grains takes 20 of them under its weight
 
 void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
-    if (e.control.progress) e.control.progress({.stage = "elastic start", .step = e.preparation_steps, .seconds_left = -1.0});
+    constexpr long long kTold = 100;  // steps from word to word: a large specimen takes an hour to come to rest
+    long long made = 0;
+    const auto look = [&] {  // before each step
+        if (e.control.progress && made % kTold == 0)
+            e.control.progress({.stage = "elastic start", .step = e.preparation_steps + made, .seconds_left = -1.0});
+        ++made;
+        return e.stopped();
+    };
     const long long most = std::max(kMaximumSteps, std::llround(kMaximumTravelTimes * e.travel_time / e.settings.dt));
-    const Relaxation r = relax(
-        e.assembly, e.team, Strength::unlimited, tolerance, most, [&] { return e.stopped(); }, e.settings.dt);
+    const Relaxation r = relax(e.assembly, e.team, Strength::unlimited, tolerance, most, look, e.settings.dt);
     e.preparation_steps += r.steps;
     if (e.stopped()) throw Interrupted();
     if (!r.converged)
