@@ -29,35 +29,40 @@ namespace feldspar {
 namespace {
 
 // The grains are the cells, which fill the outline: larger than the discs that were asked for, which leave pores.
-std::string sizes_text(const SizeSummary& sizes) {
-    return fmt::format("mean {:.3g}, {:.3g} to {:.3g}, D50 {:.3g}", 1e3 * sizes.mean_m, 1e3 * sizes.minimum_m,
-                       1e3 * sizes.maximum_m, 1e3 * sizes.D50_m);
+std::string sizes_text(const SizeSummary& sizes, double unit_m) {
+    return fmt::format("mean {:.3g}, {:.3g} to {:.3g}, D50 {:.3g}", sizes.mean_m / unit_m, sizes.minimum_m / unit_m,
+                       sizes.maximum_m / unit_m, sizes.D50_m / unit_m);
 }
 
 void print_specimen(const Printing& print, const std::string& what, const Specimen& specimen) {
     const SpecimenQuality& q = specimen.quality;
+    const bool metres = q.cell_sizes.mean_m >= 0.1;  // blocks of a slope
+    const double unit_m = metres ? 1.0 : 1e-3;
+    const char* const unit = metres ? "m" : "mm";
     print.say_results("{} (seed {})\n", what, specimen.seed);
     print.say_results("  grains                {}\n", q.grains);
     print.say_results("  contacts              {}\n", q.contacts);
     print.say_results("  nodes, triangles      {}, {}\n", q.nodes, q.triangles);
     print.say_results("  vertices per grain    {:.2f}\n", q.vertices_per_grain);
     print.say_results("  merged edges          {}\n", q.merged_edges);
-    print.say_results("  smallest edge         {:.4f} mm\n", 1e3 * q.smallest_edge_m);
-    print.say_results("  smallest triangle     {:.6f} mm2, {:.4f} mm high\n", 1e6 * q.smallest_triangle_m2,
-                      1e3 * q.smallest_triangle_height_m);
+    print.say_results("  smallest edge         {:.4f} {}\n", q.smallest_edge_m / unit_m, unit);
+    print.say_results("  smallest triangle     {:.6f} {}2, {:.4f} {} high\n", q.smallest_triangle_m2 / (unit_m * unit_m), unit,
+                      q.smallest_triangle_height_m / unit_m, unit);
     if (specimen.spec.given_cells.given())
         print.say_results("  corners of the file   {} welded, {} put into edges, {} moved onto the outline\n", q.welded,
                           q.inserted, q.moved);
     else
         print.say_results("  overlap of the discs  {:.2f} % of the mean diameter on average, {:.2f} % at most\n",
                           100.0 * q.overlap_mean, 100.0 * q.overlap_max);
-    print.say_results("  grain sizes, mm       {}\n", sizes_text(q.cell_sizes));
-    if (!specimen.spec.given_cells.given()) print.say_results("  discs asked for, mm   {}\n", sizes_text(q.disc_sizes));
+    print.say_results("  {:<22}{}\n", fmt::format("grain sizes, {}", unit), sizes_text(q.cell_sizes, unit_m));
+    if (!specimen.spec.given_cells.given())
+        print.say_results("  {:<22}{}\n", fmt::format("discs asked for, {}", unit), sizes_text(q.disc_sizes, unit_m));
     const std::vector<PhaseFill> fills = fill_of_phases(specimen);
     for (std::size_t p = 0; p < fills.size(); ++p)
-        print.say_results("  {:<22}{} grains, {:.2f} % of the area ({:.4g} % asked for), mm: {}; discs {}\n",
+        print.say_results("  {:<22}{} grains, {:.2f} % of the area ({:.4g} % asked for), {}: {}; discs {}\n",
                           specimen.packing.phase_names[p], fills[p].grains, 100.0 * fills[p].area_share,
-                          100.0 * specimen.spec.phase_sizes[p].share, sizes_text(fills[p].cells), sizes_text(fills[p].discs));
+                          100.0 * specimen.spec.phase_sizes[p].share, unit, sizes_text(fills[p].cells, unit_m),
+                          sizes_text(fills[p].discs, unit_m));
     if (q.crossings > 0)
         print.say_results(
             "  cuts that cross       {} crossings, or ends on another cut; {} pieces were too small for a grain and went to a "

@@ -74,5 +74,53 @@ TEST(EndPlates, WithFrictionHoldTheEndsOfASquatSpecimen) {
     EXPECT_LT(spread[1], 0.8 * spread[0]);      // measured 0.145 and 0.231
 }
 
+TEST(Weight, DoesNotTakeTheSpecimenAwayFromThePlateThatLoadsIt) {
+    RunControl control = fixtures::threads(1);
+    long long told = -1;  // the last step of the computed start that was told
+    control.progress = [&](const TestProgress& p) {
+        if (p.stage != "elastic start") return;
+        EXPECT_GE(p.step, told);
+        EXPECT_LT(p.seconds_left, 0.0) << "nobody knows";
+        told = p.step;
+    };
+    for (const bool weighs_much : {false, true})
+        for (const GrainKind kind : {GrainKind::flexible, GrainKind::rigid}) {
+            TestSetup s = fixtures::setup(fixtures::rectangle(0.02, 0.04), methods::custom, fixtures::model(kind));
+            s.test = usual_test(methods::custom);
+            s.test.custom.name = "press";
+            // By its weight the column shortens by much more than the first motion of the press; of the larger one, which would
+            // damage it, the ramp brings a share after the other.
+            s.test.custom.gravity_m_s2 = {0.0, weighs_much ? -8e5 : -1e3};
+            s.test.maximum_stress_Pa = weighs_much ? 1e6 : 2e5;
+            s.test.custom.fixtures.resize(2);
+            for (const bool press : {false, true}) {
+                FixtureSpec& plate = s.test.custom.fixtures[press];
+                plate.name = press ? "press" : "table";
+                plate.kind = FixtureKind::plate;
+                plate.part.label = press ? "top" : "bottom";
+                plate.normal = {0.0, press ? 1.0 : -1.0};
+                plate.contact.mu = 0.4;
+                if (press) plate.motion = {0.0, -1.0};
+            }
+            told = -1;
+            Experiment e(s, control);
+            choose_step(e);
+            prepare(e);
+            if (!weighs_much) {
+                EXPECT_LE(e.preparation_steps - told, 100);  // a word at least so often
+            }
+            const Body& press = e.assembly.bodies[e.assembly.fixtures[1].plate];
+            const double gone_m = -e.assembly.nodes.displacement[press.centre_node].y;
+            constexpr double kDensity = 2650.0, kE_Pa = 25.8e9, kHeight_m = 0.04;
+            const double shortened_m = -0.5 * kDensity * s.test.custom.gravity_m_s2.y * kHeight_m * kHeight_m / kE_Pa;
+            EXPECT_EQ(e.computed_start, !weighs_much);
+            EXPECT_GT((gone_m - e.platen_travel_m) / shortened_m, 0.9) << name(kind);  // after the column: no loading motion
+            EXPECT_EQ(e.consolidated.platen_displacement_m, 0.0);
+            EXPECT_NEAR(e.consolidated.stress_top_Pa / s.test.maximum_stress_Pa.value(), 0.0, 1e-3);  // just in touch
+            evaluate_forces(e.assembly, e.team, Strength::real);
+            EXPECT_GT(loading_reaction(e.assembly), 0.0) << name(kind) << (weighs_much ? ", heavy" : "");
+        }
+}
+
 }  // namespace
 }  // namespace feldspar

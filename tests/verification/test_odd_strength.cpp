@@ -54,6 +54,10 @@ TEST(OddStrength, AStressThatBreaksNothingIsExplained) {
     EXPECT_GT(softened.nearest.damage, 0.0);
     EXPECT_EQ(softened.nearest.share, 1.0);
     EXPECT_TRUE(says(softened, " of its strength there was gone.")) << all(softened);
+    TestResult gone = softened;
+    gone.nearest.damage = 0.998;
+    gone.properties.remarks = why_odd(gone, gone.properties);
+    EXPECT_TRUE(says(gone, ": 100 % of its strength there was gone.")) << all(gone);  // two digits, and no 1e+02
 }
 
 TEST(OddStrength, AStrainThatBreaksNothingIsExplained) {

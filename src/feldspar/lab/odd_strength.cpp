@@ -48,15 +48,21 @@ double expected_strength(const TestResult& result) {
     return nan;
 }
 
+// Two digits, and 100 as 100.
+std::string per_cent(double share) {
+    const double value = 100.0 * share;
+    return value < 99.5 ? fmt::format("{:.2g} %", value) : fmt::format("{:.0f} %", value);
+}
+
 std::string nearest_sentence(const TestResult& result) {
     const NearestToFailure& n = result.nearest;
     if (std::isnan(n.share)) return {};
     const std::string where = fmt::format("at ({:.1f}, {:.1f}) mm", 1e3 * n.place.x, 1e3 * n.place.y),
                       mode = n.in_tension ? "tension" : "shear";
     if (n.damage > 0.0)
-        return fmt::format(" The contact nearest to failure, {}, had softened in {}: {:.2g} % of its strength there was gone.",
-                           where, mode, 100.0 * n.damage);
-    return fmt::format(" The contact nearest to failure, {}, bore {:.2g} % of its strength in {}.", where, 100.0 * n.share, mode);
+        return fmt::format(" The contact nearest to failure, {}, had softened in {}: {} of its strength there was gone.", where,
+                           mode, per_cent(n.damage));
+    return fmt::format(" The contact nearest to failure, {}, bore {} of its strength in {}.", where, per_cent(n.share), mode);
 }
 
 std::string expected_sentence(double expected_Pa, double largest_Pa) {

@@ -16,15 +16,23 @@
 namespace feldspar {
 namespace {
 
-constexpr double kTolerance = 1e-5;    // mean |F| / mean |contact force| of the relaxed body
-constexpr double kOnTheWay = 1e-3;     // the same for a state that is only scaled or corrected next
-constexpr double kBelowDamage = 0.98;  // of the first damage: where the elastic phase ends
-constexpr long long kMaximumSteps = 20000;
+constexpr double kTolerance = 1e-5;            // mean |F| / mean |contact force| of the relaxed body
+constexpr double kOnTheWay = 1e-3;             // the same for a state that is only scaled or corrected next
+constexpr double kBelowDamage = 0.98;          // of the first damage: where the elastic phase ends
+constexpr long long kMaximumSteps = 20000;     // of a relaxation; of a large specimen so many travel times of a wave:
+constexpr double kMaximumTravelTimes = 100.0;  // a slope of 2264 grains takes 20 of them under its weight
 
 void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
-    if (e.control.progress) e.control.progress({.stage = "elastic start", .step = e.preparation_steps});
-    const Relaxation r = relax(
-        e.assembly, e.team, Strength::unlimited, tolerance, kMaximumSteps, [&] { return e.stopped(); }, e.settings.dt);
+    constexpr long long kTold = 100;  // steps from word to word: a large specimen takes an hour to come to rest
+    long long made = 0;
+    const auto look = [&] {  // before each step
+        if (e.control.progress && made % kTold == 0)
+            e.control.progress({.stage = "elastic start", .step = e.preparation_steps + made, .seconds_left = -1.0});
+        ++made;
+        return e.stopped();
+    };
+    const long long most = std::max(kMaximumSteps, std::llround(kMaximumTravelTimes * e.travel_time / e.settings.dt));
+    const Relaxation r = relax(e.assembly, e.team, Strength::unlimited, tolerance, most, look, e.settings.dt);
     e.preparation_steps += r.steps;
     if (e.stopped()) throw Interrupted();
     if (!r.converged)
@@ -334,7 +342,7 @@ void bring_up_dead_loads(Experiment& e) {
         e.preparation_steps += 10;
         if (!std::isfinite(force)) throw NumericalError("a force is not a number during the consolidation");
         if (e.control.progress && k % 100 == 0)
-            e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
+            e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force), .seconds_left = -1.0});
         const auto [loading, rest] = reactions(e.assembly);
         const double mean = 0.5 * (loading + rest);  // which is reported
         const bool there = !e.confined() || std::abs(mean - target) < 2e-3 * target;
@@ -406,6 +414,29 @@ double go_below_damage(Experiment& e, const BodyState& unloaded) {
     return share;
 }
 
+// Dead loads may take the specimen away from the plates that are to load it, as its weight does under a footing. These go after
+// it together, until the first of them touches; that is no loading motion.
+void bring_into_touch(Experiment& e) {
+    for (const Fixture& fixture : e.assembly.fixtures)
+        if (fixture.moves() && fixture.plate < 0) return;
+    const double unit_m = 1e-6 * e.length_m, loading_m = e.platen_travel_m;
+    const BodyState apart = capture(e.assembly, loading_m);
+    move_fixtures(e, unit_m);
+    double way_m = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : e.assembly.contacts) {
+        if (!contact.plate || contact.dropped) continue;
+        for (int p = contact.first_point; p < contact.first_point + contact.points; ++p) {
+            const auto i = static_cast<std::size_t>(e.assembly.points[p].state);
+            const double gap_m = apart.bonds.un_m[i], closed_m = gap_m - e.assembly.bonds.un_m[i];
+            if (closed_m > 1e-3 * unit_m) way_m = std::min(way_m, std::max(0.0, gap_m) * unit_m / closed_m);
+        }
+    }
+    go_to(e, apart);
+    if (!(way_m > 0.0) || !std::isfinite(way_m)) return;
+    move_fixtures(e, way_m);
+    e.platen_travel_m = loading_m;
+}
+
 // Dead loads on a body of unlimited strength, while the fixtures rest; where they would damage it, a share of them.
 // @return whether it bears all of them
 bool press_elastically(Experiment& e) {
@@ -416,11 +447,13 @@ bool press_elastically(Experiment& e) {
     const bool elastic = consolidated_is_elastic(e, unloaded);
     if (!elastic) go_below_damage(e, unloaded);
     hold_springs(e);
+    bring_into_touch(e);
     return elastic;
 }
 
 void rest_under_dead_loads(Experiment& e) {
     hold_springs(e);
+    bring_into_touch(e);
     note_consolidated(e);
 }
 

@@ -551,7 +551,7 @@ class Viewer {
     ctx.stroke();
     ctx.font = 12 * this.dpr + "px system-ui, sans-serif";
     ctx.textAlign = "left";
-    ctx.fillText(show(length, 1) + " mm", x + 4 * this.dpr, y - 6 * this.dpr);
+    ctx.fillText(length < 1000 ? show(length, 1) + " mm" : show(length / 1000, 1) + " m", x + 4 * this.dpr, y - 6 * this.dpr);
     if (this.magnify === 1) return;
     ctx.textAlign = "right";
     ctx.fillText(this.magnify > 1 ? "displacements \u00d7 " + this.magnify : "undeformed", ctx.canvas.width - 10 * this.dpr, y - 2 * this.dpr);
