@@ -592,6 +592,24 @@ TEST(CommandLine, VerifyRunsTheChecksThatAreAskedForAndLeavesAPage) {
     EXPECT_EQ(run_program(place.path(), {"verify", "--only", "laws.work-in", "--out", "results"}).code, 2);
 }
 
+TEST(CommandLine, ClaimsAreHeldAgainstWhatHasBeenRun) {
+    const TemporaryFolder place;
+    const std::string paper = std::string(FELDSPAR_SOURCE_DIR) + "/studies/paper";
+    const Outcome all =
+        run_program(place.path(), {"claims", paper, "--results", "none", "--csv", "all.csv", "--markdown", "all.md"});
+    EXPECT_EQ(all.code, 0) << all.err;
+    EXPECT_NE(all.out.find("Claims: 23 of 23 not run"), std::string::npos) << all.out;
+    EXPECT_EQ(read_text(place / "all.csv").rfind("claim,figure,claim_verdict,statement,", 0), 0U);
+    EXPECT_NE(read_text(place / "all.md").find("not run"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(place / "none")) << "nothing is made where nothing is";
+    const Outcome one = run_program(place.path(), {"claims", paper, "--results", "none", "--claim", "C01"});
+    EXPECT_EQ(one.code, 0) << one.err;
+    EXPECT_NE(one.out.find("Claims: 1 of 1 not run"), std::string::npos) << one.out;
+    const Outcome unknown = run_program(place.path(), {"claims", paper, "--claim", "nonsense"});
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_NE(unknown.err.find("there is no claim 'nonsense'"), std::string::npos) << unknown.err;
+}
+
 TEST(CommandLine, AnExistingDirectoryIsRefused) {
     const TemporaryFolder place;
     write_text(place / "job.toml", small_job());
