@@ -16,11 +16,12 @@
 namespace feldspar {
 namespace {
 
-constexpr double kTolerance = 1e-5;            // mean |F| / mean |contact force| of the relaxed body
-constexpr double kOnTheWay = 1e-3;             // the same for a state that is only scaled or corrected next
-constexpr double kBelowDamage = 0.98;          // of the first damage: where the elastic phase ends
-constexpr long long kMaximumSteps = 20000;     // of a relaxation; of a large specimen so many travel times of a wave:
-constexpr double kMaximumTravelTimes = 100.0;  // a slope of 2264 grains takes 20 of them under its weight
+constexpr double kTolerance = 1e-5;         // mean |F| / mean |contact force| of the relaxed body
+constexpr double kOnTheWay = 1e-3;          // the same for a state that is only scaled or corrected next
+constexpr double kBelowDamage = 0.98;       // of the first damage: where the elastic phase ends
+constexpr long long kMaximumSteps = 20000;  // of a relaxation; the short slope of examples/slope takes some 2,100
+constexpr double kMaximumTravelTimes =
+    100.0;  // of a wave: in a large specimen rest comes after as many of them, not after as many steps
 
 void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
     constexpr long long kTold = 100;  // steps from word to word: a large specimen takes an hour to come to rest
