@@ -157,7 +157,7 @@ toml::table read_piece(const TableReader& table, std::string_view key) {
 }
 
 std::string read_directory_name(const TableReader& table, std::string_view key, const std::string& fallback) {
-    const std::string name = table.text(key, fallback);
+    std::string name = table.text(key, fallback);
     const bool fits = !name.empty() && name.size() <= 100 && name.front() != '.' && made_of_letters_and(name, "-_.");
     if (!fits) {
         table.check({key}, [&] {
@@ -286,7 +286,7 @@ Measure BaseJob::value_in(const toml::table& piece, const std::string& key) cons
     const toml::table resolved = parse_toml(resolved_toml(with(piece)), "resolved job");
     const toml::node_view<const toml::node> node = toml::at_path(resolved, key);
     if (!node) throw InputError({{}, 0, 0, key}, "the job has no such key, which `times` names", "a key of the resolved job");
-    const Measure measure = measure_of(*node.node());
+    Measure measure = measure_of(*node.node());
     if (std::isnan(measure.number)) throw InputError({{}, 0, 0, key}, "is not a number, which `times` could multiply");
     return measure;
 }

@@ -88,7 +88,7 @@ std::string sbatch(const SlurmPlan& plan, const std::string& script, const std::
     command.push_back(script);
     const auto result = call_program(command, plan.directory);
     if (!result) no_slurm("sbatch");
-    const std::string number = split(trimmed(result->out) + ";", ';').front();  // "12" or "12;cluster"
+    std::string number = split(trimmed(result->out) + ";", ';').front();  // "12" or "12;cluster"
     if (result->code != 0 || elements_in(number).empty())
         throw InputError({(plan.directory / script).string(), 0, 0, {}},
                          fmt::format("sbatch did not take this script: {}", trimmed(result->err + result->out)));

@@ -81,7 +81,7 @@ fs::path new_directory(const fs::path& parent) {
     std::error_code error;
     fs::create_directories(parent, error);
     for (int number = 1; !error; ++number) {
-        const fs::path directory = parent / std::to_string(number);
+        fs::path directory = parent / std::to_string(number);
         if (fs::create_directory(directory, error)) return directory;
     }
     throw OutputError(fmt::format("cannot make a directory in '{}': {}", parent.string(), error.message()));
