@@ -34,7 +34,7 @@ Screen screen() {
 std::string rate_and_rest(const TestProgress& p) {
     std::string text;
     if (p.steps_per_second > 0.0) text += fmt::format(", {:.0f} steps/s", p.steps_per_second);
-    if (p.step > 0 && p.seconds_left > 0.0 && std::isfinite(p.seconds_left))  // 0: the test has not begun to load
+    if (p.step > 0 && p.seconds_left >= 0.0 && std::isfinite(p.seconds_left))
         text += fmt::format(", about {} left", duration_text(p.seconds_left));
     return text;
 }

@@ -28,7 +28,7 @@ void relax_or_throw(Experiment& e, double tolerance = kTolerance) {
     long long made = 0;
     const auto look = [&] {  // before each step
         if (e.control.progress && made % kTold == 0)
-            e.control.progress({.stage = "elastic start", .step = e.preparation_steps + made, .seconds_left = -1.0});
+            e.control.progress({.stage = "elastic start", .step = e.preparation_steps + made});
         ++made;
         return e.stopped();
     };
@@ -343,7 +343,7 @@ void bring_up_dead_loads(Experiment& e) {
         e.preparation_steps += 10;
         if (!std::isfinite(force)) throw NumericalError("a force is not a number during the consolidation");
         if (e.control.progress && k % 100 == 0)
-            e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force), .seconds_left = -1.0});
+            e.control.progress({.stage = "consolidation", .step = k, .axial_stress_Pa = e.stress(force)});
         const auto [loading, rest] = reactions(e.assembly);
         const double mean = 0.5 * (loading + rest);  // which is reported
         const bool there = !e.confined() || std::abs(mean - target) < 2e-3 * target;

@@ -23,7 +23,7 @@ struct TestProgress {
     double peak_stress_Pa = 0.0;   ///< magnitude so far
     int cracks = 0;
     double steps_per_second = 0.0;
-    double seconds_left = 0.0;  ///< an estimate; < 0 when there is none
+    double seconds_left = -1.0;  ///< an estimate; < 0 when there is none
 };
 
 /// Where a running test keeps its state, so that it goes on where it was after the program was ended.
