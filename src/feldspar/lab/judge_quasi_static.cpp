@@ -11,6 +11,7 @@
 #include "feldspar/base/median.hpp"
 #include "feldspar/lab/brazilian_failure.hpp"
 #include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/lab/per_cent.hpp"
 #include "feldspar/lab/post_peak.hpp"
 #include "feldspar/lab/properties.hpp"
 #include "feldspar/lab/rate_control.hpp"
@@ -43,8 +44,6 @@ struct Criterion {
     bool holds_b() const { return seen <= limit_b; }
 };
 
-std::string percent(double value) { return fmt::format("{:.2g} %", 100.0 * value); }
-
 std::vector<Criterion> criteria(const QuasiStaticEvidence& e, MethodId kind) {
     const MethodVerdict& allowed = method_of(kind).verdict;
     return {{e.error_estimate, allowed.error_a, grade_b_error,
@@ -60,7 +59,7 @@ std::string failures(const std::vector<Criterion>& table, bool against_a) {
         if (against_a ? c.holds_a() : c.holds_b()) continue;
         if (!text.empty()) text += " and ";
         const double limit = against_a ? c.limit_a : c.limit_b;
-        text += std::isfinite(c.seen) ? fmt::format("{} is {} ({} allowed)", c.name, percent(c.seen), percent(limit))
+        text += std::isfinite(c.seen) ? fmt::format("{} is {} ({} allowed)", c.name, per_cent(c.seen), per_cent(limit))
                                       : fmt::format("{} is not known", c.name);
     }
     return text;
@@ -108,10 +107,10 @@ std::string verdict(const QuasiStaticEvidence& e, const std::vector<Criterion>& 
     const std::string repeat =
         e.confirmed ? fmt::format(", strength changed by {:+.2g} % in a slower repeat", 100.0 * e.peak_change_at_third) : "";
     const double slower = std::max(1.5, excess(table, e.grade != 'C'));
-    const std::string grade_a = percent(table.front().limit_a);
+    const std::string grade_a = per_cent(table.front().limit_a);
     if (e.grade == 'A') {
         return fmt::format("Quasi-static to about {} {} (estimated error of the strength {}, {} agree within {}{}){}.", grade_a,
-                           until, percent(e.error_estimate), sides_of(result.test), percent(e.imbalance_mean), repeat, after);
+                           until, per_cent(e.error_estimate), sides_of(result.test), per_cent(e.imbalance_mean), repeat, after);
     }
     if (e.grade == 'B') {
         return fmt::format("Quasi-static to about 2 % {}: {}; to reach {}, {}{}.", until, failures(table, true), grade_a,

@@ -8,6 +8,7 @@
 
 #include "feldspar/base/counted.hpp"
 #include "feldspar/lab/loading_curve.hpp"
+#include "feldspar/lab/per_cent.hpp"
 #include "feldspar/lab/scaling_rules.hpp"
 #include "feldspar/laws/softening.hpp"
 #include "feldspar/methods/method.hpp"
@@ -46,12 +47,6 @@ double expected_strength(const TestResult& result) {
     if (strength == "DTS") return expected.DTS_Pa;
     if (strength == "BTS") return expected.BTS_Pa;
     return nan;
-}
-
-// Two digits, and 100 as 100.
-std::string per_cent(double share) {
-    const double value = 100.0 * share;
-    return value < 99.5 ? fmt::format("{:.2g} %", value) : fmt::format("{:.0f} %", value);
 }
 
 std::string nearest_sentence(const TestResult& result) {
