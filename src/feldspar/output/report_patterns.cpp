@@ -46,22 +46,21 @@ void add_outlines(Block& block, const Specimen& specimen, const Steps& steps) {
     const GrainMesh& mesh = specimen.mesh;
     std::vector<int> begin{0};
     std::vector<std::uint16_t> points;
+    const auto end_outline = [&] { begin.push_back(static_cast<int>(points.size() / 2)); };
     if (mesh.vertex_count.size() > kMostOutlines) {
         for (const Cell& cell : specimen.cells.cells)
             for (std::size_t k = 0; k < cell.vertices.size(); ++k) {
                 if (cell.neighbours[k] >= 0) continue;
                 for (const std::size_t end : {k, (k + 1) % cell.vertices.size()})
                     steps.add(points, specimen.cells.vertices[static_cast<std::size_t>(cell.vertices[end])]);
-                begin.push_back(static_cast<int>(points.size() / 2));
+                end_outline();
             }
-        block.add("begin", "int32", begin);
-        block.add("points", "uint16", points);
-        return;
-    }
-    for (std::size_t g = 0; g < mesh.vertex_count.size(); ++g) {
-        for (int k = 0; k < mesh.vertex_count[g]; ++k)
-            steps.add(points, mesh.nodes[static_cast<std::size_t>(mesh.node_begin[g] + k)]);
-        begin.push_back(static_cast<int>(points.size() / 2));
+    } else {
+        for (std::size_t g = 0; g < mesh.vertex_count.size(); ++g) {
+            for (int k = 0; k < mesh.vertex_count[g]; ++k)
+                steps.add(points, mesh.nodes[static_cast<std::size_t>(mesh.node_begin[g] + k)]);
+            end_outline();
+        }
     }
     block.add("begin", "int32", begin);
     block.add("points", "uint16", points);
@@ -69,7 +68,7 @@ void add_outlines(Block& block, const Specimen& specimen, const Steps& steps) {
 
 /// @return how many cracks each that is drawn stands for
 std::size_t add_cracks(Block& block, const std::string& number, const TestResult& result, const Steps& steps) {
-    const auto every = static_cast<std::size_t>(cracks_for_one(result.cracks.size()));
+    const std::size_t every = cracks_for_one(result.cracks.size());
     std::vector<std::uint16_t> ends;
     std::vector<std::uint8_t> mode;
     for (std::size_t c = 0; c < result.cracks.size(); c += every) {

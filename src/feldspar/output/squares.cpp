@@ -177,7 +177,7 @@ Squares in_squares(const TestResult& result, std::size_t count) {
         drawn.snapshots.push_back(std::move(s));
     }
     squares.crack_every = cracks_for_one(result.cracks.size());
-    for (std::size_t c = 0; c < result.cracks.size(); c += static_cast<std::size_t>(squares.crack_every)) {
+    for (std::size_t c = 0; c < result.cracks.size(); c += squares.crack_every) {
         drawn.cracks.push_back(result.cracks[c]);
         drawn.cracks.back().grain_a = drawn.cracks.back().grain_b = -1;  // grains are not here
         squares.square_of_crack.push_back(grid.square_at(result.cracks[c].place));

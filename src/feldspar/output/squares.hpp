@@ -1,6 +1,7 @@
 // A large specimen in squares, for pictures: no screen shows a million grains, and no browser draws them. Internal to this room.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -15,14 +16,15 @@ struct Squares {
         result;  ///< mesh, snapshots, minerals (in each square that with the largest area) and cracks; no contacts, no cells
     double side_m = 0.0;
     double grains_in_one = 0.0;        ///< mean number
-    int crack_every = 1;               ///< so many cracks of the test stand for one here
+    std::size_t crack_every = 1;       ///< so many cracks of the test stand for one here
     std::vector<int> square_of_crack;  ///< of those that are here; -1: in none
 };
 
-/// The most cracks that a picture has. @return of a test with more of them, how many stand for one that is drawn; else 1
+/// The most cracks that a picture has.
 inline constexpr std::size_t most_cracks_drawn = 40'000;
-constexpr int cracks_for_one(std::size_t cracks) {
-    return static_cast<int>((cracks + most_cracks_drawn - 1) / most_cracks_drawn) + (cracks == 0 ? 1 : 0);
+/// How many cracks of a test stand for one that is drawn, at least 1.
+constexpr std::size_t cracks_for_one(std::size_t cracks) {
+    return std::max<std::size_t>(1, (cracks + most_cracks_drawn - 1) / most_cracks_drawn);
 }
 
 /// @param result  with a specimen, and snapshots of its mesh
