@@ -14,6 +14,13 @@ Assembly bar() {
     return assemble(*fixtures::two_grain_bar(0.01), fixtures::model(GrainKind::rigid), fixtures::granite(), fixtures::table7());
 }
 
+// The same grains without a contact.
+Assembly loose_bar() {
+    Assembly assembly = bar();
+    for (Contact& contact : assembly.contacts) contact.dropped = true;
+    return assembly;
+}
+
 void break_all(Assembly& assembly) {
     for (std::size_t p = 0; p < assembly.points.size(); ++p) {
         BondState bond = assembly.bond(static_cast<int>(p));
@@ -45,8 +52,7 @@ TEST(FindContacts, IntactOnesAreNeverDropped) {
 
 // Bodies that overlap at the start without a contact, as discs of a packing may, begin one when they come nearer than they were.
 TEST(FindContacts, OverlapsOfTheStartAreAtRest) {
-    Assembly assembly = bar();
-    for (Contact& contact : assembly.contacts) contact.dropped = true;
+    Assembly assembly = loose_bar();
     lift_upper(assembly, -1e-3);
     ContactFinder finder(assembly, 1e-2);
     lift_upper(assembly, 1e-4);
@@ -57,8 +63,7 @@ TEST(FindContacts, OverlapsOfTheStartAreAtRest) {
 
 // Each of two bodies may move by half of the skin before pairs are looked for again, so those that the skin parts are candidates.
 TEST(FindContacts, BodiesThatTheSkinPartsMeetHalfWay) {
-    Assembly assembly = bar();
-    for (Contact& contact : assembly.contacts) contact.dropped = true;
+    Assembly assembly = loose_bar();
     constexpr double kSkin = 1e-3;
     lift_upper(assembly, 0.97 * kSkin);
     ContactFinder finder(assembly, kSkin);
@@ -69,8 +74,7 @@ TEST(FindContacts, BodiesThatTheSkinPartsMeetHalfWay) {
 
 // What comes from beyond the skin is found once it has come half of it: bodies that were no candidates.
 TEST(FindContacts, BodiesThatWereFarApartMeet) {
-    Assembly assembly = bar();
-    for (Contact& contact : assembly.contacts) contact.dropped = true;
+    Assembly assembly = loose_bar();
     constexpr double kSkin = 1e-3;
     lift_upper(assembly, 3.0 * kSkin);
     ContactFinder finder(assembly, kSkin);
